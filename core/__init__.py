@@ -1,0 +1,1 @@
+"""The numerics of the bench: pure functions over arrays, no input or output, no clock."""

@@ -1,0 +1,206 @@
+"""What a block is: parameters, ports, equations and one compiled step.
+
+A step has one signature, ``step(p, s, w, io)``: its own packed parameters, its own state, the board's signal
+vector and the indices of its ports in that vector (inputs, then outputs, then taps, in the order declared).
+The same Python function, run uncompiled, is its own oracle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, TypeVar, cast
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Step = Callable[[Any, Any, Any, Any], None]
+F = TypeVar("F", bound=Callable[..., Any])
+
+TICK, TIME_MS, RESERVED = 0, 1, 2
+"""Signals every step may read without a port: the tick, and device time in ms."""
+
+
+def kernel(function: F) -> F:
+    """Compile a helper that steps call: strict arithmetic, no GIL, cached."""
+    return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+
+
+@dataclass(frozen=True)
+class Port:
+    """One signal (or a vector of them) a block reads or writes.
+
+    Parameters
+    ----------
+    name : str
+        Port name; the signal is called ``<instance>.<name>``.
+    unit, meaning : str
+        Shown to people.
+    source : str
+        For inputs: the signal it is wired to unless the wiring says otherwise.
+    labels : tuple of str
+        For vectors: one name per component.
+    each : str
+        For vectors: the list parameter whose elements' names are the labels.
+    hidden : bool
+        Plumbing: neither traced nor offered to scopes.
+    """
+
+    name: str
+    unit: str = "1"
+    meaning: str = ""
+    source: str = ""
+    labels: tuple[str, ...] = ()
+    each: str = ""
+    hidden: bool = False
+
+    def names(self, params: BlockParams) -> tuple[str, ...]:
+        """Return the component names below the instance, one for a scalar."""
+        labels = self.labels
+        if self.each:
+            labels = tuple(str(item.name) for item in getattr(params, self.each))
+        return tuple(f"{self.name}.{label}" for label in labels) if labels else (self.name,)
+
+
+@dataclass(frozen=True)
+class Equation:
+    """An equation shown beside the block, with the erratum if the printed one is wrong."""
+
+    label: str
+    latex: str
+    source: str = ""
+    printed: str = ""
+    why: str = ""
+
+
+class BlockParams(BaseModel):
+    """Parameters of a block: unknown names and numbers that are not finite are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
+
+
+def parameter(
+    default: Any,
+    meaning: str,
+    unit: str = "",
+    *,
+    ge: float | None = None,
+    gt: float | None = None,
+    le: float | None = None,
+    equation: str = "",
+    live: bool = True,
+) -> Any:
+    """Declare a parameter: default, meaning, unit, range, where it appears, tunable while running or not."""
+    extra: dict[str, Any] = {"unit": unit, "equation": equation, "live": live}
+    return Field(default, description=meaning, ge=ge, gt=gt, le=le, json_schema_extra=extra)
+
+
+@dataclass(frozen=True)
+class Oscillator:
+    """A mass, damper and spring driven by a voltage, in the units of the loop.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : float
+        mg, uN ms/um, uN/um.
+    force : float
+        Signed force per volt, uN/V (negative: a positive voltage pulls to -x).
+    """
+
+    mass: float
+    damping: float
+    stiffness: float
+    force: float
+
+    @property
+    def static_gain(self) -> float:
+        """Displacement per volt at rest, um/V, signed."""
+        return self.force / self.stiffness
+
+    @property
+    def natural_frequency(self) -> float:
+        """Undamped natural frequency, rad/ms."""
+        return float((self.stiffness / self.mass) ** 0.5)
+
+    @property
+    def damping_ratio(self) -> float:
+        """Damping ratio."""
+        return float(self.damping / (2.0 * (self.stiffness * self.mass) ** 0.5))
+
+
+@dataclass(frozen=True)
+class Context:
+    """What a block may know of the bench when it packs its parameters.
+
+    Parameters
+    ----------
+    dt_ms : float
+        The block's own sample interval.
+    every : int
+        Board ticks between two calls of the block.
+    seed : int
+        Seed of every noise stream.
+    device : Oscillator
+        The nominal device.
+    model : Oscillator
+        The reference model the shuttle should follow.
+    temperature_k : float
+        Temperature of the device.
+    stator_voltages : tuple of float
+        Bias of the two stators, V.
+    capacitance_gradient : float
+        dC/dx of one comb, uN/V^2 (the same number as 1e6 F/m).
+    sensor_noise_um : float
+        Standard deviation of the sensor's white noise.
+    analogue : bool
+        Whether the reference drives the plant between samples.
+    limit_v : float
+        Limit of the drive to either side.
+    """
+
+    dt_ms: float
+    every: int
+    seed: int
+    device: Oscillator
+    model: Oscillator
+    temperature_k: float = 300.0
+    stator_voltages: tuple[float, float] = (0.0, 0.0)
+    capacitance_gradient: float = 0.0
+    sensor_noise_um: float = 0.0
+    analogue: bool = False
+    limit_v: float = 30.0
+
+
+
+class Block:
+    """Base of every block; a subclass declares, ``pack`` and ``state`` turn the declaration into arrays."""
+
+    family: ClassVar[str]
+    name: ClassVar[str]
+    title: ClassVar[str]
+    Params: ClassVar[type[BlockParams]]
+    inputs: ClassVar[tuple[Port, ...]] = ()
+    outputs: ClassVar[tuple[Port, ...]] = ()
+    taps: ClassVar[tuple[Port, ...]] = ()
+    equations: ClassVar[tuple[Equation, ...]] = ()
+    step: ClassVar[Step]
+
+    def __init_subclass__(cls) -> None:
+        """Name the block after its file and its family after its folder."""
+        path = cls.__module__.split(".")
+        cls.name = path[-1]
+        cls.family = path[-2] if len(path) > 1 else ""
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the parameters for the step."""
+        raise NotImplementedError
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> FloatArray:
+        """Return the initial state."""
+        return np.zeros(0)

@@ -1,0 +1,296 @@
+"""A board: one tick after another, commands at tick edges, a log of all that happened."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from core.block import BlockParams, FloatArray
+from core.board import changes, program, score
+from core.board.commands import Command, Heal, Inject, LogEntry, Set, Switch, Trip
+from core.board.condition import Condition, parse_condition
+from core.board.guard import REASONS
+from core.board.spec import Document, Spec, parse
+from core.board.wiring import Wiring, wire
+from core.errors import InputError
+
+CHUNK = 512
+"""Most ticks of one call of ``advance``."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Ticks that were run: views that hold until the next ``advance``."""
+
+    first_tick: int
+    count: int
+    outputs: FloatArray
+    taps: FloatArray
+
+
+@dataclass
+class Pending:
+    """A command that waits for its moment."""
+
+    command: Command
+    actor: str
+    tick: int | None = None
+    condition: Condition | None = None
+
+
+@dataclass
+class Checkpoint:
+    """Everything a board is, at a tick edge."""
+
+    board: dict[str, Any] = field(repr=False)
+    tick: int
+
+
+class Board:
+    """A wired bench.
+
+    Parameters
+    ----------
+    document : dict
+        What the bench is made of.
+    compiled : bool
+        Run compiled blocks; the uncompiled ones are their oracle and give the same bits.
+    """
+
+    chunk = CHUNK
+
+    def __init__(self, document: Document, *, compiled: bool = True) -> None:
+        self.spec: Spec = parse(document)
+        self.base: Document = copy.deepcopy(self.spec.document)
+        self.compiled = compiled
+        self.faults: dict[str, BlockParams] = {}
+        self.wiring: Wiring = wire(self.spec)
+        self.tick = 0
+        self.log: list[LogEntry] = []
+        self.pending: list[Pending] = []
+        self.trip: Trip | None = None
+        self._sha = hashlib.sha256()
+        self._known: dict[str, tuple[float, float]] = {}
+        self._link()
+
+    # -- what it is -----------------------------------------------------------------------------------------------
+
+    @property
+    def dt_ms(self) -> float:
+        """Sample interval, ms."""
+        return self.spec.dt_ms
+
+    @property
+    def signals(self) -> Any:
+        """Table of traced signals."""
+        return self.wiring.signals
+
+    def value(self, signal: str) -> float:
+        """Return the value of a signal after the last tick."""
+        return float(self.wiring.w[self.wiring.index[signal]])
+
+    def digest(self) -> str:
+        """Return the SHA-256 of the float64 trace of all outputs so far."""
+        return self._sha.hexdigest()
+
+    def scores(self) -> dict[str, score.Scores]:
+        """Return the score of every diagnoser."""
+        found = {}
+        for name, section in self.spec.diagnosers.items():
+            names = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
+            found[name] = score.read(self.wiring.state_of(f"{name}.score"), names, int(self.value(f"{name}.winner")))
+        return found
+
+    # -- time -----------------------------------------------------------------------------------------------------
+
+    def advance(self, n: int) -> Rows:
+        """Run up to ``n`` ticks (at most ``CHUNK``); fewer when the board trips.
+
+        Pending commands take effect at the edges of the ticks they wait for, whatever the chunks.
+        """
+        n = min(n, CHUNK)
+        first, done = self.tick, 0
+        while done < n:
+            self._apply_due()
+            if self.trip is not None:
+                break
+            upcoming = [entry.tick for entry in self.pending if entry.tick is not None]
+            stop = min([self.tick + n - done, *upcoming])
+            ran, why, which = self._run(stop - self.tick, done)
+            self._observe(done, ran)
+            done += ran
+            self.tick += ran
+            if why == program.TRIPPED:
+                self._trip()
+            elif why == program.WATCHED:
+                watching = [entry for entry in self.pending if entry.condition is not None]
+                met = watching[which]
+                met.condition, met.tick = None, self.tick
+        self._sha.update(self._outputs[:done])
+        return Rows(first, done, self._outputs[:done], self._taps[:done])
+
+    def _run(self, n: int, at: int) -> tuple[int, int, int]:
+        wiring = self.wiring
+        conditions = [entry.condition for entry in self.pending if entry.condition is not None]
+        watches = np.array([[wiring.index[c.signal], c.sign, c.threshold] for c in conditions]).reshape(-1, 3)
+        outputs, taps = self._outputs[at:], self._taps[at:]
+        shared = (wiring.output_index, wiring.tap_index, outputs, taps, wiring.index["guard.trip"], watches)
+        if not self.compiled:
+            arrays = (wiring.table, wiring.p, wiring.s, wiring.w, wiring.io)
+            return program.run_uncompiled(self._steps, n, self.tick, self.dt_ms, *arrays, *shared)
+        addresses = (wiring.p.ctypes.data, wiring.s.ctypes.data, wiring.w.ctypes.data, wiring.io.ctypes.data)
+        return program.run(n, self.tick, self.dt_ms, wiring.table, *addresses, wiring.w, *shared)
+
+    def _link(self) -> None:
+        """Put the addresses of the compiled steps into the table."""
+        self._steps = [instance.block.step for instance in self.wiring.instances]
+        if self.compiled:
+            self._functions = [program.compiled(step) for step in self._steps]
+            self.wiring.table[:, program.ADDRESS] = [function.address for function in self._functions]
+        self._outputs = np.zeros((CHUNK, len(self.wiring.output_index)))
+        self._taps = np.zeros((CHUNK, len(self.wiring.tap_index)))
+
+    # -- commands -------------------------------------------------------------------------------------------------
+
+    def apply(self, command: Command, actor: str = "scenario") -> LogEntry:
+        """Let a command take effect at this tick edge, or wait for its moment if it names one.
+
+        Raises
+        ------
+        InputError
+            When the command is not allowed; nothing has changed then.
+        """
+        if command.when is not None:
+            condition = parse_condition(command.when, self.wiring.index)
+            return self._wait(command, actor, None, condition)
+        moment = command.at_sample
+        if command.at_ms is not None:
+            moment = round(command.at_ms / self.dt_ms)
+        if moment is not None and moment > self.tick:
+            return self._wait(command, actor, moment, None)
+        if moment is not None and moment < self.tick:
+            raise InputError(f"sample {moment} has passed, the board is at {self.tick}", "at_sample")
+        return self._do(command, actor)
+
+    def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
+        changes.check(self, command)
+        self.pending.append(Pending(command, actor, tick, condition))
+        return self._note(actor, "scheduled", f"waiting: {changes.describe(command)}", command=command)
+
+    def _apply_due(self) -> None:
+        due = [entry for entry in self.pending if entry.tick is not None and entry.tick <= self.tick]
+        self.pending = [entry for entry in self.pending if entry not in due]
+        for entry in due:
+            try:
+                self._do(entry.command, entry.actor)
+            except InputError as error:
+                self._note("board", "refused", f"{changes.describe(entry.command)}: {error}", command=entry.command)
+
+    def _do(self, command: Command, actor: str) -> LogEntry:
+        untimed = command.model_copy(update={"at_sample": None, "at_ms": None, "when": None})
+        if isinstance(untimed, Inject):
+            old, new = changes.inject(self, untimed)
+        elif isinstance(untimed, Heal):
+            old, new = changes.heal(self, untimed)
+        elif isinstance(untimed, Set):
+            old, new = changes.set_values(self, untimed.values)
+        elif isinstance(untimed, Switch):
+            old, new = changes.switch(self, untimed)
+        else:
+            old, new = changes.reset_trip(self)
+        return self._note(actor, untimed.kind, changes.describe(untimed), command=untimed, old=old, new=new)
+
+    # -- log ------------------------------------------------------------------------------------------------------
+
+    def _note(self, actor: str, kind: str, text: str, *, command: Command | None = None, tick: int | None = None,
+              old: Any = None, new: Any = None) -> LogEntry:
+        at = self.tick if tick is None else tick
+        document = command.model_dump(exclude_none=True, mode="json") if command is not None else None
+        entry = LogEntry(seq=len(self.log) + 1, tick=at, time_ms=at * self.dt_ms, actor=actor, kind=kind, text=text,
+                         command=document, old=old, new=new)
+        self.log.append(entry)
+        return entry
+
+    def _trip(self) -> None:
+        code = int(self.value("guard.trip"))
+        text, signal = REASONS[code]
+        if code == 1:
+            signal = next((name for name in ("plant.displacement", "plant.velocity") if not np.isfinite(self.value(name))),
+                          f"{self.spec.active}.voltage")
+        value = self.value(signal)
+        reason = text.format(signal=signal)
+        self.trip = Trip(tick=self.tick, time_ms=self.tick * self.dt_ms, reason=reason, signal=signal,
+                         value=value if np.isfinite(value) else None)
+        changes.disengage(self)
+        self._note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())
+
+    def _observe(self, at: int, count: int) -> None:
+        """Log what the diagnosers found in the ticks just run: changes of the truth, and its recognition."""
+        for name in self.spec.diagnosers:
+            truth = self._outputs[at : at + count, self.signals.index(f"{name}.truth")]
+            delay = self._taps[at : at + count, self.signals.index(f"{name}.delay") - self.signals.outputs]
+            last_truth, last_delay = self._known.get(name, (-2.0, -1.0))
+            moved = np.flatnonzero(np.diff(truth, prepend=last_truth))
+            found = np.flatnonzero((np.diff(delay, prepend=last_delay) != 0) & (delay >= 0))
+            self._known[name] = (truth[-1], delay[-1])
+            names = [item.name for item in self.spec.diagnosers[name].params.hypotheses]  # type: ignore[attr-defined]
+            for i in sorted({*moved.tolist(), *found.tolist()}):
+                tick = self.tick + i
+                label = names[int(truth[i])] if truth[i] >= 0 else "none of the hypotheses"
+                if i in moved:
+                    self._note("board", "truth_changed", f"{name}: the truth is {label}", tick=tick, new=label)
+                if i in found:
+                    samples = int(delay[i])
+                    text = f"{name} found {label} after {samples} samples ({samples * self.dt_ms:.3g} ms)"
+                    self._note("board", "recognised", text, tick=tick, old=samples, new=label)
+
+    # -- copies ---------------------------------------------------------------------------------------------------
+
+    def checkpoint(self) -> Checkpoint:
+        """Return everything the board is at this tick edge."""
+        kept = {
+            name: copy.deepcopy(getattr(self, name))
+            for name in ("base", "faults", "pending", "trip", "_known", "compiled", "tick")
+        }
+        wiring = self.wiring
+        arrays = {name: getattr(wiring, name).copy() for name in ("table", "p", "s", "w", "io")}
+        return Checkpoint({**kept, "spec": self.spec, "wiring": wiring, "arrays": arrays, "log": list(self.log),
+                           "_sha": self._sha.copy()}, self.tick)
+
+    @classmethod
+    def restore(cls, checkpoint: Checkpoint) -> Board:
+        """Return a board that goes on from a checkpoint, bit for bit; restoring twice forks it."""
+        board = cls.__new__(cls)
+        kept = checkpoint.board
+        for name in ("base", "faults", "pending", "trip", "_known", "compiled", "tick"):
+            setattr(board, name, copy.deepcopy(kept[name]))
+        board.spec, board.log, board._sha = kept["spec"], list(kept["log"]), kept["_sha"].copy()
+        board.wiring = copy.copy(kept["wiring"])
+        for name, array in kept["arrays"].items():
+            setattr(board.wiring, name, array.copy())
+        board._link()
+        return board
+
+    def save(self) -> Document:
+        """Return the bench as a scenario document: what it started from, and what was done to it.
+
+        Run headless it gives the same bits.
+        """
+        events = [
+            {**changes.event(entry.command), "at_sample": entry.tick}
+            for entry in self.log
+            if entry.command is not None and entry.kind not in ("scheduled", "refused")
+        ]
+        for waiting in self.pending:
+            document = changes.event(waiting.command.model_dump(exclude_none=True, mode="json"))
+            if waiting.tick is not None:
+                document.pop("at_ms", None)
+                document.pop("when", None)
+                document["at_sample"] = waiting.tick
+            events.append(document)
+        return {**copy.deepcopy(self.base), "samples": self.tick, "events": events}
+

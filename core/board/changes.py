@@ -1,0 +1,247 @@
+"""What each command changes on a board; a command that is not allowed changes nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from core import registry
+from core.block import BlockParams
+from core.board import program
+from core.board.commands import Command, Heal, Inject, Set, Switch
+from core.board.spec import Section, Spec, parse, with_values
+from core.board.wiring import Instance, Wiring, wire
+from core.errors import InputError, from_validation, unknown
+
+if TYPE_CHECKING:
+    from core.board.board import Board
+
+LIVE_SECTIONS = ("plant", "reference", "model", "drive", "guard", "sensor")
+
+
+def describe(command: Command) -> str:
+    """Say in words what a command does."""
+    if isinstance(command, Inject):
+        shape = "" if command.profile.kind == "step" else f", {command.profile.kind}"
+        return f"inject {command.fault} {command.severity:+g}{shape}"
+    if isinstance(command, Heal):
+        return "heal all" if command.faults == "all" else f"heal {', '.join(command.faults)}"
+    if isinstance(command, Set):
+        return "set " + ", ".join(f"{path} = {value}" for path, value in command.values.items())
+    if isinstance(command, Switch):
+        return f"switch to {command.controller}{' from a cold start' if command.cold else ''}"
+    return "reset after the trip"
+
+
+def event(command: dict[str, Any]) -> dict[str, Any]:
+    """Return a logged command as an event of a scenario."""
+    rest = {key: value for key, value in command.items() if key != "kind"}
+    kind = command["kind"]
+    if kind == "heal":
+        return {**{k: v for k, v in rest.items() if k != "faults"}, "heal": rest["faults"]}
+    if kind == "set":
+        return {**{k: v for k, v in rest.items() if k != "values"}, "set": rest["values"]}
+    if kind == "switch":
+        return {**{k: v for k, v in rest.items() if k not in ("controller", "cold")},
+                "switch": rest["controller"], **({"cold": True} if rest.get("cold") else {})}
+    if kind == "reset_trip":
+        return {**rest, "reset_trip": True}
+    return rest
+
+
+def check(board: Board, command: Command) -> None:
+    """Refuse a command for later that could never be carried out."""
+    if isinstance(command, Inject):
+        _fault_params(command, 0)
+    elif isinstance(command, Heal):
+        _names(command)
+    elif isinstance(command, Set):
+        _changed(board.spec, command.values)
+    elif isinstance(command, Switch):
+        registry.block("control", command.controller, "controller")
+
+
+def inject(board: Board, command: Inject) -> tuple[Any, Any]:
+    """Put a fault on the device from this tick on."""
+    params = _fault_params(command, board.tick)
+    current = board.faults.get(command.fault)
+    if current is not None and _same_fault(current, params):
+        raise InputError(
+            f"{command.fault} is already there with severity {command.severity:g}",
+            "fault",
+            "heal it first, or give another severity",
+            "conflict",
+        )
+    old = current.model_dump() if current is not None else None
+    board.faults[command.fault] = params
+    _repack(board, f"faults.{command.fault}", params)
+    return old, params.model_dump()
+
+
+def heal(board: Board, command: Heal) -> tuple[Any, Any]:
+    """Take faults away at this tick."""
+    names = _names(command)
+    if command.faults == "all":
+        names = [name for name in names if name in board.faults]
+    absent = [name for name in names if name not in board.faults]
+    if absent:
+        present = ", ".join(board.faults) or "none"
+        raise InputError(f"{absent[0]} is not there to heal; present: {present}", "faults", code="conflict")
+    old = {name: board.faults[name].model_dump() for name in names}
+    for name in names:
+        del board.faults[name]
+        _repack(board, f"faults.{name}", registry.block("faults", name).Params())
+    return old, None
+
+
+def set_values(board: Board, values: dict[str, Any]) -> tuple[Any, Any]:
+    """Change parameters by path, all in this tick."""
+    spec, old, new = _changed(board.spec, values)
+    _rewire(board, spec)
+    return old, new
+
+
+def switch(board: Board, command: Switch) -> tuple[Any, Any]:
+    """Give the drive to another controller."""
+    name = registry.block("control", command.controller, "controller").name
+    old = board.spec.active
+    if name == old and not command.cold:
+        raise InputError(f"{name} drives already", "controller", "choose another, or a cold start", "conflict")
+    spec = parse(with_values(board.spec.document, {"controller.kind": name}))
+    _rewire(board, spec)
+    if command.cold:
+        instance = board.wiring.instances[board.wiring.row(name)]
+        board.wiring.state_of(name)[:] = instance.block.state(instance.params, spec.context(instance.every))
+    return old, name
+
+
+def disengage(board: Board) -> None:
+    """Take the voltage off: what a trip does."""
+    for name in ("voltage", "middle", "end"):
+        board.wiring.w[board.wiring.index[f"drive.{name}"]] = 0.0
+
+
+def reset_trip(board: Board) -> tuple[Any, Any]:
+    """Leave the tripped state: every block starts anew, time and faults go on."""
+    if board.trip is None:
+        raise InputError("the board has not tripped", "kind", code="conflict")
+    old = board.trip.model_dump()
+    fresh = wire(board.spec, board.faults)
+    keep = [instance.key for instance in fresh.instances if instance.key.endswith(".score")]
+    for key in keep:
+        fresh.state_of(key)[:] = board.wiring.state_of(key)
+    index = fresh.index
+    for name in board.spec.diagnosers:
+        for port in ("correct_fraction", "false_switches", "delay", "truth", "winner"):
+            fresh.w[index[f"{name}.{port}"]] = board.value(f"{name}.{port}")
+    board.wiring = fresh
+    board._link()
+    board.trip = None
+    return old, None
+
+
+def _names(command: Heal) -> list[str]:
+    known = list(registry.blocks("faults"))
+    if command.faults == "all":
+        return known
+    for name in command.faults:
+        if name not in known:
+            raise unknown("fault", name, known, "faults")
+    return list(command.faults)
+
+
+def _fault_params(command: Inject, tick: int) -> BlockParams:
+    block = registry.block("faults", command.fault, "fault")
+    try:
+        return block.Params.model_validate(
+            {"severity": command.severity, "profile": command.profile, "start_tick": tick}
+        )
+    except ValidationError as error:
+        raise from_validation(error) from None
+
+
+def _same_fault(first: BlockParams, second: BlockParams) -> bool:
+    return first.model_dump(exclude={"start_tick"}) == second.model_dump(exclude={"start_tick"})
+
+
+def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:
+    """Return the new bench with old and new values, or refuse what is not tunable while running."""
+    new = parse(with_values(spec.document, values))
+    for field in ("sample_rate_khz", "seed"):
+        if getattr(new.frame, field) != getattr(spec.frame, field):
+            raise _not_live(field)
+    if new.device != spec.device:
+        raise _not_live("device")
+    for key in LIVE_SECTIONS:
+        _check_section(key, getattr(spec, key), getattr(new, key))
+    for name, section in new.controllers.items():
+        _check_section(f"controllers.{name}", spec.controllers[name], section)
+    if list(new.diagnosers) != list(spec.diagnosers):
+        raise _not_live("diagnosers")
+    for name, section in new.diagnosers.items():
+        _check_section(f"diagnosers.{name}", spec.diagnosers[name], section)
+    return new, {path: _get(spec, path) for path in values}, dict(values)
+
+
+def _check_section(path: str, old: Section, new: Section) -> None:
+    if old.every != new.every:
+        raise _not_live(f"{path}.every")
+    if old.block is not new.block:
+        ports = [(port.name, port.labels) for port in (*old.block.outputs, *old.block.taps)]
+        if path.startswith("diagnosers") or ports != [(p.name, p.labels) for p in (*new.block.outputs, *new.block.taps)]:
+            raise _not_live(f"{path}.kind")
+        return
+    for name, info in type(new.params).model_fields.items():
+        if getattr(old.params, name) != getattr(new.params, name) and not registry.is_live(info):
+            raise _not_live(f"{path}.{name}")
+
+
+def _not_live(path: str) -> InputError:
+    return InputError("cannot change while the board runs", path, "reset the bench with the new value", "not_live")
+
+
+def _get(spec: Spec, path: str) -> Any:
+    """Return the value a path has now, defaults included."""
+    head, _, leaf = path.rpartition(".")
+    if path == "controller.kind":
+        return spec.active
+    sections: dict[str, Section] = {key: getattr(spec, key) for key in LIVE_SECTIONS}
+    sections |= {f"controllers.{name}": section for name, section in spec.controllers.items()}
+    sections |= {f"diagnosers.{name}": section for name, section in spec.diagnosers.items()}
+    sections["controller"] = spec.controllers[spec.active]
+    section = sections.get(head)
+    if section is None:
+        return None
+    return section.block.name if leaf in ("kind", "model") else getattr(section.params, leaf, None)
+
+
+def _repack(board: Board, key: str, params: BlockParams) -> None:
+    """Replace the packed parameters of one instance."""
+    wiring = board.wiring
+    row = wiring.row(key)
+    old = wiring.instances[row]
+    wiring.instances = [*wiring.instances]
+    wiring.instances[row] = Instance(old.key, old.prefix, old.block, params, old.every)
+    packed = old.block.pack(params, board.spec.context(old.every))
+    start = wiring.table[row, program.P_OFFSET]
+    wiring.p[start : start + len(packed)] = packed
+
+
+def _rewire(board: Board, spec: Spec) -> None:
+    """Put another bench of the same signals on the board; what is alike keeps its state."""
+    old = board.wiring
+    new: Wiring = wire(spec, board.faults)
+    assert new.signals.names == old.signals.names
+    new.w[:] = old.w
+    for name in spec.controllers:
+        new.w[new.index[f"{name}.engaged"]] = 1.0 if name == spec.active else 0.0
+    for before, after in zip(old.instances, new.instances, strict=True):
+        if before.block is after.block:
+            kept, fresh = old.state_of(before.key), new.state_of(after.key)
+            if len(kept) == len(fresh):
+                fresh[:] = kept
+    board.spec = spec
+    board.wiring = new
+    board._link()
+

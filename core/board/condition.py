@@ -1,0 +1,40 @@
+"""Conditions on signals: '<signal> > <value>'."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from core.errors import InputError, finite, unknown
+
+_FORM = re.compile(r"^\s*(\S+)\s*(>|<)\s*(\S+)\s*$")
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A signal above or below a value."""
+
+    signal: str
+    sign: float
+    threshold: float
+
+
+def parse_condition(text: str, index: dict[str, int]) -> Condition:
+    """Read a condition on one of the signals in ``index``.
+
+    Raises
+    ------
+    InputError
+        When it is not of the form, the signal does not exist or the value is no number.
+    """
+    found = _FORM.match(text)
+    if not found:
+        raise InputError(f"must be '<signal> > <value>' or '<signal> < <value>', got {text!r}", "when")
+    signal, comparison, value = found.groups()
+    if signal not in index:
+        raise unknown("signal", signal, sorted(index), "when")
+    try:
+        threshold = finite(float(value), "when")
+    except ValueError:
+        raise InputError(f"{value!r} is not a finite number", "when") from None
+    return Condition(signal, 1.0 if comparison == ">" else -1.0, threshold)

@@ -1,0 +1,72 @@
+"""Drive: limiter and converter between the controller that drives and the plant."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+import numpy as np
+
+from core.block import Block, BlockParams, Context, FloatArray, Port, kernel, parameter
+
+LIMIT, QUANTUM = range(2)
+COMMAND, MIDDLE_IN, END_IN, VOLTAGE, MIDDLE, END, CHARGE, SATURATED = range(8)
+
+
+@kernel
+def convert(p: Any, u: float) -> float:
+    """Clip to the limit and round to the converter's step; nothing comes out for what is not a number."""
+    if not math.isfinite(u):
+        return 0.0
+    u = min(max(u, -p[LIMIT]), p[LIMIT])
+    if p[QUANTUM] > 0.0:
+        u = p[QUANTUM] * math.floor(u / p[QUANTUM] + 0.5)
+    return u
+
+
+def drive_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Apply the voltage asked for, as far as the drive can."""
+    u = w[io[COMMAND]]
+    w[io[VOLTAGE]] = convert(p, u)
+    if w[io[MIDDLE_IN]] == u and w[io[END_IN]] == u:
+        w[io[MIDDLE]] = w[io[VOLTAGE]]
+        w[io[END]] = w[io[VOLTAGE]]
+    else:
+        w[io[MIDDLE]] = convert(p, w[io[MIDDLE_IN]])
+        w[io[END]] = convert(p, w[io[END_IN]])
+    w[io[CHARGE]] += w[io[VOLTAGE]]
+    w[io[SATURATED]] = 1.0 if abs(u) > p[LIMIT] else 0.0
+
+
+class Drive(Block):
+    """Limiter and digital-to-analogue converter; holds the voltage for one sample."""
+
+    title = "Drive"
+    inputs = (
+        Port("command", "V", "voltage asked for by the controller that drives", source="@active"),
+        Port("command_middle", "V", "the same half a sample later", source="@active_middle"),
+        Port("command_end", "V", "the same one sample later", source="@active_end"),
+    )
+    outputs = (
+        Port("voltage", "V", "applied voltage"),
+        Port("middle", "V", "applied voltage half a sample later", hidden=True),
+        Port("end", "V", "applied voltage one sample later", hidden=True),
+        Port("charge", "V", "running sum of the applied voltage", hidden=True),
+    )
+    taps = (Port("saturated", "1", "1 while more voltage is asked for than the drive has"),)
+
+    class Params(BlockParams):
+        """The output stage."""
+
+        limit_v: float = parameter(30.0, "limit to either side", "V", gt=0, le=1000)
+        quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
+        kind: Literal["held", "analogue"] = parameter(
+            "held", "held by a converter, or an analogue generator (open loop only)", live=False
+        )
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the parameters for the step."""
+        return np.array([params.limit_v, params.quantum_v])
+
+    step = drive_step

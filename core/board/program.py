@@ -1,0 +1,133 @@
+"""The compiled tick loop: a table of block addresses, offsets and ports.
+
+Wiring is data, so a block is swapped, added or re-wired without compiling the loop again, and the dispatch costs
+about as much as inlining. The same steps run uncompiled are the oracle of the compiled ones, bit for bit.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from core.block import TICK, TIME_MS, FloatArray, IntArray, Step, kernel
+
+ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, ENABLED, COLUMNS = range(7)
+"""Columns of the table, one row per block."""
+
+DONE, TRIPPED, WATCHED = range(3)
+"""Why the loop returned."""
+
+_SIGNATURE = types.void(
+    types.CPointer(types.float64), types.CPointer(types.float64), types.CPointer(types.float64), types.CPointer(types.int64)
+)
+
+
+@cache
+def compiled(step: Step) -> Any:
+    """Compile a step to its C function."""
+    return numba.cfunc(_SIGNATURE, nopython=True, cache=True, error_model="numpy")(step)
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def _call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:
+    """Call the C function at ``address`` with four pointers given as integers."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        pointer = cgutils.voidptr_t
+        function_type = ir.FunctionType(ir.VoidType(), [pointer] * 4)
+        function = builder.inttoptr(args[0], function_type.as_pointer())
+        builder.call(function, [builder.inttoptr(arg, pointer) for arg in args[1:]])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.int64, types.int64, types.int64), generate
+
+
+@kernel
+def run(
+    n: int,
+    first_tick: int,
+    dt_ms: float,
+    table: IntArray,
+    p: int,
+    s: int,
+    w_address: int,
+    io: int,
+    w: FloatArray,
+    output_index: IntArray,
+    tap_index: IntArray,
+    outputs: FloatArray,
+    taps: FloatArray,
+    trip: int,
+    watches: FloatArray,
+) -> tuple[int, int, int]:
+    """Run up to ``n`` ticks; return how many were run, why it stopped, and which watch was met.
+
+    ``p``, ``s``, ``w_address`` and ``io`` are addresses of arrays the caller keeps alive. A watch is a row
+    (signal, +1 above or -1 below, threshold).
+    """
+    blocks = table.shape[0]
+    for i in range(n):
+        tick = first_tick + i
+        w[TICK] = tick
+        w[TIME_MS] = tick * dt_ms
+        for b in range(blocks):
+            if table[b, ENABLED] != 0 and tick % table[b, EVERY] == 0:
+                _call(
+                    table[b, ADDRESS],
+                    p + 8 * table[b, P_OFFSET],
+                    s + 8 * table[b, S_OFFSET],
+                    w_address,
+                    io + 8 * table[b, IO_OFFSET],
+                )
+        for c in range(output_index.shape[0]):
+            outputs[i, c] = w[output_index[c]]
+        for c in range(tap_index.shape[0]):
+            taps[i, c] = w[tap_index[c]]
+        if w[trip] != 0.0:
+            return i + 1, TRIPPED, 0
+        for c in range(watches.shape[0]):
+            if watches[c, 1] * (w[int(watches[c, 0])] - watches[c, 2]) > 0.0:
+                return i + 1, WATCHED, c
+    return n, DONE, 0
+
+
+def run_uncompiled(
+    steps: list[Step],
+    n: int,
+    first_tick: int,
+    dt_ms: float,
+    table: IntArray,
+    p: FloatArray,
+    s: FloatArray,
+    w: FloatArray,
+    io: IntArray,
+    output_index: IntArray,
+    tap_index: IntArray,
+    outputs: FloatArray,
+    taps: FloatArray,
+    trip: int,
+    watches: FloatArray,
+) -> tuple[int, int, int]:
+    """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled."""
+    for i in range(n):
+        tick = first_tick + i
+        w[TICK] = tick
+        w[TIME_MS] = tick * dt_ms
+        for step, row in zip(steps, table, strict=True):
+            if row[ENABLED] and tick % row[EVERY] == 0:
+                step(p[row[P_OFFSET] :], s[row[S_OFFSET] :], w, io[row[IO_OFFSET] :])
+        outputs[i] = w[output_index]
+        taps[i] = w[tap_index]
+        if w[trip] != 0.0:
+            return i + 1, TRIPPED, 0
+        for c, (index, sign, threshold) in enumerate(watches):
+            if sign * (w[int(index)] - threshold) > 0.0:
+                return i + 1, WATCHED, c
+    return n, DONE, 0

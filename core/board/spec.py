@@ -1,0 +1,230 @@
+"""What a bench is made of, checked: a document in, validated blocks out."""
+
+from __future__ import annotations
+
+import copy
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from core import registry
+from core.block import Block, BlockParams, Context
+from core.board.drive import Drive
+from core.board.guard import Guard
+from core.board.model import Model
+from core.device.catalogue import device as build_device
+from core.device.device import Device
+from core.errors import InputError, from_validation, short
+
+Document = dict[str, Any]
+IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
+
+DEFAULTS: Document = {
+    "device": {"id": "ch3"},
+    "plant": {"model": "linear"},
+    "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 1000.0},
+    "controller": {"kind": "open_loop"},
+    "sensor": {"kind": "ideal"},
+}
+
+
+@dataclass(frozen=True)
+class Section:
+    """One chosen block with its parameters."""
+
+    block: type[Block]
+    params: BlockParams
+    every: int = 1
+
+
+class Frame(BaseModel):
+    """The numbers of a bench that belong to no block."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    sample_rate_khz: float = Field(100.0, ge=0.1, le=1e5, description="ticks per ms of device time")
+    seed: int = Field(1, ge=0, le=2**53, description="seed of all noise")
+
+
+SECTIONS = ("device", "plant", "reference", "model", "controller", "controllers", "sensor", "drive", "guard", "diagnosers")
+FIELDS = (*Frame.model_fields, *SECTIONS)
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A bench, ready to be wired.
+
+    ``document`` is what it was made from, in normal form: parameters of the controller that drives stand under
+    ``controllers``.
+    """
+
+    document: Document
+    frame: Frame
+    device: Device
+    plant: Section
+    reference: Section
+    model: Section
+    drive: Section
+    guard: Section
+    sensor: Section
+    active: str
+    controllers: dict[str, Section]
+    diagnosers: dict[str, Section]
+
+    @property
+    def dt_ms(self) -> float:
+        """Sample interval of the board."""
+        return 1.0 / self.frame.sample_rate_khz
+
+    @property
+    def seed(self) -> int:
+        """Seed of all noise."""
+        return self.frame.seed
+
+    def context(self, every: int = 1) -> Context:
+        """Return what a block that runs every so many ticks may know."""
+        nominal = self.device.oscillator()
+        return Context(
+            dt_ms=self.dt_ms * every,
+            every=every,
+            seed=self.seed,
+            device=nominal,
+            model=Model.oscillator(self.model.params, nominal),
+            temperature_k=self.device.temperature_k,
+            stator_voltages=self.device.stators_v,
+            capacitance_gradient=self.device.capacitance_gradient,
+            sensor_noise_um=float(getattr(self.sensor.params, "noise_um", 0.0)),
+            analogue=getattr(self.drive.params, "kind", "held") == "analogue",
+            limit_v=float(getattr(self.drive.params, "limit_v", 30.0)),
+        )
+
+
+def parse(document: Document) -> Spec:
+    """Check a document and return the bench it describes.
+
+    Raises
+    ------
+    InputError
+        For the first thing that is not allowed, with the dotted path of its field.
+    """
+    doc = normal_form(document)
+    frame = _frame({key: doc[key] for key in doc if key not in SECTIONS})
+    plant = dict(doc["plant"])
+    drive = dict(doc.get("drive", {}))
+    if "drive" in plant:
+        drive["kind"] = plant.pop("drive")
+    plant_kind = plant.pop("model", "linear")
+    controllers = doc.get("controllers", {})
+    for name in controllers:
+        registry.block("control", name, "controllers")
+    known = registry.blocks("control")
+    return Spec(
+        document=doc,
+        frame=frame,
+        device=build_device(doc["device"]),
+        plant=_section("plant", plant_kind, plant, "plant", "model"),
+        reference=_chosen("reference", doc["reference"], "reference"),
+        model=Section(Model, _params(Model, doc.get("model", {}), "model")),
+        drive=Section(Drive, _params(Drive, drive, "drive" if "drive" in doc else "plant")),
+        guard=Section(Guard, _params(Guard, doc.get("guard", {}), "guard")),
+        sensor=_chosen("sense", doc["sensor"], "sensor"),
+        active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
+        controllers={name: _section("control", name, controllers.get(name, {}), f"controllers.{name}") for name in known},
+        diagnosers={name: _diagnoser(name, table) for name, table in doc.get("diagnosers", {}).items()},
+    )
+
+
+def normal_form(document: Document) -> Document:
+    """Return a copy with defaults in place and the driving controller's parameters under ``controllers``."""
+    doc = copy.deepcopy(document)
+    for key, value in DEFAULTS.items():
+        doc.setdefault(key, copy.deepcopy(value))
+    for key in SECTIONS:
+        if key in doc and not isinstance(doc[key], dict):
+            raise InputError(f"must be a table, got {short(doc[key])}", key)
+    for key in ("controllers", "diagnosers"):
+        for name, table in doc.get(key, {}).items():
+            if not isinstance(table, dict):
+                raise InputError(f"must be a table, got {short(table)}", f"{key}.{name}")
+    controller = doc["controller"]
+    kind = controller.pop("kind", "open_loop")
+    registry.block("control", kind, "controller.kind")
+    if controller:
+        own = doc.setdefault("controllers", {}).setdefault(kind, {})
+        own.update(controller)
+    doc["controller"] = {"kind": kind}
+    return doc
+
+
+def with_values(document: Document, values: dict[str, Any]) -> Document:
+    """Return the document with dotted paths written over; tables on the way are made."""
+    doc = copy.deepcopy(document)
+    for path, value in values.items():
+        parts = path.split(".")
+        if not all(parts):
+            raise InputError("is not a dotted path", path)
+        table = doc
+        for part in parts[:-1]:
+            inner: Any = table.setdefault(part, {}) if isinstance(table, dict) else None
+            if isinstance(table, list):
+                inner = table[_position(part, table, path)]
+            if not isinstance(inner, dict | list):
+                raise InputError(f"{part} is not a table", path)
+            table = inner
+        if isinstance(table, list):
+            table[_position(parts[-1], table, path)] = value
+        else:
+            table[parts[-1]] = value
+            if parts[-1] == "kind" and len(parts) == 2 and parts[0] == "reference":
+                # a new kind of reference keeps what it shares with the old one
+                block = registry.block("reference", value, path)
+                kept = {key: entry for key, entry in table.items() if key == "kind" or key in block.Params.model_fields}
+                doc["reference"] = kept
+    return doc
+
+
+def _position(part: str, items: list[Any], path: str) -> int:
+    if not part.isdigit() or int(part) >= len(items):
+        raise InputError(f"{part} is not a position in a list of {len(items)}", path)
+    return int(part)
+
+
+def _frame(values: Document) -> Frame:
+    try:
+        return Frame.model_validate(values)
+    except ValidationError as error:
+        raise from_validation(error, {"": FIELDS}) from None
+
+
+def _chosen(family: str, table: Document, field: str) -> Section:
+    rest = dict(table)
+    kind = rest.pop("kind", None)
+    return _section(family, kind, rest, field)
+
+
+def _section(family: str, kind: object, table: Document, field: str, key: str = "kind") -> Section:
+    block = registry.block(family, kind, f"{field}.{key}")
+    rest = dict(table)
+    every = rest.pop("every", 1)
+    if not isinstance(every, int) or isinstance(every, bool) or not 1 <= every <= 10000:
+        raise InputError(f"must be a whole number from 1 to 10000, got {short(every)}", f"{field}.every")
+    return Section(block, _params(block, rest, field), every)
+
+
+def _diagnoser(name: str, table: Document) -> Section:
+    if not IDENTIFIER.match(name):
+        raise InputError("must be a short name of small letters, digits and _", f"diagnosers.{name}")
+    return _chosen("diagnose", table, f"diagnosers.{name}")
+
+
+def _params(block: type[Block], values: Document, field: str) -> BlockParams:
+    try:
+        return block.Params.model_validate(values, strict=False)
+    except ValidationError as error:
+        raise from_validation(error, _nested_fields(block.Params)).under(field) from None
+
+
+def _nested_fields(model: type[BaseModel]) -> dict[str, list[str]]:
+    return {"": list(model.model_fields)}

@@ -1,0 +1,164 @@
+"""Wires a bench: which blocks, in which order, and which port reads which signal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from core import registry
+from core.block import RESERVED, Block, BlockParams, FloatArray, IntArray, Port
+from core.board import program
+from core.board.effects import Effects
+from core.board.score import Score
+from core.board.spec import Spec
+from core.faults.fault import Fault
+from core.signals import Signal, SignalTable
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One block on the board: ``prefix`` is the first part of its signals' names."""
+
+    key: str
+    prefix: str
+    block: type[Block]
+    params: BlockParams
+    every: int = 1
+
+
+@dataclass
+class Wiring:
+    """All arrays of a board, and where everything is in them."""
+
+    instances: list[Instance]
+    signals: SignalTable
+    index: dict[str, int]
+    table: IntArray
+    p: FloatArray
+    s: FloatArray
+    w: FloatArray
+    io: IntArray
+    output_index: IntArray
+    tap_index: IntArray
+
+    def row(self, key: str) -> int:
+        """Return the table row of an instance."""
+        return next(i for i, instance in enumerate(self.instances) if instance.key == key)
+
+    def state_of(self, key: str) -> FloatArray:
+        """Return the state of an instance, a view."""
+        row = self.row(key)
+        start = self.table[row, program.S_OFFSET]
+        end = self.table[row + 1, program.S_OFFSET] if row + 1 < len(self.instances) else len(self.s)
+        return self.s[start:end]
+
+
+def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
+    """Return the blocks of a bench in the order of a tick.
+
+    The plant comes first: it integrates the sample that ends now, under the voltage and the effects that were held
+    over it. Then the faults of this moment, what is measured and concluded, and the voltage to hold next.
+    """
+
+    def own(key: str, section: Any) -> Instance:
+        return Instance(key, key, section.block, section.params, section.every)
+
+    order = [own("plant", spec.plant), Instance("effects", "effects", Effects, Effects.Params())]
+    for name, block in registry.blocks("faults").items():
+        order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
+    order.append(own("sensor", spec.sensor))
+    for name, section in spec.diagnosers.items():
+        order.append(own(name, section))
+        order.append(Instance(f"{name}.score", name, Score, _scored(section.params), section.every))
+    order += [own("reference", spec.reference), own("model", spec.model)]
+    order += [own(name, section) for name, section in spec.controllers.items()]
+    order += [own("drive", spec.drive), own("guard", spec.guard)]
+    return order
+
+
+def _scored(params: BlockParams) -> BlockParams:
+    return Score.Params.model_construct(hypotheses=getattr(params, "hypotheses"))  # noqa: B009
+
+
+def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
+    """Lay out the arrays of a bench and connect its ports."""
+    order = instances(spec, faults or {})
+    index: dict[str, int] = {}
+    shown: list[tuple[str, Port, Instance, str]] = []
+    size = RESERVED
+    for instance in order:
+        for kind, ports in (("output", instance.block.outputs), ("tap", instance.block.taps)):
+            for port in ports:
+                names = [signal_name(instance, name) for name in port.names(instance.params)]
+                index.setdefault(signal_name(instance, port.name), size)
+                for name in names:
+                    index[name] = size
+                    size += 1
+                    if not port.hidden:
+                        shown.append((name, port, instance, kind))
+    for name in spec.controllers:
+        index[f"{name}.engaged"] = size
+        size += 1
+    shown.sort(key=lambda entry: entry[3] != "output")
+    signals = SignalTable(
+        [
+            Signal(name=name, unit=port.unit, meaning=port.meaning, block=instance.key, kind=kind, index=i)  # type: ignore[arg-type]
+            for i, (name, port, instance, kind) in enumerate(shown)
+        ]
+    )
+    columns = np.array([index[signal.name] for signal in signals], dtype=np.int64)
+    table = np.zeros((len(order), program.COLUMNS), dtype=np.int64)
+    p_parts, s_parts, io_parts = [], [], []
+    p_size = s_size = io_size = 0
+    for row, instance in enumerate(order):
+        context = spec.context(instance.every)
+        p = np.ascontiguousarray(instance.block.pack(instance.params, context), dtype=np.float64)
+        s = np.ascontiguousarray(instance.block.state(instance.params, context), dtype=np.float64)
+        io = ports_of(spec, instance, index)
+        table[row, 1:] = (p_size, s_size, io_size, instance.every, 1)
+        p_parts.append(p)
+        s_parts.append(s)
+        io_parts.append(io)
+        p_size, s_size, io_size = p_size + len(p), s_size + len(s), io_size + len(io)
+    w = np.zeros(size)
+    for port in Effects.outputs:
+        w[index[f"effects.{port.name}"]] = 1.0
+    w[index[f"{spec.active}.engaged"]] = 1.0
+    return Wiring(
+        instances=order,
+        signals=signals,
+        index=index,
+        table=table,
+        p=np.concatenate(p_parts),
+        s=np.concatenate(s_parts),
+        w=w,
+        io=np.concatenate(io_parts),
+        output_index=columns[: signals.outputs],
+        tap_index=columns[signals.outputs :],
+    )
+
+
+def ports_of(spec: Spec, instance: Instance, index: dict[str, int]) -> IntArray:
+    """Return the signal indices of an instance's ports: inputs, outputs, taps."""
+    inputs = [index[_source(spec, instance, port)] for port in instance.block.inputs]
+    own = [index[signal_name(instance, port.name)] for port in (*instance.block.outputs, *instance.block.taps)]
+    return np.array(inputs + own, dtype=np.int64)
+
+
+def signal_name(instance: Instance, port: str) -> str:
+    """Return the name of a signal; a fault's severity carries the fault's own name."""
+    return instance.prefix if issubclass(instance.block, Fault) else f"{instance.prefix}.{port}"
+
+
+def _source(spec: Spec, instance: Instance, port: Port) -> str:
+    if port.source == "@engaged":
+        return f"{instance.prefix}.engaged"
+    if port.source == "@active":
+        return f"{spec.active}.voltage"
+    if port.source in ("@active_middle", "@active_end"):
+        # only the generator itself knows what happens between samples
+        between = port.source.removeprefix("@active_")
+        return f"reference.{between}" if spec.active == "open_loop" else f"{spec.active}.voltage"
+    return port.source or f"{instance.prefix}.{port.name}"

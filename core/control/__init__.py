@@ -1,0 +1,1 @@
+"""Controllers: all run all the time, one of them drives."""

@@ -1,0 +1,1 @@
+"""Devices: from geometry or measured values to the parameters of an oscillator."""

@@ -1,0 +1,53 @@
+"""The devices of the catalogue, one TOML file each."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from pydantic import ValidationError
+
+from core.device.device import Device
+from core.device.geometry import Geometry
+from core.errors import from_validation, unknown
+
+
+@cache
+def devices() -> tuple[Device, ...]:
+    """Return every device of the catalogue, by id."""
+    folder = files("core.device") / "data"
+    texts = [entry.read_text("utf-8") for entry in folder.iterdir() if entry.name.endswith(".toml")]
+    found = [Device.model_validate(tomllib.loads(text)) for text in texts]
+    return tuple(sorted(found, key=lambda device: device.id))
+
+
+def device(overrides: dict[str, Any]) -> Device:
+    """Return the device named by ``id`` with the other values written over it.
+
+    Raises
+    ------
+    InputError
+        For an unknown id or a value that is not allowed; the field is below ``device``.
+    """
+    name = overrides.get("id", "ch3")
+    base = {entry.id: entry for entry in devices()}
+    if name not in base:
+        raise unknown("device", name, base, "device.id")
+    document = base[name].model_dump(exclude_none=True)
+    merged = merge(document, overrides)
+    try:
+        return Device.model_validate(merged)
+    except ValidationError as error:
+        fields = {"": list(Device.model_fields), "geometry": list(Geometry.model_fields)}
+        raise from_validation(error, fields).under("device") from None
+
+
+def merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    """Return ``base`` with the values of ``over`` written over it, tables merged."""
+    result = dict(base)
+    for key, value in over.items():
+        inner = result.get(key)
+        result[key] = merge(inner, value) if isinstance(inner, dict) and isinstance(value, dict) else value
+    return result

@@ -1,0 +1,127 @@
+r"""A device: what the bench simulates and what the controllers believe."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Self
+
+from pydantic import model_validator
+
+from core.block import BlockParams, Oscillator, parameter
+from core.device.geometry import Geometry
+from core.units import EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
+
+
+class Device(BlockParams):
+    r"""A lateral comb resonator, from measured values or from its drawing.
+
+    The drive is a push-pull comb (1.3.2): with the stators at :math:`+V_b` and :math:`-V_b`
+
+    .. math:: F_e=\tfrac12\frac{dC}{dx}\left[(V_{b1}-v)^2-(V_{b2}-v)^2\right]
+        =-4n\varepsilon_0\frac{t}{g}V_b\,v ,
+
+    so a positive voltage pulls towards -x. Equation 5.2.1 puts *identical* voltages on both stators, which
+    gives no force at all.
+
+    Either mass, damping and stiffness are given, or ``geometry``; a value given beside a geometry wins.
+    """
+
+    id: str = parameter("custom", "name in the catalogue", live=False)
+    title: str = parameter("", "what people read", live=False)
+    source: str = parameter("", "where the numbers come from", live=False)
+    mass_kg: float | None = parameter(None, "effective mass", "kg", gt=0, equation="1.3.3", live=False)
+    damping_ns_m: float | None = parameter(None, "damping", "N s/m", gt=0, equation="1.3.7", live=False)
+    stiffness_n_m: float | None = parameter(
+        None, "stiffness of the whole suspension, 2 k_s", "N/m", gt=0, equation="1.3.4", live=False
+    )
+    geometry: Geometry | None = parameter(None, "drawing", live=False)
+    bias_v: float = parameter(20.0, "bias of the first stator", "V", equation="1.3.2", live=False)
+    opposite_bias_v: float | None = parameter(
+        None, "bias of the second stator; the negative of the first unless given", "V", live=False
+    )
+    force_n_per_v: float | None = parameter(
+        None, "force per volt at the bias, magnitude; from the comb unless given", "N/V", gt=0, live=False
+    )
+    fingers: int | None = parameter(None, "rotor fingers per side", ge=1, live=False)
+    thickness_um: float | None = parameter(None, "structural thickness", "um", gt=0, live=False)
+    finger_gap_um: float | None = parameter(None, "gap between fingers as etched", "um", gt=0, live=False)
+    temperature_k: float = parameter(300.0, "temperature", "K", gt=0, le=1000, live=False)
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        missing = [
+            name
+            for name in ("mass_kg", "damping_ns_m", "stiffness_n_m")
+            if getattr(self, name) is None and self.geometry is None
+        ]
+        if missing:
+            raise ValueError(f"needs {', '.join(missing)}, or a geometry")
+        comb = (self.fingers, self.thickness_um, self.finger_gap_um)
+        if self.force_n_per_v is None and self.geometry is None and None in comb:
+            raise ValueError("needs force_n_per_v, or fingers with thickness_um and finger_gap_um, or a geometry")
+        if self.force_n_per_v is not None and self.bias_v == 0.0:
+            raise ValueError("force_n_per_v is the force at the bias, so bias_v must not be 0")
+        return self
+
+    @property
+    def resolved(self) -> dict[str, float]:
+        """Mass, damping and stiffness in SI units."""
+        drawn: dict[str, Any] = {}
+        if self.geometry is not None:
+            drawn = {
+                "mass_kg": self.geometry.mass_kg(),
+                "damping_ns_m": self.geometry.damping_ns_m(self.temperature_k),
+                "stiffness_n_m": self.geometry.stiffness_n_m(),
+            }
+        for name in ("mass_kg", "damping_ns_m", "stiffness_n_m"):
+            given = getattr(self, name)
+            if given is not None:
+                drawn[name] = float(given)
+        return drawn
+
+    @property
+    def stators_v(self) -> tuple[float, float]:
+        """Voltages of the two stators."""
+        opposite = -self.bias_v if self.opposite_bias_v is None else self.opposite_bias_v
+        return self.bias_v, opposite
+
+    @property
+    def capacitance_gradient(self) -> float:
+        """dC/dx of one comb, F/m."""
+        if self.force_n_per_v is not None:
+            return self.force_n_per_v / (2.0 * abs(self.bias_v))
+        if self.fingers is not None and self.thickness_um is not None and self.finger_gap_um is not None:
+            return 2.0 * self.fingers * EPSILON_0 * self.thickness_um / self.finger_gap_um
+        assert self.geometry is not None  # _complete has seen to it
+        return self.geometry.capacitance_gradient()
+
+    @property
+    def signed_force_n_per_v(self) -> float:
+        """Force per volt, N/V: -dC/dx (V_b1 - V_b2), zero for identical stators."""
+        first, second = self.stators_v
+        return -self.capacitance_gradient * (first - second)
+
+    def oscillator(self) -> Oscillator:
+        """Return the device in the units of the loop."""
+        si = self.resolved
+        return Oscillator(
+            mass=mass_mg(si["mass_kg"]),
+            damping=damping_un_ms_um(si["damping_ns_m"]),
+            stiffness=stiffness_un_um(si["stiffness_n_m"]),
+            force=force_un_per_v(self.signed_force_n_per_v),
+        )
+
+    def metrics(self) -> dict[str, float]:
+        r"""Return the figures people quote; :math:`f_0=\sqrt{k/m}/2\pi` with k of the whole suspension (1.3.5)."""
+        si = self.resolved
+        omega = math.sqrt(si["stiffness_n_m"] / si["mass_kg"])
+        force = self.signed_force_n_per_v
+        return {
+            "f0_hz": omega / (2.0 * math.pi),
+            "quality_factor": omega * si["mass_kg"] / si["damping_ns_m"],
+            "mass_kg": si["mass_kg"],
+            "stiffness_n_m": si["stiffness_n_m"],
+            "damping_ns_m": si["damping_ns_m"],
+            "force_n_per_v": abs(force),
+            "static_gain_um_per_v": force / si["stiffness_n_m"] * 1e6,
+        }

@@ -1,0 +1,112 @@
+r"""Mass, stiffness and damping of a folded-flexure comb resonator from its drawing.
+
+Equations 1.3.3, 1.3.4 and 1.3.7 of the dissertation, as corrected: the gas film under the plate and the
+structural thickness share one printed symbol and are two numbers here (``film_gap_um``, ``thickness_um``);
+1.3.4 is the stiffness of the whole suspension, with the truss length taken between adjacent beams.
+"""
+
+from __future__ import annotations
+
+import math
+
+from core.block import BlockParams, parameter
+from core.units import EPSILON_0
+
+GAS_CONSTANT_AIR = 287.05
+ATMOSPHERE_PA = 101325.0
+
+
+def viscosity(temperature_k: float) -> float:
+    r"""Viscosity of air, Pa s (Sutherland), :math:`1.716\cdot10^{-5}(T/273.15)^{3/2}\,383.55/(T+110.4)`."""
+    return 1.716e-5 * (temperature_k / 273.15) ** 1.5 * 383.55 / (temperature_k + 110.4)
+
+
+class Geometry(BlockParams):
+    """A drawing: lengths in um, widths as drawn with the etch bias per edge beside them."""
+
+    thickness_um: float = parameter(2.0, "structural thickness", "um", gt=0, live=False)
+    film_gap_um: float = parameter(1.9987, "gas film under the plate", "um", gt=0, live=False)
+    beam_length_um: float = parameter(350.0, "length of a flexure beam", "um", gt=0, live=False)
+    beam_width_um: float = parameter(2.0, "width of a beam as drawn", "um", gt=0, live=False)
+    beam_bias_um: float = parameter(0.2384, "etch bias per edge of beams and trusses", "um", live=False)
+    truss_length_um: float = parameter(90.0, "length of a truss", "um", gt=0, live=False)
+    truss_width_um: float = parameter(4.0, "width of a truss as drawn", "um", gt=0, live=False)
+    truss_segment_um: float = parameter(30.0, "truss length between adjacent beams", "um", gt=0, live=False)
+    fingers: int = parameter(87, "rotor fingers per side", "", ge=1, live=False)
+    finger_length_um: float = parameter(60.0, "finger length", "um", gt=0, live=False)
+    finger_width_um: float = parameter(2.0, "finger width as drawn", "um", gt=0, live=False)
+    finger_gap_um: float = parameter(2.0, "gap between fingers as drawn", "um", gt=0, live=False)
+    comb_bias_um: float = parameter(0.05, "etch bias per edge of fingers", "um", live=False)
+    overlap_um: float = parameter(40.0, "finger overlap at rest", "um", gt=0, live=False)
+    plate_length_um: float = parameter(190.0, "length of the plate", "um", gt=0, live=False)
+    plate_width_um: float = parameter(75.0, "width of the plate", "um", gt=0, live=False)
+    arm_width_um: float = parameter(11.132, "width of a comb arm", "um", ge=0, live=False)
+    arm_length_um: float = parameter(690.0, "length of a comb arm", "um", ge=0, live=False)
+    openings_um2: float = parameter(3560.0, "anchor notches and grating cut out of the plate", "um^2", ge=0, live=False)
+    youngs_modulus_gpa: float = parameter(164.0, "Young's modulus", "GPa", gt=0, live=False)
+    density_kg_m3: float = parameter(2330.0, "density", "kg/m^3", gt=0, live=False)
+
+    @property
+    def beam_um(self) -> float:
+        """Width of a beam as etched."""
+        return self.beam_width_um - 2.0 * self.beam_bias_um
+
+    @property
+    def truss_um(self) -> float:
+        """Width of a truss as etched."""
+        return self.truss_width_um - 2.0 * self.beam_bias_um
+
+    @property
+    def gap_um(self) -> float:
+        """Gap between fingers as etched."""
+        return self.finger_gap_um + 2.0 * self.comb_bias_um
+
+    @property
+    def areas_um2(self) -> tuple[float, float, float, float]:
+        """Plan areas of shuttle, beams and trusses, and facing area of the combs."""
+        finger = self.finger_width_um - 2.0 * self.comb_bias_um
+        plate = self.plate_length_um * self.plate_width_um - self.openings_um2
+        arms = 2.0 * self.arm_width_um * self.arm_length_um
+        shuttle = plate + arms + 2.0 * self.fingers * self.finger_length_um * finger
+        beams = 8.0 * self.beam_length_um * self.beam_um
+        trusses = 2.0 * self.truss_segment_um * self.truss_um
+        combs = 4.0 * self.fingers * self.overlap_um * self.thickness_um
+        return shuttle, beams, trusses, combs
+
+    def mass_kg(self) -> float:
+        r"""Effective mass, :math:`m=m_s+\tfrac14 m_t+\tfrac{12}{35}m_b` (1.3.3, Rayleigh)."""
+        shuttle, beams, trusses, _ = self.areas_um2
+        per_area = self.density_kg_m3 * self.thickness_um * 1e-18
+        return per_area * (shuttle + trusses / 4.0 + 12.0 * beams / 35.0)
+
+    def stiffness_n_m(self) -> float:
+        r"""Stiffness of the whole suspension (1.3.4) with :math:`\alpha=(w_t/w_b)^3`.
+
+        .. math:: k_x=\frac{2Etw^3}{L^3}\,
+            \frac{L_t^2+14\alpha L_tL+36\alpha^2L^2}{4L_t^2+41\alpha L_tL+36\alpha^2L^2}
+        """
+        length, segment = self.beam_length_um, self.truss_segment_um
+        alpha = (self.truss_um / self.beam_um) ** 3
+        stiff = 36.0 * alpha**2 * length**2
+        fraction = (segment**2 + 14.0 * alpha * segment * length + stiff) / (
+            4.0 * segment**2 + 41.0 * alpha * segment * length + stiff
+        )
+        base = 2.0 * self.youngs_modulus_gpa * 1e9 * self.thickness_um * 1e-6 * (self.beam_um / length) ** 3
+        return base * fraction
+
+    def damping_ns_m(self, temperature_k: float = 300.0) -> float:
+        r"""Couette and Stokes damping (1.3.7; not squeeze film, as the text has it).
+
+        .. math:: \beta=\mu\left[(A_s+\tfrac12A_t+\tfrac12A_b)\left(\tfrac1d+\tfrac1\delta\right)
+            +\tfrac{A_c}{g}\right],\quad \delta=\sqrt{2\mu/(\rho_{gas}\omega_0)}
+        """
+        shuttle, beams, trusses, combs = self.areas_um2
+        mu = viscosity(temperature_k)
+        omega = math.sqrt(self.stiffness_n_m() / self.mass_kg())
+        delta = math.sqrt(2.0 * mu * GAS_CONSTANT_AIR * temperature_k / (ATMOSPHERE_PA * omega))
+        plan = (shuttle + trusses / 2.0 + beams / 2.0) * 1e-12
+        return mu * (plan * (1e6 / self.film_gap_um + 1.0 / delta) + combs * 1e-6 / self.gap_um)
+
+    def capacitance_gradient(self) -> float:
+        r"""dC/dx of one comb, F/m: :math:`2n\varepsilon_0t/g` (n rotor fingers, two gaps each)."""
+        return 2.0 * self.fingers * EPSILON_0 * self.thickness_um / self.gap_um

@@ -1,0 +1,1 @@
+"""Diagnosis: which hypothesis the measurements speak for."""

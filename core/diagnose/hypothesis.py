@@ -1,0 +1,64 @@
+"""A hypothesis: the device with some parameters multiplied."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from core.block import BlockParams, Context, Oscillator, parameter
+
+
+class Hypothesis(BlockParams):
+    """One model of the bank, as factors on the nominal device."""
+
+    name: str = Field(min_length=1, max_length=24, pattern=r"^[^\s.]+$", description="short name, without spaces or dots")
+    mass: float = parameter(1.0, "mass over nominal", gt=0, le=100, live=False)
+    stiffness: float = parameter(1.0, "stiffness over nominal", gt=0, le=100, live=False)
+    damping: float = parameter(1.0, "damping over nominal", gt=0, le=100, live=False)
+    gain: float = parameter(1.0, "drive gain over nominal", gt=0, le=100, live=False)
+
+    def oscillator(self, nominal: Oscillator) -> Oscillator:
+        """Return the device under this hypothesis."""
+        return Oscillator(
+            mass=nominal.mass * self.mass,
+            damping=nominal.damping * self.damping,
+            stiffness=nominal.stiffness * self.stiffness,
+            force=nominal.force * self.gain,
+        )
+
+
+SEVEN_STEP = [
+    Hypothesis(name="healthy"),
+    Hypothesis(name="m+5", mass=1.05),
+    Hypothesis(name="m+10", mass=1.10),
+    Hypothesis(name="k+5", stiffness=1.05),
+    Hypothesis(name="k+10", stiffness=1.10),
+    Hypothesis(name="b+30", damping=1.30),
+]
+"""The six hypotheses of 5.2.4."""
+
+
+class BankParams(BlockParams):
+    """Parameters of any diagnoser with a list of hypotheses."""
+
+    hypotheses: list[Hypothesis] = Field(
+        SEVEN_STEP,
+        min_length=2,
+        max_length=16,
+        description="the models to choose from",
+        json_schema_extra={"unit": "", "live": False, "equation": "5.2.4"},
+    )
+
+    @model_validator(mode="after")
+    def _distinct(self) -> Self:
+        twice = [name for name, count in Counter(item.name for item in self.hypotheses).items() if count > 1]
+        if twice:
+            raise ValueError(f"hypothesis names must differ, {twice[0]} is there twice")
+        return self
+
+
+def assumed_noise(context: Context) -> float:
+    """Return the sensor noise a bank assumes: what the sensor has, at least a thousandth of a micrometre."""
+    return max(context.sensor_noise_um, 1e-3)

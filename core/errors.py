@@ -1,0 +1,157 @@
+"""What the bench says when it is given something it cannot take."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+UNITS = (
+    "_um",
+    "_nm",
+    "_m",
+    "_mm",
+    "_kg",
+    "_mg",
+    "_n_m",
+    "_ns_m",
+    "_n_per_v",
+    "_v",
+    "_mv",
+    "_khz",
+    "_hz",
+    "_ms",
+    "_us",
+    "_s",
+    "_k",
+    "_c",
+    "_pa",
+    "_kpa",
+    "_pct",
+    "_gpa",
+    "_kg_m3",
+)
+
+
+class InputError(ValueError):
+    """One clear line about one field.
+
+    Parameters
+    ----------
+    message : str
+        What was wrong and what is allowed.
+    field : str
+        Dotted path of the field, empty when there is none.
+    hint : str
+        What to do instead.
+    code : str
+        Stable word for programs: ``invalid``, ``unknown``, ``conflict``, ``not_live``.
+    """
+
+    def __init__(self, message: str, field: str = "", hint: str = "", code: str = "invalid") -> None:
+        super().__init__(f"{field}: {message}" if field else message)
+        self.message = message
+        self.field = field
+        self.hint = hint
+        self.code = code
+
+    def as_dict(self) -> dict[str, str]:
+        """Return the shared error shape."""
+        return {"code": self.code, "message": str(self), "field": self.field, "hint": self.hint}
+
+    def under(self, prefix: str) -> InputError:
+        """Return the same error with its field below ``prefix``."""
+        path = ".".join(part for part in (prefix, self.field) if part)
+        return InputError(self.message, path, self.hint, self.code)
+
+
+def unknown(what: str, name: object, allowed: Iterable[str], field: str = "") -> InputError:
+    """Build the error for a name that does not exist, with the nearest that does."""
+    names = list(allowed)
+    near = difflib.get_close_matches(str(name), names, n=1)
+    hint = f"did you mean {near[0]}?" if near else ""
+    listed = ", ".join(names) if names else "none"
+    return InputError(f"unknown {what} {short(name)}; allowed: {listed}", field, hint, "unknown")
+
+
+def short(value: object, limit: int = 60) -> str:
+    """Show a value on one line, cut to a readable length."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= limit else text[: limit - 1] + "…"
+
+
+def finite(value: float, field: str = "") -> float:
+    """Return ``value`` or refuse it when it is not a finite number."""
+    if not math.isfinite(value):
+        raise InputError(f"must be a finite number, got {value}", field)
+    return value
+
+
+def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] | None = None) -> InputError:
+    """Turn the first problem pydantic found into one clear line.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What pydantic raised.
+    known : mapping of str to sequence of str, optional
+        Field names allowed under each dotted parent, to suggest the one that was meant.
+    """
+    first = error.errors(include_url=False)[0]
+    path = ".".join(str(part) for part in first["loc"])
+    given = first.get("input")
+    kind = first["type"]
+    limits: dict[str, Any] = first.get("ctx", {})
+    if kind == "extra_forbidden":
+        parent, _, leaf = path.rpartition(".")
+        return unknown_field(leaf, (known or {}).get(parent, ()), path)
+    if kind == "missing":
+        return InputError("is required", path)
+    sayings = {
+        "greater_than": "must be > {gt}",
+        "greater_than_equal": "must be >= {ge}",
+        "less_than": "must be < {lt}",
+        "less_than_equal": "must be <= {le}",
+        "finite_number": "must be a finite number",
+        "literal_error": "must be one of {expected}",
+        "float_type": "must be a number",
+        "float_parsing": "must be a number without its unit",
+        "int_type": "must be a whole number",
+        "int_parsing": "must be a whole number",
+        "int_from_float": "must be a whole number",
+        "bool_type": "must be true or false",
+        "string_type": "must be a text",
+        "list_type": "must be a list",
+        "dict_type": "must be a table",
+        "model_type": "must be a table",
+    }
+    if kind in sayings:
+        saying = sayings[kind].format(**limits)
+    else:
+        saying = str(first["msg"]).removeprefix("Value error, ")
+        if kind == "value_error":
+            return InputError(saying, path)
+    return InputError(f"{saying}, got {short(given)}", path)
+
+
+def unknown_field(leaf: str, allowed: Sequence[str], path: str) -> InputError:
+    """Build the error for a field nobody declared; a wrong unit is named as such."""
+    stem = _without_unit(leaf)
+    for name in allowed:
+        if name != leaf and _without_unit(name) == stem:
+            return InputError(f"wrong unit: this field is {name}", path, f"write {name}", "unit")
+    near = difflib.get_close_matches(leaf, allowed, n=1)
+    listed = f"; allowed: {', '.join(allowed)}" if allowed else ""
+    return InputError(
+        f"unknown field{listed}", path, f"did you mean {near[0]}?" if near else "", "unknown"
+    )
+
+
+def _without_unit(name: str) -> str:
+    for unit in sorted(UNITS, key=len, reverse=True):
+        if name.endswith(unit):
+            return name[: -len(unit)]
+    return name

@@ -1,0 +1,1 @@
+"""Faults: what they change, how severity enters, where they show."""

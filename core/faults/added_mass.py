@@ -1,0 +1,25 @@
+"""Added mass."""
+
+from __future__ import annotations
+
+from core.block import Equation, Port, parameter
+from core.faults.fault import Fault, FaultParams, channel, scale_step
+
+
+class AddedMass(Fault):
+    r"""Mass on the shuttle, :math:`m\to m(1+s)`."""
+
+    title = "Added mass"
+    shows = "plate"
+    changes = "mass of the shuttle; the resonance falls, the displacement at rest stays"
+    suggested = 0.05
+    inputs = channel("mass_scale")
+    outputs = (Port("severity", "1", "added mass, share of nominal"),)
+    equations = (Equation("effect", r"m\to m\,(1+s)", "5.2.4"),)
+
+    class Params(FaultParams):
+        """Severity is a share of the nominal mass."""
+
+        severity: float = parameter(0.0, "added mass, share of nominal", "1", gt=-0.95, le=20)
+
+    step = scale_step

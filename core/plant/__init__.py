@@ -1,0 +1,1 @@
+"""Plants: what the voltage does to the shuttle."""

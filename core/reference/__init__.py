@@ -1,0 +1,1 @@
+"""Reference voltages: what the generator plays."""

@@ -1,0 +1,36 @@
+"""Sine."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from core.block import Context, Equation, kernel, parameter
+from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
+
+
+@kernel
+def sine(p: Any, t: float) -> float:
+    """Sine of a phase kept below one cycle, so that it is as exact after hours as at the start."""
+    cycles = p[FIRST] * t + p[FIRST + 1]
+    return math.sin(2.0 * math.pi * (cycles - math.floor(cycles)))
+
+
+class Sine(Waveform):
+    r"""One tone, :math:`r(t)=r_0+A\sin(2\pi f t+\varphi)`."""
+
+    title = "Sine"
+    equations = (Equation("reference", r"r(t)=r_0+A\sin(2\pi f t+\varphi)"),)
+
+    class Params(ReferenceParams):
+        """Parameters of one tone."""
+
+        frequency_hz: float = parameter(1000.0, "frequency", "Hz", ge=0, le=1e6)
+        phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
+
+    @classmethod
+    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
+        """Cycles per ms and cycles at the start."""
+        return [params.frequency_hz / 1e3, params.phase_deg / 360.0]
+
+    step = playing(sine)

@@ -1,0 +1,187 @@
+"""Finds blocks: the file is the unit, its name is the key, its folder the family."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from functools import cache
+from importlib.metadata import entry_points
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from core.block import Block, Port
+from core.errors import unknown
+
+FAMILIES = ("reference", "plant", "sense", "control", "diagnose", "faults", "board")
+
+
+class PortCard(BaseModel):
+    """A port as people see it."""
+
+    name: str
+    unit: str
+    meaning: str
+    labels: list[str]
+    each: str
+
+
+class ParameterCard(BaseModel):
+    """A parameter as people see it."""
+
+    name: str
+    label: str
+    type: str
+    unit: str
+    default: Any
+    minimum: float | None
+    maximum: float | None
+    meaning: str
+    equation: str
+    live: bool
+    choices: list[str]
+
+
+class EquationCard(BaseModel):
+    """An equation, with its erratum when the printed one is wrong."""
+
+    label: str
+    latex: str
+    source: str
+    printed: str | None
+    why: str | None
+
+
+class BlockCard(BaseModel):
+    """All that the catalogue says of a block."""
+
+    family: str
+    name: str
+    title: str
+    summary: str
+    changes: str | None
+    shows: str | None
+    suggested: float | None
+    equations: list[EquationCard]
+    parameters: list[ParameterCard]
+    inputs: list[PortCard]
+    outputs: list[PortCard]
+    taps: list[PortCard]
+    schema_: dict[str, Any]
+
+
+@cache
+def blocks(family: str) -> dict[str, type[Block]]:
+    """Return the blocks of a family by name, those of installed packages included.
+
+    Other packages add blocks by an entry point of the group ``combbench.<family>`` that names the class.
+    """
+    if family not in FAMILIES:
+        raise unknown("family", family, FAMILIES)
+    package = importlib.import_module(f"core.{family}")
+    found: dict[str, type[Block]] = {}
+    for module_info in pkgutil.iter_modules(package.__path__):
+        module = importlib.import_module(f"core.{family}.{module_info.name}")
+        for value in vars(module).values():
+            if isinstance(value, type) and issubclass(value, Block) and value.__module__ == module.__name__ and hasattr(value, "step"):
+                found[value.name] = value
+    for entry in entry_points(group=f"combbench.{family}"):
+        loaded: type[Block] = entry.load()
+        loaded.name, loaded.family = entry.name, family
+        found[entry.name] = loaded
+    return dict(sorted(found.items()))
+
+
+def block(family: str, name: object, field: str = "") -> type[Block]:
+    """Return one block.
+
+    Raises
+    ------
+    InputError
+        When the family has no block of that name.
+    """
+    known = blocks(family)
+    if not isinstance(name, str) or name not in known:
+        words = {"reference": "reference", "plant": "plant model", "sense": "sensor", "control": "controller",
+                 "diagnose": "diagnoser", "faults": "fault"}
+        raise unknown(words.get(family, family), name, known, field)
+    return known[name]
+
+
+def catalog(family: str | None = None) -> list[BlockCard]:
+    """Return the cards of one family, or of all."""
+    chosen = FAMILIES if family is None else (family,)
+    return [card(entry) for name in chosen for entry in blocks(name).values()]
+
+
+def card(entry: type[Block]) -> BlockCard:
+    """Return the card of a block."""
+    return BlockCard(
+        family=entry.family,
+        name=entry.name,
+        title=entry.title,
+        summary=" ".join((entry.__doc__ or "").strip().split("\n\n")[0].split()),
+        changes=getattr(entry, "changes", None),
+        shows=getattr(entry, "shows", None),
+        suggested=getattr(entry, "suggested", None),
+        equations=[
+            EquationCard(label=e.label, latex=e.latex, source=e.source, printed=e.printed or None, why=e.why or None)
+            for e in entry.equations
+        ],
+        parameters=[_parameter(name, info) for name, info in entry.Params.model_fields.items()],
+        inputs=[_port(port) for port in entry.inputs],
+        outputs=[_port(port) for port in entry.outputs],
+        taps=[_port(port) for port in entry.taps],
+        schema_=entry.Params.model_json_schema(),
+    )
+
+
+def is_live(info: FieldInfo) -> bool:
+    """Say whether a parameter may change while the board runs."""
+    extra = info.json_schema_extra
+    return bool(extra.get("live", True)) if isinstance(extra, dict) else True
+
+
+def _port(port: Port) -> PortCard:
+    return PortCard(name=port.name, unit=port.unit, meaning=port.meaning, labels=list(port.labels), each=port.each)
+
+
+def _parameter(name: str, info: FieldInfo) -> ParameterCard:
+    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+    limits: dict[str, float] = {}
+    for constraint in info.metadata:
+        for key in ("ge", "gt", "le", "lt"):
+            value = getattr(constraint, key, None)
+            if value is not None:
+                limits[key] = float(value)
+    default = info.get_default(call_default_factory=True)
+    if isinstance(default, BaseModel):
+        default = default.model_dump()
+    elif isinstance(default, list):
+        default = [item.model_dump() if isinstance(item, BaseModel) else item for item in default]
+    kind, choices = _type(info.annotation)
+    return ParameterCard(
+        name=name,
+        label=name.replace("_", " "),
+        type=kind,
+        unit=str(extra.get("unit", "")),
+        default=default,
+        minimum=limits.get("ge", limits.get("gt")),
+        maximum=limits.get("le", limits.get("lt")),
+        meaning=info.description or "",
+        equation=str(extra.get("equation", "")),
+        live=is_live(info),
+        choices=choices,
+    )
+
+
+def _type(annotation: Any) -> tuple[str, list[str]]:
+    if get_origin(annotation) is Literal:
+        return "choice", [str(choice) for choice in get_args(annotation)]
+    options = [option for option in get_args(annotation) if option is not type(None)] or [annotation]
+    simple = {bool: "boolean", int: "integer", float: "number", str: "text"}
+    for option in options:
+        if option in simple:
+            return simple[option], []
+    return ("list" if get_origin(annotation) is list else "table"), []

@@ -1,0 +1,1 @@
+"""Sensors: what the controllers are told of the shuttle."""
