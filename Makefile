@@ -1,0 +1,80 @@
+# CombBench. `make run` serves the bench, `make test` checks all of it, `make help` lists the rest.
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+SHELL := /bin/sh
+ARGS ?=
+
+PYTHON_STAMP  := .venv/.locked
+KERNEL_STAMP  := .venv/.kernels
+NODE_STAMP    := web/node_modules/.package-lock.json
+PAGE          := web/dist/index.html
+# Folders are listed with their files, so that a deleted file makes its target stale too.
+KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
+PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
+                   -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
+
+.PHONY: run setup test check fix dev bench load soak image codegen lock clean help
+
+run: setup  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
+	@exec .venv/bin/combbench serve $(ARGS)
+
+setup: $(PYTHON_STAMP) $(PAGE) $(KERNEL_STAMP)  ## Set everything up, serve nothing
+
+test: setup  ## Run every test there is: lint, types, imports, Python, TypeScript, browser
+	@.venv/bin/python scripts/run_tests.py
+
+check: $(PYTHON_STAMP) $(NODE_STAMP)  ## The quick part of `make test`: no slow tests, no browser
+	@.venv/bin/python scripts/run_tests.py quick
+
+fix: $(PYTHON_STAMP) $(NODE_STAMP)  ## Format everything and mend what the linters can mend
+	@.venv/bin/ruff check --fix-only --quiet . ; .venv/bin/ruff format .
+	@scripts/npm --prefix web run fix
+
+dev: setup  ## Serve the bench, with the page rebuilt in the browser at every edit
+	@scripts/dev $(ARGS)
+
+bench: $(PYTHON_STAMP)  ## Measure speed, each figure as a ratio to a peer in the same run
+	@.venv/bin/combbench bench $(ARGS)
+
+load: setup  ## Many watchers of one bench for 20 s: frame rate, latency, board timing
+	@.venv/bin/python scripts/load.py $(ARGS)
+
+soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
+	@.venv/bin/python scripts/load.py --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
+
+image: ## Build the container image, start it, ask for its health and stop it
+	@scripts/image
+
+codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document
+	@.venv/bin/python scripts/openapi.py > web/openapi.json
+	@scripts/npm --prefix web run codegen
+
+lock: $(PYTHON_STAMP)  ## Renew requirements.lock (ARGS=--upgrade for newer versions)
+	@.venv/bin/uv pip compile --quiet --universal --fork-strategy fewest --generate-hashes --all-extras \
+	  --custom-compile-command 'make lock' $(ARGS) --output-file requirements.lock pyproject.toml
+
+clean:  ## Remove everything that was set up or built; recorded data stays
+	@rm -rf .venv web/node_modules web/dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+help:  ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' Makefile
+
+$(PYTHON_STAMP): requirements.lock pyproject.toml scripts/venv
+	@scripts/venv
+	@touch $@
+
+$(KERNEL_STAMP): $(PYTHON_STAMP) $(KERNEL_SOURCE)
+	@.venv/bin/python scripts/warm.py
+	@touch $@
+
+$(NODE_STAMP): web/package.json web/package-lock.json | $(PYTHON_STAMP)
+	@echo "Installing the page's packages"
+	@scripts/npm --prefix web ci
+	@touch $@
+
+$(PAGE): $(NODE_STAMP) $(PAGE_SOURCE)
+	@echo "Building the page"
+	@scripts/npm --prefix web run build
+	@touch $@

@@ -1,0 +1,120 @@
+"""Run every check and test, one after the other, and say plainly how each went.
+
+``run_tests.py quick`` leaves out slow tests and the browser. A failing step does not stop the next ones.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BIN = ".venv/bin/"
+NPM = ["scripts/npm", "--prefix", "web"]
+COUNT = re.compile(r"(\d+) (passed|failed|errors?|skipped|xfailed|flaky)")
+CLOSING = re.compile(
+    r"^(=+ .*\bin [\d.]+s.*=+|\s*Tests\s+.*\(\d+\)|\s+\d+ (passed|failed|flaky|skipped)\b.*)$"
+)
+
+
+@dataclass
+class Step:
+    """One command; ``tests`` when it prints how many tests passed."""
+
+    name: str
+    command: list[str]
+    tests: bool = False
+    code: int = 0
+    seconds: float = 0.0
+    closing: list[str] = field(default_factory=list)
+
+    def run(self) -> None:
+        """Run the command, showing its output as it comes and keeping its closing lines."""
+        print(f"\n== {self.name}: {' '.join(self.command)}", flush=True)
+        start = time.monotonic()
+        with subprocess.Popen(
+            self.command,
+            cwd=ROOT,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        ) as process:
+            assert process.stdout is not None
+            for line in process.stdout:
+                print(line, end="", flush=True)
+                if self.tests and CLOSING.match(line):
+                    self.closing.append(line.strip())
+        self.code = process.returncode
+        self.seconds = time.monotonic() - start
+        if self.tests and self.code == 0 and not self.count()["passed"]:
+            print(f"{self.name}: no test was run")
+            self.code = 1
+
+    def count(self) -> dict[str, int]:
+        """Return how many tests passed, failed and were skipped."""
+        total = {"passed": 0, "failed": 0, "skipped": 0}
+        for number, word in COUNT.findall(" ".join(self.closing)):
+            key = "failed" if word.startswith("error") else "skipped" if word == "xfailed" else word
+            total["passed" if key == "flaky" else key] += int(number)
+        return total
+
+
+def steps(quick: bool) -> list[Step]:
+    """List what to run, the cheapest first."""
+    some = ["-m", "not slow"] if quick else []
+    listed = [
+        Step("format", [f"{BIN}ruff", "format", "--check", "."]),
+        Step("lint", [f"{BIN}ruff", "check", "."]),
+        Step("imports", [f"{BIN}lint-imports"]),
+        Step("types", [f"{BIN}mypy"]),
+        Step("page-check", [*NPM, "run", "check"]),
+        Step("page", [*NPM, "run", "test"], tests=True),
+        Step("python", [f"{BIN}pytest", "-n", "2", "--dist", "worksteal", *some], tests=True),
+    ]
+    return listed if quick else [*listed, Step("browser", [*NPM, "run", "e2e"], tests=True)]
+
+
+def main() -> int:
+    """Run the steps and print the summary."""
+    quick = sys.argv[1:] == ["quick"]
+    todo = steps(quick)
+    if not quick:
+        # The browser tests find their browser by this name.
+        browser = subprocess.run(
+            ["scripts/chromium"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False
+        )
+        os.environ["CHROMIUM"] = browser.stdout.strip()
+        if browser.returncode:
+            print("No Chromium could be found or installed, so the browser tests will fail.", file=sys.stderr)
+    for step in todo:
+        step.run()
+
+    print("\n== summary")
+    total = {"passed": 0, "failed": 0, "skipped": 0}
+    for step in todo:
+        counts = step.count() if step.tests else {}
+        said = ", ".join(f"{number} {word}" for word, number in counts.items() if number)
+        print(
+            f"  {step.name:11}{'ok' if step.code == 0 else 'FAILED':8}{step.seconds:6.1f} s   {said}".rstrip()
+        )
+        for word, number in counts.items():
+            total[word] += number
+    for step in todo:
+        if step.name == "python" and step.closing:
+            print(step.closing[-1])
+    broken = [step.name for step in todo if step.code]
+    if broken:
+        print(f"FAILED: {', '.join(broken)}")
+    print(", ".join(f"{number} {word}" for word, number in total.items()))
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
