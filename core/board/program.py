@@ -18,7 +18,7 @@ from numba.extending import intrinsic
 
 from core.block import TICK, TIME_MS, FloatArray, IntArray, Step, kernel
 
-ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, ENABLED, COLUMNS = range(7)
+ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 """Columns of the table, one row per block."""
 
 DONE, TRIPPED, WATCHED = range(3)
@@ -78,7 +78,9 @@ def run(
         w[TICK] = tick
         w[TIME_MS] = tick * dt_ms
         for b in range(blocks):
-            if table[b, ENABLED] != 0 and tick % table[b, EVERY] == 0:
+            every = table[b, EVERY]
+            # a division costs more than most blocks, and most run at every tick
+            if every == 1 or tick % every == 0:
                 _call(
                     table[b, ADDRESS],
                     p + 8 * table[b, P_OFFSET],
@@ -121,7 +123,7 @@ def run_uncompiled(
         w[TICK] = tick
         w[TIME_MS] = tick * dt_ms
         for step, row in zip(steps, table, strict=True):
-            if row[ENABLED] and tick % row[EVERY] == 0:
+            if tick % row[EVERY] == 0:
                 step(p[row[P_OFFSET] :], s[row[S_OFFSET] :], w, io[row[IO_OFFSET] :])
         outputs[i] = w[output_index]
         taps[i] = w[tap_index]

@@ -1,0 +1,174 @@
+"""History: every signal at full rate in a ring, with a pyramid of minima and maxima over it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.block import FloatArray, IntArray, kernel
+from core.board.board import Rows
+
+Float32Array = NDArray[np.float32]
+FACTOR = 16
+"""Ticks under a bucket of the first level, and buckets under a bucket of the next."""
+LEVELS = 3
+
+
+@kernel
+def _append(ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, first: int, rows: FloatArray, at: int) -> None:
+    """Write rows (ticks by signals) into the ring of some signals and fold them into the pyramid."""
+    capacity = ring.shape[1]
+    count = rows.shape[0]
+    end = first + count
+    for c in range(rows.shape[1]):
+        signal = at + c
+        place = first % capacity
+        for i in range(count):
+            ring[signal, place] = np.float32(rows[i, c])
+            place += 1
+            if place == capacity:
+                place = 0
+        # every touched bucket is folded again from its start; the capacity is a multiple of the widest bucket
+        for bucket in range(first // FACTOR, (end - 1) // FACTOR + 1):
+            begin = bucket * FACTOR % capacity
+            least = ring[signal, begin]
+            most = least
+            for place in range(begin + 1, begin + min(FACTOR, end - bucket * FACTOR)):
+                value = ring[signal, place]
+                least = value if value < least else least
+                most = value if value > most else most
+            low[signal, bucket % sizes[0]] = least
+            high[signal, bucket % sizes[0]] = most
+        span = FACTOR
+        for level in range(1, LEVELS):
+            for bucket in range(first // (span * FACTOR), (end - 1) // (span * FACTOR) + 1):
+                begin = offsets[level - 1] + bucket * FACTOR % sizes[level - 1]
+                least = low[signal, begin]
+                most = high[signal, begin]
+                inner = min(FACTOR, (end - 1) // span - bucket * FACTOR + 1)
+                for place in range(begin + 1, begin + inner):
+                    least = min(least, low[signal, place])
+                    most = max(most, high[signal, place])
+                low[signal, offsets[level] + bucket % sizes[level]] = least
+                high[signal, offsets[level] + bucket % sizes[level]] = most
+            span *= FACTOR
+
+
+@kernel
+def _columns(
+    ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, signals: IntArray,
+    first: int, end: int, start: int, stop: int, out: Any,
+) -> None:
+    """Fill minima and maxima of each column from the widest buckets that fit."""
+    columns = out.shape[2]
+    capacity = ring.shape[1]
+    for c in range(columns):
+        a = max(start + (stop - start) * c // columns, first)
+        b = min(max(start + (stop - start) * (c + 1) // columns, start + (stop - start) * c // columns + 1), end)
+        for k in range(signals.shape[0]):
+            signal = signals[k]
+            least = np.float32(np.inf)
+            most = np.float32(-np.inf)
+            tick = a
+            while tick < b:
+                level = -1
+                span = 1
+                wider = FACTOR
+                while level + 1 < LEVELS and tick % wider == 0 and tick + wider <= b:
+                    level += 1
+                    span = wider
+                    wider *= FACTOR
+                if level < 0:
+                    value = ring[signal, tick % capacity]
+                    least = min(least, value)
+                    most = max(most, value)
+                else:
+                    bucket = offsets[level] + (tick // span) % sizes[level]
+                    least = min(least, low[signal, bucket])
+                    most = max(most, high[signal, bucket])
+                tick += span
+            if least > most:
+                least = np.float32(np.nan)
+                most = np.float32(np.nan)
+            out[k, 0, c] = least
+            out[k, 1, c] = most
+
+
+@kernel
+def _crossing(ring: Any, signal: int, sign: float, level: float, hysteresis: float, start: int, stop: int) -> int:
+    """Return the last tick at which the signal crosses the level, having been beyond the hysteresis; -1 for none."""
+    capacity = ring.shape[1]
+    armed = False
+    found = -1
+    for tick in range(start, stop):
+        value = sign * (ring[signal, tick % capacity] - level)
+        if value < -hysteresis or (hysteresis == 0.0 and value < 0.0):
+            armed = True
+        elif value >= 0.0 and armed:
+            found = tick
+            armed = False
+    return found
+
+
+class History:
+    """The last ticks of every signal.
+
+    Parameters
+    ----------
+    signals : int
+        Number of signals.
+    capacity : int
+        Ticks kept, rounded up to a multiple of the widest bucket.
+    """
+
+    def __init__(self, signals: int, capacity: int = 200_000) -> None:
+        widest = FACTOR**LEVELS
+        self.capacity = -(-capacity // widest) * widest
+        self._sizes = np.array([self.capacity // FACTOR ** (level + 1) for level in range(LEVELS)], dtype=np.int64)
+        self._offsets = np.concatenate([[0], np.cumsum(self._sizes)[:-1]]).astype(np.int64)
+        self._ring = np.zeros((signals, self.capacity), dtype=np.float32)
+        self._low = np.zeros((signals, int(self._sizes.sum())), dtype=np.float32)
+        self._high = np.zeros_like(self._low)
+        self._begin = 0
+        self.end_tick = 0
+
+    @property
+    def first_tick(self) -> int:
+        """Oldest tick kept; one bucket short of the capacity, because the widest bucket is overwritten whole."""
+        return max(self._begin, self.end_tick - self.capacity + FACTOR**LEVELS)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the rings."""
+        return int(self._ring.nbytes + self._low.nbytes + self._high.nbytes)
+
+    def append(self, rows: Rows) -> None:
+        """Add ticks that follow the last; ticks that do not start a new history there."""
+        if rows.first_tick != self.end_tick:
+            self._begin = self.end_tick = rows.first_tick
+        outputs = rows.outputs.shape[1]
+        args = (self._ring, self._low, self._high, self._offsets, self._sizes, rows.first_tick)
+        _append(*args, rows.outputs, 0)
+        _append(*args, rows.taps, outputs)
+        self.end_tick = rows.first_tick + rows.count
+
+    def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:
+        """Return minima and maxima, shape (signals, 2, columns); NaN where there is no data."""
+        out = np.empty((len(signals), 2, columns), dtype=np.float32)
+        _columns(self._ring, self._low, self._high, self._offsets, self._sizes, np.array(signals, dtype=np.int64),
+                 self.first_tick, self.end_tick, start, stop, out)
+        return out
+
+    def read(self, signals: list[int], start: int, stop: int) -> Float32Array:
+        """Return full-rate values, shape (signals, ticks); the span is cut to what is kept."""
+        start, stop = max(start, self.first_tick), min(stop, self.end_tick)
+        ticks = np.arange(start, max(stop, start)) % self.capacity
+        return self._ring[np.ix_(signals, ticks)]
+
+    def crossing(self, signal: int, edge: str, level: float, hysteresis: float, start: int, stop: int) -> int | None:
+        """Return the last tick in the span at which the signal crosses ``level`` on the rising or falling edge."""
+        start, stop = max(start, self.first_tick), min(stop, self.end_tick)
+        found = _crossing(self._ring, signal, 1.0 if edge == "rising" else -1.0, level, hysteresis, start, stop)
+        return found if found >= 0 else None

@@ -1,0 +1,5 @@
+"""What to run: scenarios, runs, reports. Importing this first gives compiled kernels their cache."""
+
+from scenarios.kernel_cache import prepare
+
+prepare()

@@ -1,0 +1,38 @@
+"""Changes to a scenario by dotted paths: what ``--set`` does."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+from core.board.spec import with_values as write
+from core.errors import InputError
+from scenarios.schema import Scenario
+
+
+def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
+    """Return the scenario with values written over at their paths.
+
+    Raises
+    ------
+    InputError
+        When a path leads nowhere or the result is not a valid scenario.
+    """
+    return Scenario.load(write(scenario.document, values)) if values else scenario
+
+
+def parse_assignment(text: str) -> tuple[str, Any]:
+    """Read ``path=value``; the value as TOML, or as plain text when it is none.
+
+    Raises
+    ------
+    InputError
+        When there is no ``=``.
+    """
+    path, equals, value = text.partition("=")
+    if not equals or not path.strip():
+        raise InputError(f"must be PATH=VALUE, got {text!r}", "--set")
+    try:
+        return path.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return path.strip(), value.strip()

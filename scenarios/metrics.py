@@ -1,0 +1,118 @@
+"""Figures of a run, by dotted names."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from core.block import FloatArray
+from core.board.board import Board
+from core.board.score import Scores
+from core.errors import unknown
+
+SETTLED = 0.02
+"""Share of the model's amplitude within which a loop counts as settled."""
+TAIL = 0.25
+"""Share of a run that counts as its tail."""
+
+
+def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tick: int = 0) -> complex:
+    r"""Return the phasor of one tone by least squares, :math:`x\approx\mathrm{Im}\{Ce^{j\omega t}\}`."""
+    t = (first_tick + np.arange(len(signal))) * dt_ms / 1e3
+    angle = 2.0 * math.pi * frequency_hz * t
+    basis = np.column_stack([np.sin(angle), np.cos(angle), np.ones_like(t)])
+    coefficients, *_ = np.linalg.lstsq(basis, signal, rcond=None)
+    return complex(coefficients[0], coefficients[1])
+
+
+def device_metrics(board: Board) -> dict[str, float]:
+    """Return the figures of the device."""
+    return {f"device.{name}": value for name, value in board.spec.device.metrics().items()}
+
+
+def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:
+    """Return how well the shuttle followed the model, and at what effort.
+
+    The settling time is the last moment the error left the band of 2 % of the model's amplitude, counted from
+    ``metrics.since_ms`` (the last event unless given); effort is the ratio of the fundamental of the applied
+    voltage to that of the reference in the tail.
+    """
+    dt = board.dt_ms
+    x, model = trace["plant.displacement"], trace["model.displacement"]
+    u, r = trace["drive.voltage"], trace["reference.voltage"]
+    error = x - model
+    start = min(round(float(options.get("since_ms", 0.0)) / dt), len(x) - 1)
+    tail = slice(int(len(x) * (1.0 - float(options.get("tail_share", TAIL)))), None)
+    swing = float(np.max(np.abs(model[tail]))) if len(model[tail]) else 0.0
+    outside = np.flatnonzero(np.abs(error[start:]) > SETTLED * swing)
+    settling = (float(outside[-1]) + 1.0) * dt if len(outside) else 0.0
+    found = {
+        "control.rms_error_um": _rms(error[start:]),
+        "control.tail_rms_error_um": _rms(error[tail]),
+        "control.peak_error_um": float(np.max(np.abs(error[start:]))),
+        "control.settling_ms": settling,
+        "control.effort_rms_v": _rms(u[tail]),
+    }
+    final = float(np.mean(model[tail]))
+    if abs(final) > 1e-9 and np.ptp(r) == 0.0:
+        peak = float(np.max(x * math.copysign(1.0, final)))
+        found["control.overshoot_pct"] = 100.0 * (peak / abs(final) - 1.0)
+    frequency = getattr(board.spec.reference.params, "frequency_hz", 0.0)
+    if frequency:
+        first = len(u) - len(u[tail])
+        asked = abs(fundamental(r[tail], frequency, dt, first))
+        if asked > 0.0:
+            found["control.effort_ratio"] = abs(fundamental(u[tail], frequency, dt, first)) / asked
+        phasor = fundamental(x[tail], frequency, dt, first)
+        found["control.amplitude_um"] = abs(phasor)
+        found["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
+    return {name: value for name, value in found.items() if math.isfinite(value)}
+
+
+def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str, float]:
+    """Return the score of one diagnoser.
+
+    A step that was never found counts with its whole length in the mean delay, and in ``missed_steps``.
+    """
+    prefix = f"diagnosis.{name}"
+    counted = [length if delay is None else delay for delay, length in zip(scores.delays, lengths, strict=False)]
+    found: dict[str, float] = {
+        f"{prefix}.correct_fraction": scores.correct_fraction,
+        f"{prefix}.false_switches": float(scores.false_switches),
+        f"{prefix}.missed_steps": float(sum(delay is None for delay in scores.delays)),
+    }
+    if len(counted) > 1:
+        found[f"{prefix}.mean_delay_samples"] = float(np.mean(counted[1:]))
+    for step, delay in enumerate(counted, 1):
+        found[f"{prefix}.delay_samples.{step}"] = float(delay)
+    if scores.nis is not None and math.isfinite(scores.nis):
+        found[f"{prefix}.nis"] = scores.nis
+    return found
+
+
+def step_lengths(truth: FloatArray) -> list[int]:
+    """Return the number of samples of each stretch of one truth."""
+    edges = np.flatnonzero(np.diff(truth)) + 1
+    return np.diff([0, *edges.tolist(), len(truth)]).tolist()
+
+
+def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:
+    """Return every figure of a run."""
+    allowed = ("since_ms", "tail_share")
+    for key, value in options.items():
+        if key not in allowed:
+            raise unknown("metric option", key, allowed, f"metrics.{key}")
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise unknown("metric option value", value, ["a number"], f"metrics.{key}")
+    found = device_metrics(board)
+    if board.tick > 1:
+        found |= control_metrics(board, trace, options)
+    for name, scores in board.scores().items():
+        found |= diagnosis_metrics(name, scores, step_lengths(trace[f"{name}.truth"]))
+    return found
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values * values)))

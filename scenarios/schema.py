@@ -1,0 +1,195 @@
+"""A scenario: a bench, what happens to it, and what is expected of it."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any, Literal, Self
+
+import tomlkit
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from core.board.commands import Command, Timed, parse_command
+from core.board.spec import FIELDS, Document, parse
+from core.errors import InputError, from_validation, unknown_field
+
+Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
+MAX_SAMPLES = 200_000_000
+
+
+class Event(BaseModel):
+    """Something that happens: a fault, a healing, new values, another controller; several at once if it says so."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    at_sample: int | None = Field(None, ge=0)
+    at_ms: float | None = Field(None, ge=0)
+    when: str | None = None
+    heal: list[str] | Literal["all"] | None = None
+    fault: str | None = None
+    severity: float | None = None
+    profile: dict[str, Any] | None = None
+    set: dict[str, Any] | None = None
+    switch: str | None = None
+    cold: bool = False
+    reset_trip: bool = False
+
+    @model_validator(mode="after")
+    def _says_something(self) -> Self:
+        if (self.fault is None) != (self.severity is None):
+            raise ValueError("fault and severity go together")
+        if self.profile is not None and self.fault is None:
+            raise ValueError("profile belongs to a fault")
+        if not (self.heal or self.fault or self.set or self.switch or self.reset_trip):
+            raise ValueError("needs one of fault, heal, set, switch, reset_trip")
+        if self.at_sample is None and self.at_ms is None and self.when is None:
+            raise ValueError("needs one of at_sample, at_ms, when")
+        return self
+
+    def commands(self) -> list[Command]:
+        """Return the commands of the event, in the order they take effect."""
+        found: list[dict[str, Any]] = []
+        if self.reset_trip:
+            found.append({"kind": "reset_trip"})
+        if self.heal:
+            found.append({"kind": "heal", "faults": self.heal})
+        if self.fault is not None:
+            profile = {"profile": self.profile} if self.profile is not None else {}
+            found.append({"kind": "inject", "fault": self.fault, "severity": self.severity, **profile})
+        if self.set:
+            found.append({"kind": "set", "values": self.set})
+        if self.switch:
+            found.append({"kind": "switch", "controller": self.switch, "cold": self.cold})
+        moment = self.model_dump(include=set(Timed.model_fields), exclude_none=True)
+        return [parse_command({**command, **moment}) for command in found]
+
+
+class Expectation(BaseModel):
+    """What a metric should be, and what was published."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    metric: str
+    min: float | None = None
+    max: float | None = None
+    value: float | None = None
+    tolerance: float | None = Field(None, ge=0)
+    published: str = ""
+    verdict: Verdict | None = None
+    note: str = ""
+
+    @model_validator(mode="after")
+    def _bounded(self) -> Self:
+        if (self.value is None) != (self.tolerance is None):
+            raise ValueError("value and tolerance go together")
+        if self.value is None and self.min is None and self.max is None:
+            raise ValueError("needs min, max, or value with tolerance")
+        return self
+
+    def holds(self, measured: float | None) -> bool:
+        """Say whether a measured value is as expected."""
+        if measured is None:
+            return False
+        low = self.min if self.value is None else self.value - (self.tolerance or 0.0)
+        high = self.max if self.value is None else self.value + (self.tolerance or 0.0)
+        return (low is None or measured >= low) and (high is None or measured <= high)
+
+    def text(self) -> str:
+        """Say what is expected."""
+        if self.value is not None:
+            return f"{self.value:g} ± {self.tolerance:g}"
+        parts = [f">= {self.min:g}"] if self.min is not None else []
+        parts += [f"<= {self.max:g}"] if self.max is not None else []
+        return " and ".join(parts)
+
+
+class Head(BaseModel):
+    """All of a scenario that is not the bench itself."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    schema_: Literal[1] = Field(1, alias="schema")
+    id: str = Field("unnamed", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")
+    title: str = Field("", max_length=200)
+    source: str = Field("", max_length=500)
+    summary: str = Field("", max_length=2000)
+    claim: str = Field("", max_length=2000)
+    verdict: Verdict | None = None
+    samples: int | None = Field(None, ge=1, le=MAX_SAMPLES)
+    duration_ms: float | None = Field(None, gt=0)
+    events: list[Event] = Field([], max_length=100_000)
+    expect: list[Expectation] = Field([], max_length=1000)
+    metrics: dict[str, Any] = {}
+
+
+HEAD = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
+
+
+class Scenario:
+    """A checked scenario.
+
+    Attributes
+    ----------
+    document : dict
+        What it was read from.
+    head : Head
+        Title, length, events, expectations.
+    bench : dict
+        The part that describes the bench.
+    """
+
+    def __init__(self, document: Document) -> None:
+        if not isinstance(document, dict):
+            raise InputError("a scenario must be a table", "scenario")
+        self.document = document
+        head = {key: value for key, value in document.items() if key in HEAD}
+        self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
+        try:
+            self.head = Head.model_validate(head)
+        except ValidationError as error:
+            raise from_validation(error, {"": (*HEAD, *FIELDS)}) from None
+        if self.head.samples is not None and self.head.duration_ms is not None:
+            raise InputError("give samples or duration_ms, not both", "duration_ms")
+        unknown = [key for key in self.bench if key not in FIELDS]
+        if unknown:
+            raise unknown_field(unknown[0], (*HEAD, *FIELDS), unknown[0])
+        self.spec = parse(self.bench)
+        self.commands: list[Command] = []
+        for position, event in enumerate(self.head.events):
+            try:
+                self.commands += event.commands()
+            except InputError as error:
+                raise error.under(f"events.{position}") from None
+
+    @classmethod
+    def load(cls, text: str | Document) -> Scenario:
+        """Read a scenario from TOML or from a document.
+
+        Raises
+        ------
+        InputError
+            Naming the field, or the line of malformed TOML.
+        """
+        if isinstance(text, dict):
+            return cls(text)
+        try:
+            document = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise InputError(f"malformed TOML: {error}", "scenario", code="malformed") from None
+        return cls(document)
+
+    @property
+    def id(self) -> str:
+        """Library id."""
+        return self.head.id
+
+    @property
+    def samples(self) -> int | None:
+        """Length in ticks, none when it has no end."""
+        if self.head.duration_ms is not None:
+            return max(1, round(self.head.duration_ms / self.spec.dt_ms))
+        return self.head.samples
+
+    def toml(self) -> str:
+        """Return the scenario as TOML."""
+        return tomlkit.dumps(self.document)
+
