@@ -25,7 +25,7 @@ FROM packages AS service
 COPY core core
 COPY scenarios scenarios
 COPY server server
-ENV NUMBA_CACHE_DIR=/app/kernels
+ENV COMBBENCH_KERNEL_CACHE=/app/kernels
 RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
  && .venv/bin/python -m compileall -q core scenarios server .venv/lib \
  && .venv/bin/python scripts/warm.py \
@@ -40,7 +40,7 @@ RUN install -d -o 10001 -g 10001 /data
 ENV PATH=/app/.venv/bin:$PATH \
     PYTHONDONTWRITEBYTECODE=1 \
     HOME=/tmp \
-    NUMBA_CACHE_DIR=/tmp/kernels \
+    COMBBENCH_KERNEL_CACHE=/tmp/kernels \
     COMBBENCH_HOST=0.0.0.0 \
     COMBBENCH_PORT=8000 \
     COMBBENCH_DATA=/data
