@@ -1,8 +1,7 @@
-"""Compile the kernels of every scenario of the library into the cache, so that the first bench starts at once."""
+"""Compile the kernels of the library's scenarios into the cache, so that the first bench starts at once."""
 
 from __future__ import annotations
 
-import sys
 import time
 
 from scenarios.library import get, library
@@ -16,7 +15,7 @@ def main() -> None:
     for entry in library():
         build(get(entry.id)).advance(1)
         print(".", end="", flush=True)
-    print(f" {time.monotonic() - start:.1f} s", file=sys.stdout)
+    print(f" {time.monotonic() - start:.1f} s")
 
 
 if __name__ == "__main__":
