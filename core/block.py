@@ -30,6 +30,15 @@ def kernel(function: F) -> F:
     return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
 
 
+@kernel
+def settled(value: float) -> float:
+    """Return ``value``, or zero once it is too small to matter.
+
+    States that decay for ever end as subnormal numbers, on which a processor is ten times slower.
+    """
+    return value if abs(value) > 1e-100 else 0.0
+
+
 @dataclass(frozen=True)
 class Port:
     """One signal (or a vector of them) a block reads or writes.
@@ -175,7 +184,6 @@ class Context:
     limit_v: float = 30.0
 
 
-
 class Block:
     """Base of every block; a subclass declares, ``pack`` and ``state`` turn the declaration into arrays."""
 
@@ -201,6 +209,6 @@ class Block:
         raise NotImplementedError
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> FloatArray:  # noqa: ARG003 (most blocks have none)
         """Return the initial state."""
         return np.zeros(0)

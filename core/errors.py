@@ -145,9 +145,7 @@ def unknown_field(leaf: str, allowed: Sequence[str], path: str) -> InputError:
             return InputError(f"wrong unit: this field is {name}", path, f"write {name}", "unit")
     near = difflib.get_close_matches(leaf, allowed, n=1)
     listed = f"; allowed: {', '.join(allowed)}" if allowed else ""
-    return InputError(
-        f"unknown field{listed}", path, f"did you mean {near[0]}?" if near else "", "unknown"
-    )
+    return InputError(f"unknown field{listed}", path, f"did you mean {near[0]}?" if near else "", "unknown")
 
 
 def _without_unit(name: str) -> str:

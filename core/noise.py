@@ -21,7 +21,6 @@ S30, S27, S31, S11 = np.uint64(30), np.uint64(27), np.uint64(31), np.uint64(11)
 TWO_POW_MINUS_53 = 1.1102230246251565e-16
 
 
-
 def key(seed: int, stream: str) -> float:
     """Return the key of one stream under one seed: 53 bits, so that it can be packed as a parameter."""
     digest = hashlib.blake2b(f"{seed}/{stream}".encode(), digest_size=8).digest()

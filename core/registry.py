@@ -84,7 +84,12 @@ def blocks(family: str) -> dict[str, type[Block]]:
     for module_info in pkgutil.iter_modules(package.__path__):
         module = importlib.import_module(f"core.{family}.{module_info.name}")
         for value in vars(module).values():
-            if isinstance(value, type) and issubclass(value, Block) and value.__module__ == module.__name__ and hasattr(value, "step"):
+            if (
+                isinstance(value, type)
+                and issubclass(value, Block)
+                and value.__module__ == module.__name__
+                and hasattr(value, "step")
+            ):
                 found[value.name] = value
     for entry in entry_points(group=f"combbench.{family}"):
         loaded: type[Block] = entry.load()
@@ -103,8 +108,14 @@ def block(family: str, name: object, field: str = "") -> type[Block]:
     """
     known = blocks(family)
     if not isinstance(name, str) or name not in known:
-        words = {"reference": "reference", "plant": "plant model", "sense": "sensor", "control": "controller",
-                 "diagnose": "diagnoser", "faults": "fault"}
+        words = {
+            "reference": "reference",
+            "plant": "plant model",
+            "sense": "sensor",
+            "control": "controller",
+            "diagnose": "diagnoser",
+            "faults": "fault",
+        }
         raise unknown(words.get(family, family), name, known, field)
     return known[name]
 

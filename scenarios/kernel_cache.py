@@ -31,7 +31,9 @@ def folder() -> Path | None:
     """Return a folder for the cache that can be written, or none."""
     given = os.environ.get("COMBBENCH_KERNEL_CACHE")
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    candidates = [Path(given)] if given else [Path(home) / "combbench", Path(tempfile.gettempdir()) / f"combbench-{os.getuid()}"]
+    candidates = (
+        [Path(given)] if given else [Path(home) / "combbench", Path(tempfile.gettempdir()) / f"combbench-{os.getuid()}"]
+    )
     for candidate in candidates:
         path = candidate / f"kernels-{core_hash()}"
         try:
@@ -51,6 +53,5 @@ def prepare() -> None:
         return
     os.environ["NUMBA_CACHE_DIR"] = str(path)
     if "numba" in sys.modules:
-        import numba
-
-        numba.config.CACHE_DIR = str(path)
+        # numba read its settings before we could; tell it again
+        vars(sys.modules["numba"].config)["CACHE_DIR"] = str(path)

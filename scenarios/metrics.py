@@ -95,7 +95,7 @@ def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str
 def step_lengths(truth: FloatArray) -> list[int]:
     """Return the number of samples of each stretch of one truth."""
     edges = np.flatnonzero(np.diff(truth)) + 1
-    return np.diff([0, *edges.tolist(), len(truth)]).tolist()
+    return [int(length) for length in np.diff([0, *edges.tolist(), len(truth)])]
 
 
 def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:

@@ -57,7 +57,9 @@ class Result:
 
     def summary(self) -> dict[str, Any]:
         """Return the object ``run --json`` prints."""
-        return summarise(self.scenario, self.seed, self.board.tick, self.elapsed_s, self.metrics, self.digest, self.trip)
+        return summarise(
+            self.scenario, self.seed, self.board.tick, self.elapsed_s, self.metrics, self.digest, self.trip
+        )
 
 
 def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]:
@@ -77,7 +79,13 @@ def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]
 
 
 def summarise(
-    scenario: Scenario, seed: int, ticks: int, elapsed_s: float, metrics: dict[str, float], digest: str, trip: Trip | None
+    scenario: Scenario,
+    seed: int,
+    ticks: int,
+    elapsed_s: float,
+    metrics: dict[str, float],
+    digest: str,
+    trip: Trip | None,
 ) -> dict[str, Any]:
     """Return the summary of a run, JSON-ready."""
     expectations = judge(scenario, metrics)
@@ -151,6 +159,13 @@ def run(scenario: Scenario, seed: int | None = None, *, taps: bool = False, comp
     names = [*TRACED_FIGURES, *(f"{name}.truth" for name in board.spec.diagnosers)]
     trace = {name: outputs[:, board.signals.index(name)] for name in names}
     metrics = measure(board, trace, scenario.head.metrics)
-    return Result(scenario, board.spec.seed, board, board.digest(), elapsed, metrics, outputs,
-                  kept[: board.tick] if kept is not None else None)
-
+    return Result(
+        scenario,
+        board.spec.seed,
+        board,
+        board.digest(),
+        elapsed,
+        metrics,
+        outputs,
+        kept[: board.tick] if kept is not None else None,
+    )

@@ -192,4 +192,3 @@ class Scenario:
     def toml(self) -> str:
         """Return the scenario as TOML."""
         return tomlkit.dumps(self.document)
-

@@ -77,7 +77,7 @@ class Board:
         self._known: dict[str, tuple[float, float]] = {}
         self._link()
 
-    # -- what it is -----------------------------------------------------------------------------------------------
+    # -- what it is
 
     @property
     def dt_ms(self) -> float:
@@ -105,7 +105,7 @@ class Board:
             found[name] = score.read(self.wiring.state_of(f"{name}.score"), names, int(self.value(f"{name}.winner")))
         return found
 
-    # -- time -----------------------------------------------------------------------------------------------------
+    # -- time
 
     def advance(self, n: int) -> Rows:
         """Run up to ``n`` ticks (at most ``CHUNK``); fewer when the board trips.
@@ -130,20 +130,51 @@ class Board:
                 watching = [entry for entry in self.pending if entry.condition is not None]
                 met = watching[which]
                 met.condition, met.tick = None, self.tick
-        self._sha.update(self._outputs[:done])
+        self._sha.update(self._outputs[:done].data)
         return Rows(first, done, self._outputs[:done], self._taps[:done])
 
     def _run(self, n: int, at: int) -> tuple[int, int, int]:
         wiring = self.wiring
         conditions = [entry.condition for entry in self.pending if entry.condition is not None]
-        watches = np.array([[wiring.index[c.signal], c.sign, c.threshold] for c in conditions]).reshape(-1, 3)
+        watches = np.array(
+            [[wiring.index[c.signal], c.sign, c.threshold] for c in conditions], dtype=np.float64
+        ).reshape(-1, 3)
+        trip = wiring.index["guard.trip"]
         outputs, taps = self._outputs[at:], self._taps[at:]
-        shared = (wiring.output_index, wiring.tap_index, outputs, taps, wiring.index["guard.trip"], watches)
         if not self.compiled:
-            arrays = (wiring.table, wiring.p, wiring.s, wiring.w, wiring.io)
-            return program.run_uncompiled(self._steps, n, self.tick, self.dt_ms, *arrays, *shared)
-        addresses = (wiring.p.ctypes.data, wiring.s.ctypes.data, wiring.w.ctypes.data, wiring.io.ctypes.data)
-        return program.run(n, self.tick, self.dt_ms, wiring.table, *addresses, wiring.w, *shared)
+            return program.run_uncompiled(
+                self._steps,
+                n,
+                self.tick,
+                self.dt_ms,
+                wiring.table,
+                wiring.p,
+                wiring.s,
+                wiring.w,
+                wiring.io,
+                wiring.output_index,
+                wiring.tap_index,
+                outputs,
+                taps,
+                trip,
+                watches,
+            )
+        return program.run(
+            n,
+            self.tick,
+            self.dt_ms,
+            wiring.table,
+            wiring.p,
+            wiring.s,
+            wiring.w,
+            wiring.io,
+            wiring.output_index,
+            wiring.tap_index,
+            outputs,
+            taps,
+            trip,
+            watches,
+        )
 
     def _link(self) -> None:
         """Put the addresses of the compiled steps into the table."""
@@ -154,7 +185,7 @@ class Board:
         self._outputs = np.zeros((CHUNK, len(self.wiring.output_index)))
         self._taps = np.zeros((CHUNK, len(self.wiring.tap_index)))
 
-    # -- commands -------------------------------------------------------------------------------------------------
+    # -- commands
 
     def apply(self, command: Command, actor: str = "scenario") -> LogEntry:
         """Let a command take effect at this tick edge, or wait for its moment if it names one.
@@ -204,14 +235,32 @@ class Board:
             old, new = changes.reset_trip(self)
         return self._note(actor, untimed.kind, changes.describe(untimed), command=untimed, old=old, new=new)
 
-    # -- log ------------------------------------------------------------------------------------------------------
+    # -- log
 
-    def _note(self, actor: str, kind: str, text: str, *, command: Command | None = None, tick: int | None = None,
-              old: Any = None, new: Any = None) -> LogEntry:
+    def _note(
+        self,
+        actor: str,
+        kind: str,
+        text: str,
+        *,
+        command: Command | None = None,
+        tick: int | None = None,
+        old: Any = None,
+        new: Any = None,
+    ) -> LogEntry:
         at = self.tick if tick is None else tick
         document = command.model_dump(exclude_none=True, mode="json") if command is not None else None
-        entry = LogEntry(seq=len(self.log) + 1, tick=at, time_ms=at * self.dt_ms, actor=actor, kind=kind, text=text,
-                         command=document, old=old, new=new)
+        entry = LogEntry(
+            seq=len(self.log) + 1,
+            tick=at,
+            time_ms=at * self.dt_ms,
+            actor=actor,
+            kind=kind,
+            text=text,
+            command=document,
+            old=old,
+            new=new,
+        )
         self.log.append(entry)
         return entry
 
@@ -219,12 +268,19 @@ class Board:
         code = int(self.value("guard.trip"))
         text, signal = REASONS[code]
         if code == 1:
-            signal = next((name for name in ("plant.displacement", "plant.velocity") if not np.isfinite(self.value(name))),
-                          f"{self.spec.active}.voltage")
+            signal = next(
+                (name for name in ("plant.displacement", "plant.velocity") if not np.isfinite(self.value(name))),
+                f"{self.spec.active}.voltage",
+            )
         value = self.value(signal)
         reason = text.format(signal=signal)
-        self.trip = Trip(tick=self.tick, time_ms=self.tick * self.dt_ms, reason=reason, signal=signal,
-                         value=value if np.isfinite(value) else None)
+        self.trip = Trip(
+            tick=self.tick,
+            time_ms=self.tick * self.dt_ms,
+            reason=reason,
+            signal=signal,
+            value=value if np.isfinite(value) else None,
+        )
         changes.disengage(self)
         self._note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())
 
@@ -248,7 +304,7 @@ class Board:
                     text = f"{name} found {label} after {samples} samples ({samples * self.dt_ms:.3g} ms)"
                     self._note("board", "recognised", text, tick=tick, old=samples, new=label)
 
-    # -- copies ---------------------------------------------------------------------------------------------------
+    # -- copies
 
     def checkpoint(self) -> Checkpoint:
         """Return everything the board is at this tick edge."""
@@ -258,8 +314,17 @@ class Board:
         }
         wiring = self.wiring
         arrays = {name: getattr(wiring, name).copy() for name in ("table", "p", "s", "w", "io")}
-        return Checkpoint({**kept, "spec": self.spec, "wiring": wiring, "arrays": arrays, "log": list(self.log),
-                           "_sha": self._sha.copy()}, self.tick)
+        return Checkpoint(
+            {
+                **kept,
+                "spec": self.spec,
+                "wiring": wiring,
+                "arrays": arrays,
+                "log": list(self.log),
+                "_sha": self._sha.copy(),
+            },
+            self.tick,
+        )
 
     @classmethod
     def restore(cls, checkpoint: Checkpoint) -> Board:
@@ -293,4 +358,3 @@ class Board:
                 document["at_sample"] = waiting.tick
             events.append(document)
         return {**copy.deepcopy(self.base), "samples": self.tick, "events": events}
-

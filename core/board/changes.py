@@ -43,8 +43,11 @@ def event(command: dict[str, Any]) -> dict[str, Any]:
     if kind == "set":
         return {**{k: v for k, v in rest.items() if k != "values"}, "set": rest["values"]}
     if kind == "switch":
-        return {**{k: v for k, v in rest.items() if k not in ("controller", "cold")},
-                "switch": rest["controller"], **({"cold": True} if rest.get("cold") else {})}
+        return {
+            **{k: v for k, v in rest.items() if k not in ("controller", "cold")},
+            "switch": rest["controller"],
+            **({"cold": True} if rest.get("cold") else {}),
+        }
     if kind == "reset_trip":
         return {**rest, "reset_trip": True}
     return rest
@@ -189,7 +192,9 @@ def _check_section(path: str, old: Section, new: Section) -> None:
         raise _not_live(f"{path}.every")
     if old.block is not new.block:
         ports = [(port.name, port.labels) for port in (*old.block.outputs, *old.block.taps)]
-        if path.startswith("diagnosers") or ports != [(p.name, p.labels) for p in (*new.block.outputs, *new.block.taps)]:
+        if path.startswith("diagnosers") or ports != [
+            (p.name, p.labels) for p in (*new.block.outputs, *new.block.taps)
+        ]:
             raise _not_live(f"{path}.kind")
         return
     for name, info in type(new.params).model_fields.items():
@@ -244,4 +249,3 @@ def _rewire(board: Board, spec: Spec) -> None:
     board.spec = spec
     board.wiring = new
     board._link()
-

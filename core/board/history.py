@@ -14,10 +14,14 @@ Float32Array = NDArray[np.float32]
 FACTOR = 16
 """Ticks under a bucket of the first level, and buckets under a bucket of the next."""
 LEVELS = 3
+WIDEST = 4096
+"""Ticks under a bucket of the last level, FACTOR ** LEVELS."""
 
 
 @kernel
-def _append(ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, first: int, rows: FloatArray, at: int) -> None:
+def _append(
+    ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, first: int, rows: FloatArray, at: int
+) -> None:
     """Write rows (ticks by signals) into the ring of some signals and fold them into the pyramid."""
     capacity = ring.shape[1]
     count = rows.shape[0]
@@ -58,8 +62,17 @@ def _append(ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, 
 
 @kernel
 def _columns(
-    ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, signals: IntArray,
-    first: int, end: int, start: int, stop: int, out: Any,
+    ring: Any,
+    low: Any,
+    high: Any,
+    offsets: IntArray,
+    sizes: IntArray,
+    signals: IntArray,
+    first: int,
+    end: int,
+    start: int,
+    stop: int,
+    out: Any,
 ) -> None:
     """Fill minima and maxima of each column from the widest buckets that fit."""
     columns = out.shape[2]
@@ -109,7 +122,7 @@ def _crossing(ring: Any, signal: int, sign: float, level: float, hysteresis: flo
         elif value >= 0.0 and armed:
             found = tick
             armed = False
-    return found
+    return int(found)
 
 
 class History:
@@ -124,8 +137,7 @@ class History:
     """
 
     def __init__(self, signals: int, capacity: int = 200_000) -> None:
-        widest = FACTOR**LEVELS
-        self.capacity = -(-capacity // widest) * widest
+        self.capacity = -(-capacity // WIDEST) * WIDEST
         self._sizes = np.array([self.capacity // FACTOR ** (level + 1) for level in range(LEVELS)], dtype=np.int64)
         self._offsets = np.concatenate([[0], np.cumsum(self._sizes)[:-1]]).astype(np.int64)
         self._ring = np.zeros((signals, self.capacity), dtype=np.float32)
@@ -137,7 +149,7 @@ class History:
     @property
     def first_tick(self) -> int:
         """Oldest tick kept; one bucket short of the capacity, because the widest bucket is overwritten whole."""
-        return max(self._begin, self.end_tick - self.capacity + FACTOR**LEVELS)
+        return max(self._begin, self.end_tick - self.capacity + WIDEST)
 
     @property
     def nbytes(self) -> int:
@@ -157,8 +169,19 @@ class History:
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:
         """Return minima and maxima, shape (signals, 2, columns); NaN where there is no data."""
         out = np.empty((len(signals), 2, columns), dtype=np.float32)
-        _columns(self._ring, self._low, self._high, self._offsets, self._sizes, np.array(signals, dtype=np.int64),
-                 self.first_tick, self.end_tick, start, stop, out)
+        _columns(
+            self._ring,
+            self._low,
+            self._high,
+            self._offsets,
+            self._sizes,
+            np.array(signals, dtype=np.int64),
+            self.first_tick,
+            self.end_tick,
+            start,
+            stop,
+            out,
+        )
         return out
 
     def read(self, signals: list[int], start: int, stop: int) -> Float32Array:
@@ -171,4 +194,4 @@ class History:
         """Return the last tick in the span at which the signal crosses ``level`` on the rising or falling edge."""
         start, stop = max(start, self.first_tick), min(stop, self.end_tick)
         found = _crossing(self._ring, signal, 1.0 if edge == "rising" else -1.0, level, hysteresis, start, stop)
-        return found if found >= 0 else None
+        return int(found) if found >= 0 else None

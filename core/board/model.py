@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.device.oscillator import transition
 
 PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT = range(6)
@@ -22,8 +22,8 @@ def model_step(p: Any, s: Any, w: Any, io: Any) -> None:
         rest = p[STATIC] * s[HELD]
         x = s[X] - rest
         v = s[V]
-        s[X] = p[PHI11] * x + p[PHI12] * v + rest
-        s[V] = p[PHI21] * x + p[PHI22] * v
+        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest)
+        s[V] = settled(p[PHI21] * x + p[PHI22] * v)
     s[STARTED] = 1.0
     # half a sample later is the mean of an analogue drive, and the same as now for a held one
     s[HELD] = w[io[1]]
@@ -45,7 +45,9 @@ class Model(Block):
         """Which model."""
 
         kind: Literal["copy", "damped", "direct"] = parameter(
-            "copy", "the nominal device, a damped one of the same resonance, or just the displacement at rest", live=False
+            "copy",
+            "the nominal device, a damped one of the same resonance, or just the displacement at rest",
+            live=False,
         )
         damping_ratio: float = parameter(0.7, "damping ratio of the damped model", gt=0, le=10, live=False)
 

@@ -6,6 +6,7 @@ about as much as inlining. The same steps run uncompiled are the oracle of the c
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -24,21 +25,18 @@ ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 DONE, TRIPPED, WATCHED = range(3)
 """Why the loop returned."""
 
-_SIGNATURE = types.void(
-    types.CPointer(types.float64), types.CPointer(types.float64), types.CPointer(types.float64), types.CPointer(types.int64)
-)
+_DOUBLES, _INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)  # type: ignore[no-untyped-call]
+_SIGNATURE = types.void(_DOUBLES, _DOUBLES, _DOUBLES, _INTEGERS)
 
 
 @cache
 def compiled(step: Step) -> Any:
     """Compile a step to its C function."""
-    return numba.cfunc(_SIGNATURE, nopython=True, cache=True, error_model="numpy")(step)
+    options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
+    return numba.cfunc(_SIGNATURE, cache=True, **options)(step)
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def _call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:
-    """Call the C function at ``address`` with four pointers given as integers."""
-
+def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         pointer = cgutils.voidptr_t
         function_type = ir.FunctionType(ir.VoidType(), [pointer] * 4)
@@ -49,17 +47,20 @@ def _call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) ->
     return types.void(types.int64, types.int64, types.int64, types.int64, types.int64), generate
 
 
+_call: Callable[[Any, Any, Any, Any, Any], None] = intrinsic(_generate_call)  # type: ignore[assignment]
+"""Call the C function at an address with four pointers given as integers."""
+
+
 @kernel
 def run(
     n: int,
     first_tick: int,
     dt_ms: float,
     table: IntArray,
-    p: int,
-    s: int,
-    w_address: int,
-    io: int,
+    p: FloatArray,
+    s: FloatArray,
     w: FloatArray,
+    io: IntArray,
     output_index: IntArray,
     tap_index: IntArray,
     outputs: FloatArray,
@@ -69,24 +70,24 @@ def run(
 ) -> tuple[int, int, int]:
     """Run up to ``n`` ticks; return how many were run, why it stopped, and which watch was met.
 
-    ``p``, ``s``, ``w_address`` and ``io`` are addresses of arrays the caller keeps alive. A watch is a row
-    (signal, +1 above or -1 below, threshold).
+    A watch is a row (signal, +1 above or -1 below, threshold).
     """
-    blocks = table.shape[0]
+    p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
+    w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
     for i in range(n):
         tick = first_tick + i
         w[TICK] = tick
         w[TIME_MS] = tick * dt_ms
-        for b in range(blocks):
+        for b in range(table.shape[0]):
             every = table[b, EVERY]
             # a division costs more than most blocks, and most run at every tick
             if every == 1 or tick % every == 0:
                 _call(
-                    table[b, ADDRESS],
-                    p + 8 * table[b, P_OFFSET],
-                    s + 8 * table[b, S_OFFSET],
+                    int(table[b, ADDRESS]),
+                    p_address + 8 * table[b, P_OFFSET],
+                    s_address + 8 * table[b, S_OFFSET],
                     w_address,
-                    io + 8 * table[b, IO_OFFSET],
+                    io_address + 8 * table[b, IO_OFFSET],
                 )
         for c in range(output_index.shape[0]):
             outputs[i, c] = w[output_index[c]]

@@ -48,7 +48,18 @@ class Frame(BaseModel):
     seed: int = Field(1, ge=0, le=2**53, description="seed of all noise")
 
 
-SECTIONS = ("device", "plant", "reference", "model", "controller", "controllers", "sensor", "drive", "guard", "diagnosers")
+SECTIONS = (
+    "device",
+    "plant",
+    "reference",
+    "model",
+    "controller",
+    "controllers",
+    "sensor",
+    "drive",
+    "guard",
+    "diagnosers",
+)
 FIELDS = (*Frame.model_fields, *SECTIONS)
 
 
@@ -131,7 +142,9 @@ def parse(document: Document) -> Spec:
         guard=Section(Guard, _params(Guard, doc.get("guard", {}), "guard")),
         sensor=_chosen("sense", doc["sensor"], "sensor"),
         active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
-        controllers={name: _section("control", name, controllers.get(name, {}), f"controllers.{name}") for name in known},
+        controllers={
+            name: _section("control", name, controllers.get(name, {}), f"controllers.{name}") for name in known
+        },
         diagnosers={name: _diagnoser(name, table) for name, table in doc.get("diagnosers", {}).items()},
     )
 
@@ -165,23 +178,22 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
         parts = path.split(".")
         if not all(parts):
             raise InputError("is not a dotted path", path)
-        table = doc
+        table: Any = doc
         for part in parts[:-1]:
-            inner: Any = table.setdefault(part, {}) if isinstance(table, dict) else None
             if isinstance(table, list):
-                inner = table[_position(part, table, path)]
-            if not isinstance(inner, dict | list):
+                table = table[_position(part, table, path)]
+            else:
+                table = table.setdefault(part, {})
+            if not isinstance(table, dict | list):
                 raise InputError(f"{part} is not a table", path)
-            table = inner
         if isinstance(table, list):
             table[_position(parts[-1], table, path)] = value
-        else:
-            table[parts[-1]] = value
-            if parts[-1] == "kind" and len(parts) == 2 and parts[0] == "reference":
-                # a new kind of reference keeps what it shares with the old one
-                block = registry.block("reference", value, path)
-                kept = {key: entry for key, entry in table.items() if key == "kind" or key in block.Params.model_fields}
-                doc["reference"] = kept
+            continue
+        table[parts[-1]] = value
+        if path == "reference.kind":
+            # a new kind of reference keeps what it shares with the old one
+            fields = registry.block("reference", value, path).Params.model_fields
+            doc["reference"] = {key: entry for key, entry in table.items() if key == "kind" or key in fields}
     return doc
 
 

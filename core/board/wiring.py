@@ -104,7 +104,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     shown.sort(key=lambda entry: entry[3] != "output")
     signals = SignalTable(
         [
-            Signal(name=name, unit=port.unit, meaning=port.meaning, block=instance.key, kind=kind, index=i)  # type: ignore[arg-type]
+            Signal(name=name, unit=port.unit, meaning=port.meaning, block=instance.key, kind=kind, index=i)
             for i, (name, port, instance, kind) in enumerate(shown)
         ]
     )

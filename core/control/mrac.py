@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter
-from core.control.controller import APPLIED, INPUTS, MEASURED, MODEL, OUTPUT, REFERENCE, VOLTAGE, normalised
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter, settled
+from core.control.controller import APPLIED, INPUTS, MEASURED, MODEL, OUTPUT, REFERENCE, normalised
 from core.device.oscillator import transition
 
 H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
@@ -27,8 +27,8 @@ def advance(p: Any, s: Any, at: int, held: float) -> None:
     rest = p[STATIC] * held
     x = s[at] - rest
     v = s[at + 1]
-    s[at] = p[PHI11] * x + p[PHI12] * v + rest
-    s[at + 1] = p[PHI21] * x + p[PHI22] * v
+    s[at] = settled(p[PHI11] * x + p[PHI12] * v + rest)
+    s[at + 1] = settled(p[PHI21] * x + p[PHI22] * v)
 
 
 def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -40,22 +40,23 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
         for i in range(4):
             advance(p, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
         advance(p, s, APPLIED_FILTER, u)  # G_m[u]
-        s[W1] = p[FILTER_DECAY] * s[W1] + p[FILTER_GAIN] * u  # w1' = -lam w1 + u
-        s[W2] = p[FILTER_DECAY] * s[W2] + p[FILTER_GAIN] * s[LAST + 3]  # w2' = -lam w2 + y
+        s[W1] = settled(p[FILTER_DECAY] * s[W1] + p[FILTER_GAIN] * u)  # w1' = -lam w1 + u
+        s[W2] = settled(p[FILTER_DECAY] * s[W2] + p[FILTER_GAIN] * s[LAST + 3])  # w2' = -lam w2 + y
     s[START] = 1.0
     s[LAST], s[LAST + 1], s[LAST + 2], s[LAST + 3] = r, s[W1], s[W2], y
 
-    e = y - w[io[MODEL]]
+    e = settled(y - w[io[MODEL]])
     eta = -s[APPLIED_FILTER]
     den = 1.0
     for i in range(4):
         filtered = s[FILTERED + 2 * i]
         eta += s[THETA + i] * filtered
         den += (p[WEIGHT_INPUT] if i < 2 else p[WEIGHT_OUTPUT]) * filtered * filtered
+    eta = settled(eta)
     den += eta * eta
     if p[NORMALISE] == 0.0:
         den = 1.0
-    eps = e + s[ALPHA] * eta if p[AUGMENT] != 0.0 else e
+    eps = settled(e + s[ALPHA] * eta) if p[AUGMENT] != 0.0 else e
     rate = p[H] * p[GAIN] / den
     for i in range(4):
         g = p[WEIGHT_INPUT] if i < 2 else p[WEIGHT_OUTPUT]
@@ -160,23 +161,32 @@ class Mrac(Block):
             r"\varepsilon=e+\alpha\eta,\quad \eta=\theta^T\bar w-G_m[u_{applied}],\quad \bar w=G_m[w]",
             "3.1.2.13-14",
             printed=r"\eta=\phi^T\bar w-G_m[\phi^Tw]",
-            why="the parameter error phi cannot be computed; theta may replace it, because theta* cancels. Using the voltage applied keeps the identity in saturation and in shadow",
+            why="the parameter error phi cannot be computed; theta may replace it, because theta* cancels. Using "
+            "the voltage applied keeps the identity in saturation and in shadow",
         ),
         Equation(
             "adaptation",
             r"\dot\theta=-\mathrm{sgn}(k_p/k_m)\,g\,\Gamma\,\frac{\varepsilon\bar w}{1+\bar w^T\Gamma\bar w+\eta^2}",
             "3.1.2.15-16",
         ),
-        Equation("Lyapunov function", r"V=\tfrac{1}{2g}\left(|1/k^*|\,\phi^T\Gamma^{-1}\phi+(\alpha-1/k^*)^2\right)"),
+        Equation(
+            "Lyapunov function",
+            r"V=\tfrac{1}{2g}\left(|1/k^*|\,\phi^T\Gamma^{-1}\phi+(\alpha-1/k^*)^2\right)",
+        ),
     )
 
     class Params(BlockParams):
         """Gains of the adaptation, in um, V and 1/w0."""
 
         adaptation_gain: float = parameter(1.0, "adaptation gain g", equation="3.1.2.15", gt=0, le=1e6)
-        filter_pole: float = parameter(1.0, "pole of the state filters over w0", equation="3.1.2.6", gt=0.05, le=10, live=False)
+        filter_pole: float = parameter(
+            1.0, "pole of the state filters over w0", equation="3.1.2.6", gt=0.05, le=10, live=False
+        )
         output_weight: float | None = parameter(
-            None, "weight of w2 and y in Gamma; 1/kp^2 unless given, so that y counts in volts", "V^2/um^2", gt=0
+            None,
+            "weight of w2 and y in Gamma; 1/kp^2 unless given, so that y counts in volts",
+            "V^2/um^2",
+            gt=0,
         )
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(0.0, "bound of the gains (projection), 0 for none", ge=0)

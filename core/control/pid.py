@@ -7,8 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, parameter
-from core.control.controller import APPLIED, ENGAGED, INPUTS, MEASURED, MODEL, OUTPUT, REFERENCE, VOLTAGE, normalised
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, parameter, settled
+from core.control.controller import (
+    APPLIED,
+    ENGAGED,
+    INPUTS,
+    MEASURED,
+    MODEL,
+    OUTPUT,
+    REFERENCE,
+    VOLTAGE,
+    normalised,
+)
 
 DT, KP, KI, KD, DECAY, FEED, LIMIT = range(7)
 INTEGRAL, DERIVATIVE, LAST_ERROR, STARTED = range(4)
@@ -21,7 +31,7 @@ def pid_step(p: Any, s: Any, w: Any, io: Any) -> None:
     if s[STARTED] == 0.0:
         s[STARTED] = 1.0
         s[LAST_ERROR] = e
-    s[DERIVATIVE] = p[DECAY] * s[DERIVATIVE] + (1.0 - p[DECAY]) * (e - s[LAST_ERROR]) / p[DT]
+    s[DERIVATIVE] = settled(p[DECAY] * s[DERIVATIVE] + (1.0 - p[DECAY]) * (e - s[LAST_ERROR]) / p[DT])
     s[LAST_ERROR] = e
     rest = p[FEED] * w[io[REFERENCE]] + p[KP] * e + p[KD] * s[DERIVATIVE]
     if w[io[ENGAGED]] == 0.0:

@@ -18,7 +18,7 @@ ATMOSPHERE_PA = 101325.0
 
 def viscosity(temperature_k: float) -> float:
     r"""Viscosity of air, Pa s (Sutherland), :math:`1.716\cdot10^{-5}(T/273.15)^{3/2}\,383.55/(T+110.4)`."""
-    return 1.716e-5 * (temperature_k / 273.15) ** 1.5 * 383.55 / (temperature_k + 110.4)
+    return 1.716e-5 * math.pow(temperature_k / 273.15, 1.5) * 383.55 / (temperature_k + 110.4)
 
 
 class Geometry(BlockParams):

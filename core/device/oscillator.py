@@ -8,9 +8,7 @@ from core.block import kernel
 
 
 @kernel
-def transition(
-    mass: float, damping: float, stiffness: float, h: float
-) -> tuple[float, float, float, float]:
+def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple[float, float, float, float]:
     r"""Return the free transition matrix of :math:`m\ddot x+\beta\dot x+kx=0` over ``h``.
 
     .. math:: \Phi = e^{-\sigma h}

@@ -13,7 +13,9 @@ from core.block import BlockParams, Context, Oscillator, parameter
 class Hypothesis(BlockParams):
     """One model of the bank, as factors on the nominal device."""
 
-    name: str = Field(min_length=1, max_length=24, pattern=r"^[^\s.]+$", description="short name, without spaces or dots")
+    name: str = Field(
+        min_length=1, max_length=24, pattern=r"^[^\s.]+$", description="short name, without spaces or dots"
+    )
     mass: float = parameter(1.0, "mass over nominal", gt=0, le=100, live=False)
     stiffness: float = parameter(1.0, "stiffness over nominal", gt=0, le=100, live=False)
     damping: float = parameter(1.0, "damping over nominal", gt=0, le=100, live=False)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, Context, Equation, FloatArray, Port, parameter
+from core.block import Block, Context, Equation, FloatArray, Port, parameter, settled
 from core.device.oscillator import transition
 from core.diagnose.hypothesis import BankParams, assumed_noise
 
@@ -56,7 +56,7 @@ def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
             c11 = q1 * f11 + q2 * f12 + g1 * g1 * p[PROCESS]
             c12 = q1 * f21 + q2 * f22 + g1 * g2 * p[PROCESS]
             c22 = q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
-        residual = z - x1 if seen else 0.0
+        residual = settled(z - x1) if seen else 0.0
         # psi = H P- H' + R ; the text prints it without R
         psi = c11 if p[PRINTED] != 0.0 else c11 + p[SENSOR]
         innovation = c11 + p[SENSOR]
@@ -82,8 +82,8 @@ def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
             log += -0.5 * nis - s[b + LOG_COVARIANCE * n]
         s[b + LIKELIHOOD * n] = log
         best = max(best, log)
-        s[b + X1 * n] = x1
-        s[b + X2 * n] = x2
+        s[b + X1 * n] = settled(x1)
+        s[b + X2 * n] = settled(x2)
         s[b + P11 * n] = c11
         s[b + P12 * n] = c12
         s[b + P22 * n] = c22
@@ -131,7 +131,12 @@ class Mmae(Block):
     outputs = (Port("probability", "1", "probability of the hypothesis", each="hypotheses"),)
     taps = (
         Port("residual", "um", "measured minus predicted displacement", each="hypotheses"),
-        Port("nis", "1", "normalised residual squared, 1 on average for a true and well tuned model", each="hypotheses"),
+        Port(
+            "nis",
+            "1",
+            "normalised residual squared, 1 on average for a true and well tuned model",
+            each="hypotheses",
+        ),
     )
     equations = (
         Equation(
@@ -146,29 +151,40 @@ class Mmae(Block):
             r"\psi=HP^-H^T+R",
             "5.2.3.2.1",
             printed=r"\psi=CPC^T",
-            why="without R the filter believes its residuals hundreds of times too much: 732 false switches a run instead of 1",
+            why="without R the filter believes its residuals hundreds of times too much: 732 false switches a "
+            "run instead of 1",
         ),
         Equation(
             "probabilities",
-            r"\ell_k\leftarrow\ell_k-\tfrac{r_k^2}{2\psi_k}-\tfrac12\ln\psi_k,\quad p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})",
+            r"\ell_k\leftarrow\ell_k-\tfrac{r_k^2}{2\psi_k}-\tfrac12\ln\psi_k,"
+            r"\quad p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})",
             "5.2.3.2.6",
             printed=r"p_k(t_i)=\frac{f_k\,p_k(t_{i-1})}{\sum_j f_j\,p_j(t_{i-1})}",
-            why="as printed the probabilities of the faults sink for ever while the device is healthy, and steps 2 to 6 are never found",
+            why="as printed the probabilities of the faults sink for ever while the device is healthy, and steps "
+            "2 to 6 are never found",
         ),
     )
 
     class Params(BankParams):
         """Assumptions of the bank."""
 
-        process_noise_v: float = parameter(0.3, "assumed noise on the voltage, rms per sample", "V", equation="5.2.3.1.2", ge=0, le=100)
-        sensor_noise_um: float | None = parameter(None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100)
+        process_noise_v: float = parameter(
+            0.3, "assumed noise on the voltage, rms per sample", "V", equation="5.2.3.1.2", ge=0, le=100
+        )
+        sensor_noise_um: float | None = parameter(
+            None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
+        )
         assumed_noise_scale: float = parameter(1.0, "factor on both assumed variances", gt=0, le=1e4)
-        probability_floor: float = parameter(1e-3, "smallest probability; 0 as printed", equation="5.2.3.2.6", ge=0, le=0.05)
+        probability_floor: float = parameter(
+            1e-3, "smallest probability; 0 as printed", equation="5.2.3.2.6", ge=0, le=0.05
+        )
         form: Literal["recursive", "steady"] = parameter("recursive", "covariances propagated, or gains at their limit")
         residual_covariance: Literal["correct", "printed"] = parameter(
             "correct", "psi with or without R", equation="5.2.3.2.1"
         )
-        initial_std_um: float = parameter(1.0, "uncertainty of the displacement at the start", "um", gt=0, le=100, live=False)
+        initial_std_um: float = parameter(
+            1.0, "uncertainty of the displacement at the start", "um", gt=0, le=100, live=False
+        )
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

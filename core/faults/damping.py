@@ -15,7 +15,9 @@ class Damping(Fault):
     suggested = 0.3
     inputs = channel("damping_scale")
     outputs = (Port("severity", "1", "added damping, share of nominal"),)
-    equations = (Equation("effect", r"\beta\to\beta\,(1+s)", "5.2.4 (the caption of 5.2.4.1.3 calls it spring constant)"),)
+    equations = (
+        Equation("effect", r"\beta\to\beta\,(1+s)", "5.2.4 (the caption of 5.2.4.1.3 calls it spring constant)"),
+    )
 
     class Params(FaultParams):
         """Severity is a share of the nominal damping."""

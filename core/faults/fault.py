@@ -59,11 +59,11 @@ def severity_at(p: Any, tick: float) -> float:
         return 0.0
     since = tick - p[START]
     if p[KIND] == RAMP:
-        return p[SEVERITY] * min(1.0, since / p[LENGTH])
+        return float(p[SEVERITY] * min(1.0, since / p[LENGTH]))
     if p[KIND] == INTERMITTENT:
         phase = since / p[LENGTH]
-        return p[SEVERITY] if phase - math.floor(phase) < p[DUTY] else 0.0
-    return p[SEVERITY]
+        return float(p[SEVERITY]) if phase - math.floor(phase) < p[DUTY] else 0.0
+    return float(p[SEVERITY])
 
 
 def scale_step(p: Any, s: Any, w: Any, io: Any) -> None:

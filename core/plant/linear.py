@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray
+from core.block import TICK, Context, Equation, FloatArray, settled
 from core.device.oscillator import transition
 from core.plant.shuttle import (
     DAMPING,
@@ -51,8 +51,8 @@ def linear_step(p: Any, s: Any, w: Any, io: Any) -> None:
     if w[io[MIDDLE]] == w[io[VOLTAGE]] and w[io[END]] == w[io[VOLTAGE]]:
         # a held drive: the particular solution is the static displacement
         rest = f0 / k
-        w[io[DISPLACEMENT]] = s[4] * (x - rest) + s[5] * v + rest
-        w[io[VELOCITY]] = s[6] * (x - rest) + s[7] * v
+        w[io[DISPLACEMENT]] = settled(s[4] * (x - rest) + s[5] * v + rest)
+        w[io[VELOCITY]] = settled(s[6] * (x - rest) + s[7] * v)
         return
     # an analogue drive: a parabola through the start, middle and end of the interval
     h = p[DT]
@@ -83,7 +83,8 @@ class Linear(Shuttle):
             r"F_e=\tfrac12\frac{dC}{dx}\left[(V_{b1}-v)^2-(V_{b2}-v)^2\right]=-4n\varepsilon_0\frac{t}{g}V_b\,v",
             "1.3.2, 5.2.1",
             printed=r"\text{5.2.1: two identical DC voltages; } t = \text{length of a finger}",
-            why="identical voltages on both stators cancel; the stators carry +V_b and -V_b, and t is the structural thickness",
+            why="identical voltages on both stators cancel; the stators carry +V_b and -V_b, and t is the "
+            "structural thickness",
         ),
         Equation("between samples", r"x_{i+1}=\Phi(x_i-x_p(0))+x_p(h),\quad \Phi=e^{Ah}"),
     )

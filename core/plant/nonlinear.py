@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, kernel, parameter
+from core.block import TICK, Context, Equation, FloatArray, kernel, parameter, settled
 from core.plant.shuttle import (
     DAMPING,
     DAMPING_SCALE,
@@ -42,7 +42,7 @@ def acceleration(p: Any, m: float, b: float, k: float, x: float, v: float, force
     if over > 0.0:
         push = p[STOP_STIFFNESS] * over
         total -= (push if x > 0.0 else -push) + p[STOP_DAMPING] * v
-    return total / m
+    return float(total / m)
 
 
 def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -80,8 +80,8 @@ def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
         k4 = acceleration(p, m, b, k, x + h * v3, v4, fc)
         x += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
         v += h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
-    w[io[DISPLACEMENT]] = x
-    w[io[VELOCITY]] = v
+    w[io[DISPLACEMENT]] = settled(x)
+    w[io[VELOCITY]] = settled(v)
 
 
 class Nonlinear(Shuttle):

@@ -9,7 +9,22 @@ from core.block import Block, BlockParams, Context, Port, kernel, parameter
 from core.noise import key, normal
 from core.units import UN_PER_N, thermal_force_un
 
-MASS, DAMPING, STIFFNESS, DT, X0, V0, COMB, FIRST_V, SECOND_V, DRIVE_NOISE, DRIVE_KEY, THERMAL, THERMAL_KEY, OWN = range(14)
+(
+    MASS,
+    DAMPING,
+    STIFFNESS,
+    DT,
+    X0,
+    V0,
+    COMB,
+    FIRST_V,
+    SECOND_V,
+    DRIVE_NOISE,
+    DRIVE_KEY,
+    THERMAL,
+    THERMAL_KEY,
+    OWN,
+) = range(14)
 """Packed parameters of every plant; a plant's own start at ``OWN``."""
 
 VOLTAGE, MIDDLE, END, MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DISPLACEMENT, VELOCITY = range(8)
@@ -68,7 +83,7 @@ def comb_force(p: Any, v: float) -> float:
 
     Written as the product of difference and sum, so that identical stators give exactly nothing.
     """
-    return 0.5 * p[COMB] * (p[FIRST_V] - p[SECOND_V]) * (p[FIRST_V] + p[SECOND_V] - 2.0 * v)
+    return float(0.5 * p[COMB] * (p[FIRST_V] - p[SECOND_V]) * (p[FIRST_V] + p[SECOND_V] - 2.0 * v))
 
 
 @kernel

@@ -24,7 +24,9 @@ class Chirp(Waveform):
     r"""Repeated linear sweep from :math:`f_1` to :math:`f_2` in :math:`T`."""
 
     title = "Chirp"
-    equations = (Equation("reference", r"r=r_0+A\sin 2\pi\left(f_1\tau+\frac{f_2-f_1}{2T}\tau^2\right),\ \tau=t \bmod T"),)
+    equations = (
+        Equation("reference", r"r=r_0+A\sin 2\pi\left(f_1\tau+\frac{f_2-f_1}{2T}\tau^2\right),\ \tau=t \bmod T"),
+    )
 
     class Params(ReferenceParams):
         """Parameters of a sweep."""

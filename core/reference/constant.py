@@ -10,7 +10,7 @@ from core.reference.waveform import ReferenceParams, Waveform, playing
 
 @kernel
 def constant(p: Any, t: float) -> float:
-    """Unit value at any time."""
+    """Return one at any time."""
     return 1.0
 
 

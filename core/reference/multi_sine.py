@@ -37,9 +37,7 @@ class MultiSine(Waveform):
     class Params(ReferenceParams):
         """Parameters of a sum of tones."""
 
-        tones: list[Tone] = parameter(
-            [Tone(frequency_hz=159.155), Tone(frequency_hz=461.549)], "the tones", live=False
-        )
+        tones: list[Tone] = parameter([Tone(frequency_hz=159.155), Tone(frequency_hz=461.549)], "the tones", live=False)
 
     @classmethod
     def shape_parameters(cls, params: Any, context: Context) -> list[float]:

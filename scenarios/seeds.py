@@ -1,0 +1,53 @@
+"""Runs over several seeds: means and spreads of every figure."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import numpy as np
+
+from core.errors import InputError
+from scenarios.run import judge, run
+from scenarios.schema import Scenario
+
+
+def parse_seeds(text: str) -> range:
+    """Read ``A:B``, both included.
+
+    Raises
+    ------
+    InputError
+        When it is not two whole numbers in order.
+    """
+    first, colon, last = text.partition(":")
+    if not colon or not first.strip().isdigit() or not last.strip().isdigit() or int(first) > int(last):
+        raise InputError(f"must be A:B with whole numbers A <= B, got {text!r}", "--seeds")
+    return range(int(first), int(last) + 1)
+
+
+def run_seeds(scenario: Scenario, seeds: range) -> dict[str, Any]:
+    """Run a scenario once for each seed and return one summary with means and standard deviations.
+
+    The digest is the SHA-256 over the digests of the runs. A figure that some runs do not have is the mean over
+    those that do.
+    """
+    summaries = [run(scenario, seed).summary() for seed in seeds]
+    names = sorted({name for summary in summaries for name in summary["metrics"]})
+    values = {name: [s["metrics"][name] for s in summaries if name in s["metrics"]] for name in names}
+    means = {name: float(np.mean(found)) for name, found in values.items()}
+    expectations = judge(scenario, means)
+    digest = hashlib.sha256("".join(summary["digest"] for summary in summaries).encode()).hexdigest()
+    return {
+        **summaries[0],
+        "seeds": [seeds[0], seeds[-1]],
+        "elapsed_s": sum(summary["elapsed_s"] for summary in summaries),
+        "digest": digest,
+        "tripped_runs": sum(summary["trip"] is not None for summary in summaries),
+        "metrics": means,
+        "metrics_std": {
+            name: float(np.std(found, ddof=1)) if len(found) > 1 else 0.0 for name, found in values.items()
+        },
+        "expectations": expectations,
+        "ok": all(entry["ok"] for entry in expectations),
+    }

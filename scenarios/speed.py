@@ -1,0 +1,191 @@
+"""Speed figures, each as a ratio to a peer measured in the same run."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from functools import partial
+from statistics import median
+from typing import Any
+
+import numpy as np
+from scipy import signal
+
+from core.block import FloatArray, Oscillator
+from core.board import program
+from core.board.board import CHUNK, Board
+from core.device.oscillator import transition
+from core.device.response import held_response
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import build
+
+REPEATS = 7
+SECOND = 100_000
+"""Samples of 1 s at 100 kHz."""
+SAMPLE_NS = 10_000.0
+"""Device time of a sample at 100 kHz."""
+
+
+def cpu_ns(work: Callable[[], Any], units: int) -> float:
+    """Return the CPU time of one unit of work, ns."""
+    begin = time.thread_time_ns()
+    work()
+    return (time.thread_time_ns() - begin) / units
+
+
+def interleaved(candidates: Mapping[str, Callable[[], float]], repeats: int = REPEATS) -> dict[str, float]:
+    """Measure candidates in turn and return the median of each, so that drift meets all alike."""
+    found: dict[str, list[float]] = {name: [] for name in candidates}
+    for measure in candidates.values():
+        measure()
+    for _ in range(repeats):
+        for name, measure in candidates.items():
+            found[name].append(measure())
+    return {name: median(values) for name, values in found.items()}
+
+
+def _board(values: dict[str, Any] | None = None) -> Board:
+    scenario = with_values(get("ch5-seven-step"), {"events": [], **(values or {})})
+    board = build(scenario)
+    board.advance(CHUNK)
+    return board
+
+
+def advance_cost(board: Board, ticks: int = 100 * CHUNK) -> float:
+    """Return the cost of a tick as a bench pays it: blocks, trace rows, log, digest, ns."""
+
+    def work() -> None:
+        for _ in range(ticks // CHUNK):
+            board.advance(CHUNK)
+
+    return cpu_ns(work, ticks)
+
+
+def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:
+    """Return the cost of a tick of some blocks alone, without trace or digest, ns."""
+    wiring = board.wiring
+    rows = [wiring.row(key) for key in keys]
+    table = np.ascontiguousarray(wiring.table[rows])
+    none = np.zeros(0, dtype=np.int64)
+    nothing = np.zeros((ticks, 0))
+    arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io, none, none)
+    trip, watches = wiring.index["guard.trip"], np.zeros((0, 3))
+
+    def work() -> None:
+        program.run(ticks, 1, board.dt_ms, *arrays, nothing, nothing, trip, watches)
+
+    return cpu_ns(work, ticks)
+
+
+ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive")
+"""Blocks that keep every signal moving: with frozen inputs a block is not doing its usual work."""
+
+
+def block_costs(board: Board) -> dict[str, float]:
+    """Return the cost of each block of a board, ns per tick, the dispatch included: a tick with it run once more."""
+    candidates = {"": partial(loop_cost, board, [*ALIVE], 50_000)}
+    for instance in board.wiring.instances:
+        candidates[instance.key] = partial(loop_cost, board, [*ALIVE, instance.key], 50_000)
+    ns = interleaved(candidates)
+    return {key: round(value - ns[""], 1) for key, value in ns.items() if key}
+
+
+def filterpy_step(board: Board, steps: int = 300) -> Callable[[], float]:
+    """Return the measurement of filterpy's bank on the same six models, ns per step."""
+    from filterpy.kalman import KalmanFilter, MMAEFilterBank
+
+    filters = []
+    section = board.spec.diagnosers["kalman"]
+    context = board.spec.context()
+    for hypothesis in section.params.hypotheses:  # type: ignore[attr-defined]
+        device = hypothesis.oscillator(context.device)
+        phi = np.array(transition(device.mass, device.damping, device.stiffness, context.dt_ms)).reshape(2, 2)
+        gamma = np.array([[(1.0 - phi[0, 0]) * device.static_gain], [-phi[1, 0] * device.static_gain]])
+        kalman = KalmanFilter(dim_x=2, dim_z=1, dim_u=1)
+        kalman.F, kalman.B, kalman.H = phi, gamma, np.array([[1.0, 0.0]])
+        kalman.Q, kalman.R = gamma @ gamma.T * 0.09, np.array([[0.0025]])
+        filters.append(kalman)
+    bank = MMAEFilterBank(filters, [1.0 / len(filters)] * len(filters), dim_x=2, H=filters[0].H)
+
+    def measure() -> float:
+        def work() -> None:
+            for i in range(steps):
+                bank.predict(u=np.array([[np.sin(0.25 * i)]]))
+                bank.update(np.array([[0.01 * i]]))
+
+        return cpu_ns(work, steps)
+
+    return measure
+
+
+def lsim_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
+    """Return the measurement of ``scipy.signal.lsim`` on the same record, ns per sample."""
+    system = (
+        [device.force / device.mass],
+        [1.0, device.damping / device.mass, device.stiffness / device.mass],
+    )
+    t = np.arange(len(voltage)) * 0.01
+    return lambda: cpu_ns(lambda: signal.lsim(system, voltage, t), len(voltage))
+
+
+def speed() -> dict[str, Any]:
+    """Measure everything and return it with the targets, JSON-ready."""
+    bench = _board({"plant.drive_noise_v": 0.01})
+    device = bench.spec.context().device
+    sine = 10.0 * np.sin(2.0 * np.pi * 2.0 * 0.01 * np.arange(SECOND))
+    hot = ["plant", *[i.key for i in bench.wiring.instances if i.block.family == "control"], "kalman"]
+    candidates = {
+        "bench_tick": lambda: advance_cost(bench),
+        "plant_3_controllers_bank": lambda: loop_cost(bench, hot),
+        "bank": lambda: loop_cost(bench, ["kalman"]),
+        "plant_record": lambda: cpu_ns(lambda: held_response(device, sine, 0.01), SECOND),
+        "lsim": lsim_sample(device, sine),
+    }
+    missing = ""
+    try:
+        candidates["filterpy_bank"] = filterpy_step(bench)
+    except ImportError:
+        missing = "filterpy is not installed (make setup-test installs it)"
+    ns = interleaved(candidates)
+    figures = [
+        _figure("cost of a tick of a bench (blocks, trace, log, digest)", ns["bench_tick"] / 1e3, "us"),
+        _figure("real-time benches at 100 kHz per core", SAMPLE_NS / ns["bench_tick"], "x"),
+        _figure(
+            "plant + 3 controllers + 6-model bank, per sample",
+            ns["plant_3_controllers_bank"] / 1e3,
+            "us",
+            most=0.6,
+        ),
+        _figure("6-model bank, per step", ns["bank"] / 1e3, "us", most=0.15),
+        _figure(
+            "linear plant, 1 s at 100 kHz as a record, over signal.lsim",
+            ns["lsim"] / ns["plant_record"],
+            "x",
+            least=1000.0,
+        ),
+    ]
+    if "filterpy_bank" in ns:
+        figures.append(
+            _figure(
+                "6-model bank over filterpy's MMAEFilterBank",
+                ns["filterpy_bank"] / ns["bank"],
+                "x",
+                least=800.0,
+            )
+        )
+    return {
+        "figures": figures,
+        "ns": {name: round(value, 1) for name, value in ns.items()},
+        "blocks_ns": block_costs(bench),
+        "missing": missing,
+        "ok": all(figure["ok"] for figure in figures),
+    }
+
+
+def _figure(
+    name: str, value: float, unit: str, *, least: float | None = None, most: float | None = None
+) -> dict[str, Any]:
+    ok = (least is None or value >= least) and (most is None or value <= most)
+    target = f">= {least:g}" if least is not None else f"<= {most:g}" if most is not None else ""
+    return {"name": name, "value": value, "unit": unit, "target": target, "ok": ok}

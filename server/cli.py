@@ -1,0 +1,240 @@
+"""The command line: ``combbench serve | run | gallery | catalog | bench | doctor``."""
+
+from __future__ import annotations
+
+import fnmatch
+import json
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, ParamSpec, TypeVar
+
+import typer
+
+import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
+from core.errors import InputError
+from core.registry import BlockCard, catalog
+from scenarios.edit import parse_assignment, with_values
+from scenarios.library import get, library
+from scenarios.run import run as run_scenario
+from scenarios.schema import Scenario
+from scenarios.seeds import parse_seeds, run_seeds
+from scenarios.traces import write_result
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
+
+
+def say(text: str = "") -> None:
+    """Print a line."""
+    sys.stdout.write(text + "\n")
+
+
+def say_json(document: Any) -> None:
+    """Print a JSON document."""
+    say(json.dumps(document, indent=2, allow_nan=False))
+
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def plainly(command: Callable[P, T]) -> Callable[P, T]:
+    """Turn bad input into one line and exit code 2."""
+
+    @wraps(command)
+    def guarded(*args: P.args, **kwargs: P.kwargs) -> T:
+        try:
+            return command(*args, **kwargs)
+        except InputError as error:
+            hint = f" ({error.hint})" if error.hint else ""
+            sys.stderr.write(f"combbench: {error}{hint}\n")
+            raise typer.Exit(2) from None
+
+    return guarded
+
+
+def load(name: str) -> Scenario:
+    """Return a scenario of the library, or from a file."""
+    path = Path(name)
+    if path.suffix == ".toml" or path.is_file():
+        try:
+            return Scenario.load(path.read_text("utf-8"))
+        except OSError as error:
+            raise InputError(f"cannot read {name}: {error.strerror}", "scenario") from None
+        except UnicodeDecodeError:
+            raise InputError(f"{name} is not UTF-8 text", "scenario") from None
+    return get(name)
+
+
+def show_run(summary: dict[str, Any]) -> None:
+    """Print a run for people."""
+    say(f"{summary['scenario']}: {summary['title']}")
+    if summary["claim"]:
+        say(f"  claim    {summary['claim']} ({summary['verdict']})")
+    say(f"  ticks    {summary['ticks']} of {summary['dt_s'] * 1e6:g} us in {summary['elapsed_s'] * 1e3:.1f} ms")
+    say(f"  digest   {summary['digest']}")
+    if summary["trip"]:
+        say(f"  tripped  at {summary['trip']['time_ms']:.4g} ms: {summary['trip']['reason']}")
+    for name, value in summary["metrics"].items():
+        spread = summary.get("metrics_std", {}).get(name)
+        say(f"  {name:<44} {value:.6g}" + (f" ± {spread:.2g}" if spread else ""))
+    for entry in summary["expectations"]:
+        measured = "-" if entry["measured"] is None else f"{entry['measured']:.6g}"
+        say(f"  {'ok  ' if entry['ok'] else 'MISS'} {entry['metric']} {entry['expected']}: {measured}")
+
+
+@app.command()
+@plainly
+def run(
+    scenario: Annotated[str, typer.Argument(help="Library id or file.")],
+    assign: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Instead of the scenario's own.")] = None,
+    seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
+    as_json: JsonOption = False,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace and summary here.")] = None,
+) -> None:
+    """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
+    chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
+    if seed is not None and seeds is not None:
+        raise InputError("give --seed or --seeds, not both", "--seeds")
+    if seeds is not None:
+        if out is not None:
+            raise InputError("traces are written for one seed; use --seed", "--out")
+        summary = run_seeds(chosen, parse_seeds(seeds))
+    else:
+        result = run_scenario(chosen, seed, taps=out is not None)
+        summary = result.summary()
+        if out is not None:
+            try:
+                write_result(result, out)
+            except OSError as error:
+                raise InputError(f"cannot write to {out}: {error.strerror}", "--out") from None
+    if as_json:
+        say_json(summary)
+    else:
+        show_run(summary)
+    raise typer.Exit(0 if summary["ok"] else 1)
+
+
+@app.command()
+@plainly
+def gallery(
+    only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
+    as_json: JsonOption = False,
+) -> None:
+    """Run every library scenario: published claim, expectation, measured, verdict."""
+    chosen = [entry for entry in library() if fnmatch.fnmatch(entry.id, only)]
+    if not chosen:
+        raise InputError(f"no scenario matches {only!r}", "--only")
+    summaries = [run_scenario(entry).summary() for entry in chosen]
+    if as_json:
+        say_json(summaries)
+    else:
+        for summary in summaries:
+            say(
+                f"{'ok  ' if summary['ok'] else 'MISS'} {summary['scenario']:<28} "
+                f"{summary['verdict'] or '':<22} {summary['claim']}"
+            )
+            for entry in summary["expectations"]:
+                measured = "-" if entry["measured"] is None else f"{entry['measured']:.5g}"
+                say(f"       {entry['metric']:<44} {entry['expected']:<18} {measured}")
+    raise typer.Exit(0 if all(summary["ok"] for summary in summaries) else 1)
+
+
+def show_block(card: BlockCard) -> None:
+    """Print a block for people."""
+    say(f"{card.family}/{card.name}: {card.title}")
+    say(f"  {card.summary}")
+    for equation in card.equations:
+        say(f"  {equation.label}: {equation.latex}" + (f"   [{equation.source}]" if equation.source else ""))
+    for entry in card.parameters:
+        limits = " .. ".join("" if bound is None else f"{bound:g}" for bound in (entry.minimum, entry.maximum))
+        live = "live" if entry.live else "at reset"
+        allowed = (
+            f" one of {', '.join(entry.choices)}" if entry.choices else f" [{limits}]" if limits.strip(" .") else ""
+        )
+        default = (
+            "auto" if entry.default is None else entry.default if not isinstance(entry.default, list | dict) else "..."
+        )
+        say(f"    {entry.name} = {default} {entry.unit}{allowed} ({live}): {entry.meaning}")
+
+
+@app.command(name="catalog")
+@plainly
+def catalog_command(
+    family: Annotated[str | None, typer.Argument(help="Only this family.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """List every block: parameters with unit, range, default, meaning, equations."""
+    cards = catalog(family)
+    if as_json:
+        say_json([card.model_dump() for card in cards])
+        return
+    for card in cards:
+        show_block(card)
+        say()
+
+
+@app.command()
+@plainly
+def bench(as_json: JsonOption = False) -> None:
+    """Measure speed, each figure as a ratio to a peer in the same run."""
+    from scenarios.speed import speed
+
+    found = speed()
+    if as_json:
+        say_json(found)
+        return
+    for figure in found["figures"]:
+        mark = "ok  " if figure["ok"] else "MISS"
+        say(f"{mark} {figure['name']:<60} {figure['value']:>10.4g} {figure['unit']:<3} {figure['target']}")
+    say("cost of each block, ns per tick:")
+    say("  " + "  ".join(f"{name} {value:g}" for name, value in found["blocks_ns"].items()))
+    if found["missing"]:
+        say(found["missing"])
+
+
+@app.command()
+@plainly
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on; anything but loopback needs a token.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 for any free one.")] = None,
+    data: Annotated[Path | None, typer.Option(help="Folder for database and recordings.")] = None,
+    open_page: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
+) -> None:
+    """Serve the dashboard."""
+    from server.serve import serve as start
+    from server.settings import load_settings
+
+    given = {"host": host, "port": port, "data": data, "open_page": open_page or None}
+    start(load_settings(**{name: value for name, value in given.items() if value is not None}))
+
+
+@app.command()
+@plainly
+def doctor(as_json: JsonOption = False) -> None:
+    """Show effective settings and where each comes from, versions and the state of the kernel cache."""
+    from server.doctor import examine
+
+    report = examine()
+    if as_json:
+        say_json(report)
+        return
+    for title, entries in report.items():
+        say(title)
+        for name, value in entries.items():
+            say(f"  {name:<28} {value}")
+
+
+def main() -> None:
+    """Run the command line."""
+    app()
+
+
+if __name__ == "__main__":
+    main()
