@@ -1,0 +1,133 @@
+"""Live benches: make, look at, command, fork, save, close."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body, Response
+from pydantic import BaseModel, Field
+
+from scenarios.schema import Scenario
+from server.api.bodies import Body as StrictBody
+from server.api.bodies import StrictRoute
+from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
+from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
+from server.bench.events import Event
+from server.bench.status import Bench
+
+router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
+
+
+class NewBench(StrictBody):
+    """What to make a bench from."""
+
+    scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
+    set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
+    seed: int | None = Field(None, ge=0, le=2**53)
+    paused: bool = False
+    time_scale: float | None = Field(
+        DEFAULT_SCALE,
+        ge=MIN_SCALE,
+        le=MAX_SCALE,
+        description="Device seconds per wall second; null: as fast as possible",
+    )
+
+
+class BenchList(BaseModel):
+    """The live benches, oldest first."""
+
+    benches: list[Bench]
+
+
+class CommandResult(BaseModel):
+    """A command that was carried out, and the tick at which it took effect."""
+
+    tick: int
+    time_ms: float
+    entry: Event
+
+
+class EventList(BaseModel):
+    """Events behind a number; ``lost`` of them are older than the bench keeps."""
+
+    events: list[Event]
+    last: int
+    lost: int
+
+
+class Digest(BaseModel):
+    """SHA-256 over the float64 trace of all outputs up to a tick."""
+
+    tick: int
+    digest: str
+
+
+class ForkFrom(StrictBody):
+    """Where a fork begins."""
+
+    snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment")
+
+
+@router.post("", status_code=201, dependencies=[RateLimited])
+async def create_bench(body: NewBench, service: ServiceDep, response: Response) -> Bench:
+    """Make a bench and let it run."""
+    session = await service.benches.create(body.scenario, body.set, body.seed, body.paused, body.time_scale)
+    response.headers["Location"] = f"/api/v1/benches/{session.id}"
+    return service.view(session)
+
+
+@router.get("")
+async def list_benches(service: ServiceDep) -> BenchList:
+    """List the live benches."""
+    return BenchList(benches=[service.view(session) for session in service.benches.all()])
+
+
+@router.get("/{bench_id}")
+async def get_bench(session: SessionDep, service: ServiceDep) -> Bench:
+    """Describe a bench."""
+    return service.view(session)
+
+
+@router.delete("/{bench_id}", status_code=204, dependencies=[RateLimited])
+async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
+    """Close a bench; what it recorded stays."""
+    await service.close_bench(session)
+
+
+@router.post("/{bench_id}/commands", dependencies=[RateLimited])
+async def command(
+    command: Annotated[Command, Body()], session: SessionDep, service: ServiceDep, caller: CallerDep
+) -> CommandResult:
+    """Carry out a command at the next tick edge."""
+    entry = await service.benches.command(session, command, caller)
+    return CommandResult(tick=entry.tick, time_ms=entry.tick * session.dt_ms, entry=entry)
+
+
+@router.get("/{bench_id}/events")
+async def list_events(session: SessionDep, after: int = 0, limit: int | None = None) -> EventList:
+    """List what happened after an event."""
+    lost, events = session.events.after(max(0, after), max(1, limit) if limit is not None else None)
+    return EventList(events=events, last=session.events.last, lost=lost)
+
+
+@router.get("/{bench_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
+async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
+    """Return what happened as a scenario in TOML; run headless it gives the same bits."""
+    document = await service.engine.call(session.document)
+    name = f'attachment; filename="{document["id"]}.toml"'
+    return Response(Scenario.load(document).toml(), media_type="text/plain", headers={"Content-Disposition": name})
+
+
+@router.get("/{bench_id}/digest")
+async def get_digest(session: SessionDep, service: ServiceDep) -> Digest:
+    """Return the digest of the trace so far."""
+    tick, digest = await service.engine.call(lambda: (session.board.tick, session.board.digest()))
+    return Digest(tick=tick, digest=digest)
+
+
+@router.post("/{bench_id}/fork", status_code=201, dependencies=[RateLimited])
+async def fork_bench(body: ForkFrom, session: SessionDep, service: ServiceDep, response: Response) -> Bench:
+    """Make a second bench that goes on from this moment or a snapshot, bit for bit."""
+    twin = await service.benches.fork(session, body.snapshot)
+    response.headers["Location"] = f"/api/v1/benches/{twin.id}"
+    return service.view(twin)

@@ -1,0 +1,37 @@
+"""Health: is the process alive, can it serve."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Response
+from pydantic import BaseModel
+
+from server.api.deps import ServiceDep
+
+router = APIRouter(prefix="/health", tags=["health"])
+
+
+class Health(BaseModel):
+    """Whether all is well, and each part."""
+
+    ok: bool
+    checks: dict[str, bool]
+
+
+@router.get("/live")
+async def live() -> Health:
+    """Answer as long as the event loop turns."""
+    return Health(ok=True, checks={"event_loop": True})
+
+
+@router.get("/ready", responses={503: {"model": Health}})
+async def ready(service: ServiceDep, response: Response) -> Health:
+    """Answer 200 when the engine turns, the database can be written and the kernels are loaded."""
+    checks = {
+        "started": service.is_ready,
+        "engine": service.engine.is_alive,
+        "database": await service.database.is_writable(),
+        "kernels": service.has_kernels,
+    }
+    ok = all(checks.values())
+    response.status_code = 200 if ok else 503
+    return Health(ok=ok, checks=checks)

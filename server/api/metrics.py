@@ -1,0 +1,17 @@
+"""Metrics for Prometheus."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Response
+from prometheus_client import CONTENT_TYPE_LATEST
+
+from server.api.deps import ServiceDep
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/metrics", response_class=Response)
+async def metrics(service: ServiceDep) -> Response:
+    """Return every metric in Prometheus' text format."""
+    service.benches.count()
+    return Response(service.metrics.text(), media_type=CONTENT_TYPE_LATEST)

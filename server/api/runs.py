@@ -1,0 +1,81 @@
+"""Headless runs."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel, Field
+
+from core.errors import InputError
+from scenarios.edit import with_values
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import RateLimited, ServiceDep
+from server.api.files import FORMAT_RESPONSES, stored_trace
+from server.bench.benches import read_scenario
+from server.runs.jobs import Run
+from server.store.traces import Format
+
+router = APIRouter(prefix="/runs", tags=["runs"], route_class=StrictRoute)
+
+
+class NewRun(Body):
+    """What to run."""
+
+    scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
+    set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
+    seed: int | None = Field(None, ge=0, le=2**53)
+    seeds: list[int] | None = Field(
+        None, min_length=2, max_length=2, description="First seed and the one behind the last"
+    )
+
+
+class RunList(BaseModel):
+    """Runs, newest first."""
+
+    runs: list[Run]
+
+
+@router.post("", status_code=202, dependencies=[RateLimited])
+async def start_run(body: NewRun, service: ServiceDep) -> Run:
+    """Queue a headless run; it never disturbs the live benches."""
+    scenario = await asyncio.to_thread(lambda: with_values(read_scenario(body.scenario), body.set))
+    seeds = [scenario.spec.seed if body.seed is None else body.seed]
+    if body.seeds is not None:
+        first, end = body.seeds
+        most = service.settings.max_run_seeds
+        if body.seed is not None:
+            raise InputError("give seed or seeds, not both", "seeds")
+        if not 0 <= first < end <= 2**53 or end - first > most:
+            raise InputError(f"must be [first, end] with 0 <= first < end and at most {most} seeds", "seeds")
+        seeds = list(range(first, end))
+    return await service.jobs.start(scenario, seeds)
+
+
+@router.get("")
+async def list_runs(service: ServiceDep) -> RunList:
+    """List runs."""
+    return RunList(runs=await service.jobs.all())
+
+
+@router.get("/{run_id}")
+async def get_run(run_id: str, service: ServiceDep) -> Run:
+    """Return how far a run is, and its summary once it is done."""
+    return await service.jobs.get(run_id)
+
+
+@router.delete("/{run_id}", dependencies=[RateLimited])
+async def cancel_run(run_id: str, service: ServiceDep) -> Run:
+    """Cancel a run that waits."""
+    return await service.jobs.cancel(run_id)
+
+
+@router.get("/{run_id}/trace", response_class=Response, responses=FORMAT_RESPONSES)
+async def get_run_trace(
+    run_id: str, service: ServiceDep, kind: Annotated[Format, Query(alias="format")] = "parquet"
+) -> Response:
+    """Download the trace of a run (of its first seed)."""
+    run = await service.jobs.get(run_id)
+    path = service.jobs.trace_path(run.id)
+    return await stored_trace(path, run.scenario_id, kind, service.settings.max_trace_ticks)

@@ -1,0 +1,86 @@
+"""The library of scenarios, and a check for one's own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from scenarios.library import get, library
+from scenarios.schema import Scenario
+from server.api.bodies import Body, StrictRoute
+from server.bench.benches import read_scenario
+from server.errors import ApiError, not_found
+
+router = APIRouter(prefix="/scenarios", tags=["scenarios"], route_class=StrictRoute)
+
+
+class ScenarioCard(BaseModel):
+    """A scenario of the library in a few words."""
+
+    id: str
+    title: str
+    source: str
+    summary: str
+    claim: str
+    verdict: str | None
+    samples: int | None
+
+
+class ScenarioList(BaseModel):
+    """The library."""
+
+    scenarios: list[ScenarioCard]
+
+
+class ScenarioText(BaseModel):
+    """A scenario in full."""
+
+    document: dict[str, Any]
+    toml: str
+
+
+class ScenarioSource(Body):
+    """A scenario to check."""
+
+    scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
+
+
+def card(scenario: Scenario) -> ScenarioCard:
+    """Describe a scenario in a few words."""
+    head = scenario.head
+    return ScenarioCard(
+        id=scenario.id,
+        title=head.title,
+        source=head.source,
+        summary=head.summary,
+        claim=head.claim,
+        verdict=head.verdict,
+        samples=scenario.samples,
+    )
+
+
+@router.get("")
+def list_scenarios() -> ScenarioList:
+    """List the library."""
+    return ScenarioList(scenarios=[card(scenario) for scenario in library()])
+
+
+@router.get("/{scenario_id}")
+def get_scenario(scenario_id: str) -> ScenarioText:
+    """Return a scenario of the library as a document and as TOML."""
+    if scenario_id not in {scenario.id for scenario in library()}:
+        raise not_found("scenario", scenario_id, "list them at /api/v1/scenarios")
+    scenario = get(scenario_id)
+    return ScenarioText(document=scenario.document, toml=scenario.toml())
+
+
+@router.post("/check")
+def check_scenario(body: ScenarioSource) -> ScenarioText:
+    """Check a scenario without running it; 422 says what is wrong with it."""
+    scenario = read_scenario(body.scenario)
+    try:
+        return ScenarioText(document=scenario.document, toml=scenario.toml())
+    except (TypeError, ValueError) as error:
+        raise ApiError(422, "invalid", f"the scenario cannot be written as TOML: {error}", "scenario") from None

@@ -1,0 +1,52 @@
+"""Snapshots: moments of a bench that can be gone back to."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
+from server.bench.status import Bench, Snapshot
+
+router = APIRouter(prefix="/benches/{bench_id}/snapshots", tags=["snapshots"], route_class=StrictRoute)
+
+
+class NewSnapshot(Body):
+    """What to call this moment."""
+
+    name: str = Field("", max_length=100)
+
+
+class SnapshotList(BaseModel):
+    """The moments kept, oldest first."""
+
+    snapshots: list[Snapshot]
+
+
+@router.post("", status_code=201, dependencies=[RateLimited])
+async def take_snapshot(
+    session: SessionDep, service: ServiceDep, caller: CallerDep, body: NewSnapshot | None = None
+) -> Snapshot:
+    """Keep this moment."""
+    name = body.name if body else ""
+    return await service.engine.call(session.take_snapshot, name, caller, service.settings.max_snapshots)
+
+
+@router.get("")
+async def list_snapshots(session: SessionDep) -> SnapshotList:
+    """List the moments kept."""
+    return SnapshotList(snapshots=[kept.snapshot for kept in list(session.snapshots.values())])
+
+
+@router.delete("/{snapshot_id}", status_code=204, dependencies=[RateLimited])
+async def delete_snapshot(snapshot_id: str, session: SessionDep, service: ServiceDep) -> None:
+    """Forget a moment."""
+    await service.engine.call(session.forget_snapshot, snapshot_id)
+
+
+@router.post("/{snapshot_id}/restore", dependencies=[RateLimited])
+async def restore_snapshot(snapshot_id: str, session: SessionDep, service: ServiceDep, caller: CallerDep) -> Bench:
+    """Go back to a moment; from there the bench computes the same bits again."""
+    await service.engine.call(session.restore, snapshot_id, caller)
+    return service.view(session)

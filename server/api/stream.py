@@ -1,0 +1,196 @@
+"""The stream of a bench: one WebSocket per page."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from typing import Any
+
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from pydantic import BaseModel, ValidationError
+
+from core.errors import InputError
+from server.api.bodies import strict_json
+from server.api.deps import SocketServiceDep, rate_limited
+from server.errors import ApiError, ErrorBody, body_of, clear_line
+from server.security.limits import Bucket
+from server.service import Service
+from server.stream.client import Client
+from server.stream.hub import CLOSE_FULL, CLOSE_NO_BENCH
+from server.stream.panel import Panel
+from server.stream.wire import (
+    CLIENT_MESSAGE,
+    MAX_PANELS,
+    MAX_POINTS,
+    SUBPROTOCOL,
+    Ack,
+    CommandMessage,
+    ErrorMessage,
+    Hello,
+    Rearm,
+    Reply,
+    Resume,
+    Subscribe,
+    Unsubscribe,
+)
+
+router = APIRouter(tags=["stream"])
+
+CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
+FLOOD_RATE, FLOOD_BURST = 500.0, 2000
+"""Messages of any kind; sixty frames a second need sixty acknowledgements."""
+
+
+@router.websocket("/benches/{bench_id}/stream")
+async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> None:
+    """Let a page watch and command a bench."""
+    offered = socket.scope["subprotocols"]
+    session = service.benches.find(bench_id)
+    refusal: tuple[int, str] | None = None
+    if SUBPROTOCOL not in offered:
+        refusal = (CLOSE_VERSION, f"this server speaks {SUBPROTOCOL}: reload the page")
+    elif session is None:
+        refusal = (CLOSE_NO_BENCH, "there is no such bench")
+    else:
+        try:
+            service.hub.check_room(bench_id)
+        except ApiError as error:
+            refusal = (CLOSE_FULL, error.body.message)
+    if refusal or session is None:
+        await socket.accept(subprotocol=next(iter(offered), None))
+        await socket.close(*(refusal or (CLOSE_NO_BENCH, "")))
+        return
+    await socket.accept(subprotocol=SUBPROTOCOL)
+    client = Client(socket, session, service.metrics, service.hub.describe)
+    service.hub.add(client)
+    hello = Hello(server=service.id, bench=service.view(session), last_event=session.events.last)
+    client.post(hello)
+    tasks = [asyncio.create_task(client.run()), asyncio.create_task(Conversation(client, service).run())]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        service.hub.remove(client)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        await _close(socket, client, service)
+
+
+async def _close(socket: WebSocket, client: Client, service: Service) -> None:
+    """Close with the reason; cut the line of one who does not even take that."""
+    code, reason = client.closing or (1000, "")
+    try:
+        async with asyncio.timeout(1.0):
+            await socket.close(code, reason)
+    except TimeoutError:
+        service.cut(socket)
+    except (RuntimeError, WebSocketDisconnect):
+        pass  # the other side has gone first
+
+
+class Conversation:
+    """The listening half of a stream: every message is answered, none can harm.
+
+    Parameters
+    ----------
+    client : Client
+        The sending half.
+    service : Service
+        Benches and limits.
+    """
+
+    def __init__(self, client: Client, service: Service) -> None:
+        self._client, self._service = client, service
+        settings = service.settings
+        self._messages = Bucket(FLOOD_RATE, FLOOD_BURST)
+        self._commands = Bucket(settings.command_rate_per_s, settings.command_burst)
+        self._subscribed: dict[int, int] = {}
+
+    async def run(self) -> None:
+        """Listen until the other side goes, or talks too much."""
+        while True:
+            message = await self._client.socket.receive()
+            if message["type"] == "websocket.disconnect":
+                return
+            if not self._messages.take():
+                self._service.metrics.streams_closed.labels("flooding").inc()
+                self._client.close(CLOSE_FLOOD, "too many messages")
+                return
+            await self._hear(message.get("text"))
+
+    async def _hear(self, text: str | None) -> None:
+        """Parse one message and do what it says, or say in one line why not."""
+        document: Any = None
+        try:
+            if text is None:
+                raise InputError("messages to the server are JSON text", code="malformed")
+            document = strict_json(text)
+            await self._do(CLIENT_MESSAGE.validate_python(document, strict=True))
+        except json.JSONDecodeError as error:
+            self._refuse(None, ErrorBody(code="malformed", message=f"not valid JSON: {error.msg}"))
+        except ValidationError as error:
+            self._refuse(document, _line(error))
+        except (InputError, ApiError) as error:
+            self._refuse(document, body_of(error))
+
+    async def _do(self, message: BaseModel) -> None:
+        """Do what a valid message says."""
+        client = self._client
+        if isinstance(message, Ack):
+            client.acknowledge(message.frame)
+        elif isinstance(message, CommandMessage):
+            await self._command(message)
+        elif isinstance(message, Subscribe):
+            self._subscribe(message)
+        elif isinstance(message, Unsubscribe):
+            client.panels.pop(message.panel, None)
+        elif isinstance(message, Rearm):
+            panel = client.panels.get(message.panel)
+            if panel is None:
+                raise InputError(f"panel {message.panel} is not subscribed", "panel")
+            panel.rearm(client.session.history.end_tick)
+            client.offer_frame()
+        elif isinstance(message, Resume):
+            client.resume(message.after)
+
+    async def _command(self, message: CommandMessage) -> None:
+        """Carry out a command and say at which tick."""
+        if not self._commands.take():
+            raise rate_limited(self._service.settings)
+        event = await self._service.benches.command(self._client.session, message.command, self._client.name)
+        self._client.post(Reply(id=message.id, ok=True, tick=event.tick))
+
+    def _subscribe(self, message: Subscribe) -> None:
+        """Show signals in a panel."""
+        client, session = self._client, self._client.session
+        indices = session.indices(message.signals)
+        trigger = None
+        if message.mode == "triggered" and message.trigger is not None:
+            (trigger,) = session.indices([message.trigger.signal])
+        others = [panel for number, panel in client.panels.items() if number != message.panel]
+        if len(others) >= MAX_PANELS:
+            raise InputError(f"{MAX_PANELS} panels are shown, the limit", "panel")
+        points = sum(panel.points for panel in others) + len(indices) * message.width
+        if points > MAX_POINTS:
+            raise InputError(f"all panels together have {points} points; at most {MAX_POINTS}", "width")
+        revision = self._subscribed[message.panel] = self._subscribed.get(message.panel, 0) + 1
+        client.panels[message.panel] = Panel(
+            message, indices, trigger, revision, session.dt_ms, session.history.end_tick
+        )
+        client.offer_frame()
+
+    def _refuse(self, document: Any, error: ErrorBody) -> None:
+        """Answer a command by its id, anything else by an error."""
+        is_command = isinstance(document, dict) and document.get("type") == "command"
+        command_id = document.get("id") if is_command else None
+        if isinstance(command_id, str) and len(command_id) <= 64:
+            self._client.post(Reply(id=command_id, ok=False, error=error))
+        else:
+            self._client.post(ErrorMessage(error=error))
+
+
+def _line(error: ValidationError) -> ErrorBody:
+    """Say what is wrong with a message; pydantic puts its type into the place, people do not."""
+    first: dict[str, Any] = {**error.errors(include_url=False)[0]}
+    first["loc"] = first["loc"][1:]
+    return clear_line([first])

@@ -1,0 +1,95 @@
+"""The trace of a live bench: columns for a picture, or every sample as a file."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel
+
+from core.errors import InputError
+from server.api.bodies import StrictRoute
+from server.api.deps import ServiceDep, SessionDep
+from server.api.files import table_response
+from server.bench.session import Session
+from server.errors import ApiError
+from server.store.traces import MEDIA_TYPES, Format, schema_of, table_of
+from server.stream.panel import Span
+from server.stream.wire import MAX_COLUMNS
+from server.version import VERSION
+
+router = APIRouter(prefix="/benches/{bench_id}/trace", tags=["trace"], route_class=StrictRoute)
+
+Tick = Annotated[int | None, Query(ge=-(2**53), le=2**53)]
+
+
+class Extremes(BaseModel):
+    """Smallest and largest value of every column; null where there is no data."""
+
+    min: list[float | None]
+    max: list[float | None]
+
+
+class Trace(BaseModel):
+    """Columns of equal width over a span."""
+
+    start_tick: int
+    end_tick: int
+    dt_ms: float
+    signals: dict[str, Extremes]
+
+
+@router.get(
+    "",
+    response_model=Trace,
+    responses={200: {"model": Trace, "content": {media: {} for media in MEDIA_TYPES.values()}}},
+)
+async def get_trace(
+    session: SessionDep,
+    service: ServiceDep,
+    signals: Annotated[str, Query(description="Names, separated by commas; all when empty", max_length=8000)] = "",
+    start_tick: Tick = None,
+    end_tick: Tick = None,
+    columns: Annotated[int, Query(ge=1, le=MAX_COLUMNS)] = 800,
+    kind: Annotated[Format | None, Query(alias="format", description="A file with every sample")] = None,
+) -> Response | Trace:
+    """Return a span of the past; the board does not stop for it."""
+    names = [name.strip() for name in signals.split(",") if name.strip()] or [s.name for s in session.signals]
+    indices = session.indices(names)
+    history = session.history
+    first, head = history.first_tick, history.end_tick
+    start = first if start_tick is None else start_tick
+    end = head if end_tick is None else end_tick
+    if end <= start:
+        raise InputError(f"the span from {start} to {end} is empty", "end_tick")
+    if kind is None:
+        span = Span.between(start, end, columns)
+        cut = await asyncio.to_thread(history.columns, indices, span.start, span.end, span.columns)
+        return Trace(
+            start_tick=span.start,
+            end_tick=span.end,
+            dt_ms=session.dt_ms,
+            signals={
+                name: Extremes(min=low.tolist(), max=high.tolist())
+                for name, (low, high) in zip(names, cut, strict=True)
+            },
+        )
+    start, end = max(start, first), min(end, head)
+    if end <= start:
+        raise InputError(f"nothing is kept of that span; the history has {first} to {head}", "start_tick")
+    if end - start > service.settings.max_trace_ticks:
+        most = service.settings.max_trace_ticks
+        raise ApiError(422, "too_long", f"{end - start} ticks; at most {most} at once", "end_tick")
+    table = await asyncio.to_thread(_table, session, names, indices, start, end)
+    return await table_response(table, f"{session.scenario.id}-{start}-{end}", kind)
+
+
+def _table(session: Session, names: list[str], indices: list[int], start: int, end: int) -> object:
+    """Read every sample of a span."""
+    samples = session.history.read(indices, start, end)
+    # What was overwritten while it was read is missing at the old end.
+    first = end - samples.shape[1]
+    units = {session.signals[index].name: session.signals[index].unit for index in indices}
+    about = {"version": VERSION, "scenario": session.scenario.document, "bench": session.id}
+    return table_of(schema_of({name: units[name] for name in names}, about), first, session.dt_ms, samples)

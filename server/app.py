@@ -1,0 +1,86 @@
+"""The application: routes, gate, one error shape, one service."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+from collections.abc import AsyncIterator
+
+from fastapi import FastAPI
+
+from server import errors, openapi
+from server.api import (
+    benches,
+    catalog,
+    health,
+    metrics,
+    recordings,
+    runs,
+    scenarios,
+    snapshots,
+    stream,
+    trace,
+)
+from server.page import Page
+from server.security.body import BodyLimit
+from server.security.gate import OPEN_PATHS, Gate
+from server.security.headers import SecurityHeaders
+from server.security.identity import Identity, token_of
+from server.security.origin import OriginPolicy
+from server.service import Service
+from server.settings import Settings
+from server.version import VERSION
+
+API = "/api/v1"
+ROUTERS = (catalog, scenarios, benches, snapshots, recordings, trace, runs, stream)
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """Build the application; nothing runs before its lifespan begins.
+
+    Parameters
+    ----------
+    settings : Settings
+        What to serve and how much of it.
+    """
+    service = Service(settings)
+    identity = Identity(settings.token.get_secret_value() if settings.token else token_of(settings.data))
+
+    @contextlib.asynccontextmanager
+    async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        async with service.running():
+            yield
+
+    app = FastAPI(
+        title="CombBench",
+        version=VERSION,
+        description="A live bench for MEMS lateral comb resonators.",
+        lifespan=lifespan,
+        openapi_url=f"{API}/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+    )
+    app.state.service, app.state.identity = service, identity
+    errors.install(app)
+    openapi.install(app)
+    for module in ROUTERS:
+        app.include_router(module.router, prefix=API)
+    for module in (health, metrics):
+        app.include_router(module.router)
+    if importlib.util.find_spec("server.view3d") is not None:
+        from server.view3d import proxy
+
+        app.include_router(proxy.router)
+    app.router.default = Page()
+    open_paths = OPEN_PATHS | {"/metrics"} if settings.metrics_open else OPEN_PATHS
+    # The last one added is the first one met.
+    app.add_middleware(BodyLimit, limit=settings.body_limit_bytes)
+    app.add_middleware(
+        Gate,
+        identity=identity,
+        origin=OriginPolicy(settings.host, settings.allowed_hosts),
+        open_paths=open_paths,
+    )
+    app.add_middleware(SecurityHeaders)
+    return app

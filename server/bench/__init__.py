@@ -1,0 +1,1 @@
+"""Live benches: one board each, all advanced by one engine thread."""

@@ -1,0 +1,101 @@
+"""Commands to a bench: those of the board, and those that run it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+
+from core.board.commands import KINDS as BOARD_KINDS
+from core.board.commands import Heal, Inject, ResetTrip, Set, Switch, parse_command
+from core.errors import InputError, from_validation, unknown
+
+DEFAULT_SCALE = 0.002
+MIN_SCALE, MAX_SCALE = 1e-6, 1.0
+MAX_STEP = 10_000
+
+
+class RunCommand(BaseModel):
+    """A command that runs the bench; it changes no bit of what the board computes."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class Start(RunCommand):
+    """Let time run."""
+
+    kind: Literal["start"] = "start"
+
+
+class Pause(RunCommand):
+    """Stop time at the next tick edge."""
+
+    kind: Literal["pause"] = "pause"
+
+
+class Step(RunCommand):
+    """Pause, then run some ticks at once."""
+
+    kind: Literal["step"] = "step"
+    ticks: int = Field(1, ge=1, le=MAX_STEP)
+
+
+class StepPeriod(RunCommand):
+    """Pause, then run one period of the drive at once."""
+
+    kind: Literal["step_period"] = "step_period"
+
+
+class Reset(RunCommand):
+    """Begin the scenario again at tick 0, with other values if some are given."""
+
+    kind: Literal["reset"] = "reset"
+    values: dict[str, Any] = Field({}, description="Dotted paths of the scenario; any field, live or not")
+
+
+class TimeScale(RunCommand):
+    """Change how fast device time runs."""
+
+    kind: Literal["time_scale"] = "time_scale"
+    value: float | None = Field(
+        ge=MIN_SCALE, le=MAX_SCALE, description="Device seconds per wall second; null: as fast as possible"
+    )
+
+
+RUN_KINDS: dict[str, type[RunCommand]] = {
+    "start": Start,
+    "pause": Pause,
+    "step": Step,
+    "step_period": StepPeriod,
+    "reset": Reset,
+    "time_scale": TimeScale,
+}
+
+
+def parse(document: Any) -> Any:
+    """Check a command of either sort.
+
+    Raises
+    ------
+    InputError
+        One line naming the field.
+    """
+    if not isinstance(document, dict):
+        raise InputError("a command must be an object with a kind", "command")
+    kind = document.get("kind")
+    if not isinstance(kind, str) or kind not in {**RUN_KINDS, **BOARD_KINDS}:
+        raise unknown("command", kind, [*RUN_KINDS, *BOARD_KINDS], "kind")
+    if kind in BOARD_KINDS:
+        return parse_command(document)
+    model = RUN_KINDS[kind]
+    try:
+        return model.model_validate(document)
+    except ValidationError as error:
+        raise from_validation(error, {"": list(model.model_fields)}) from None
+
+
+Command = Annotated[
+    Start | Pause | Step | StepPeriod | Reset | TimeScale | Inject | Heal | Set | Switch | ResetTrip,
+    BeforeValidator(parse),
+]
+"""In a model or a route: parsed by `parse`, described by the union."""

@@ -1,0 +1,206 @@
+"""The engine: one thread that advances every bench and is the only one to touch a board.
+
+The event loop owns the conversation, the engine owns time: a busy loop or a slow client delays frames,
+never a board. Whatever must happen to a board (a command, a snapshot, a new bench) is a job, run between two
+slices; the loop awaits its result.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, Protocol, TypeVar
+
+from server.metrics import Metrics
+
+log = logging.getLogger(__name__)
+T = TypeVar("T")
+
+PERIOD_S = 1.0 / 120.0
+"""Two rounds per screen frame."""
+
+LATE_S = 0.1
+"""A round this late is logged."""
+
+SPARE_S = 0.001
+"""Left of every round for the rest of the process when a bench runs as fast as possible."""
+
+
+class Workload(Protocol):
+    """What the engine needs of a live bench."""
+
+    id: str
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it wants to advance."""
+
+    def target(self, now: float) -> int | None:
+        """Return the tick to reach in this round; none: no limit."""
+
+    def slice(self, target: int | None) -> bool:
+        """Advance by one slice of at most 5 ms; true while the target is not reached."""
+
+    def finish_round(self, target: int | None, now: float) -> None:
+        """Account for the round."""
+
+    def fail(self, error: Exception) -> None:
+        """Stop after an error nobody expected."""
+
+
+class Engine:
+    """Advances benches on absolute deadlines.
+
+    Parameters
+    ----------
+    metrics : Metrics
+        Where lateness and rounds are counted.
+    on_round : callable
+        Called on the engine thread after every round and after every batch of jobs.
+    clock : callable
+        Monotonic seconds.
+    """
+
+    def __init__(
+        self,
+        metrics: Metrics,
+        on_round: Callable[[], None],
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self._metrics, self._on_round, self.clock = metrics, on_round, clock
+        self._work: dict[str, Workload] = {}
+        self._jobs: deque[Callable[[], None]] = deque()
+        self._wake = threading.Condition()
+        self._stopping = False
+        self._thread = threading.Thread(target=self._run, name="combbench-engine", daemon=True)
+        self._beat = clock()
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread after the slice in hand; jobs still waiting are done first."""
+        with self._wake:
+            self._stopping = True
+            self._wake.notify()
+        self._thread.join(timeout=5.0)
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the thread turns: it wakes at least once a second."""
+        return self._thread.is_alive() and self.clock() - self._beat < 3.0
+
+    async def call(self, function: Callable[..., T], *arguments: Any) -> T:
+        """Run a function between two slices and return its result.
+
+        Raises
+        ------
+        Exception
+            Whatever the function raises.
+        """
+        return await asyncio.wrap_future(self.submit(function, *arguments))
+
+    def submit(self, function: Callable[..., T], *arguments: Any) -> Future[T]:
+        """Queue a function to run between two slices."""
+        future: Future[T] = Future()
+
+        def job() -> None:
+            if not future.set_running_or_notify_cancel():
+                return
+            try:
+                future.set_result(function(*arguments))
+            except Exception as error:
+                future.set_exception(error)
+
+        with self._wake:
+            if self._stopping:
+                raise RuntimeError("the engine has stopped")
+            self._jobs.append(job)
+            self._wake.notify()
+        return future
+
+    def add(self, workload: Workload) -> None:
+        """Take a bench in (a job)."""
+        self._work[workload.id] = workload
+
+    def remove(self, workload_id: str) -> None:
+        """Let a bench go (a job)."""
+        self._work.pop(workload_id, None)
+
+    def _run(self) -> None:
+        """Wait for a deadline or a job, do it, again."""
+        deadline = self.clock()
+        while True:
+            running = any(work.is_running for work in self._work.values())
+            stopping = self._wait(deadline if running else None)
+            self._beat = self.clock()
+            if self._run_jobs():
+                self._on_round()
+            if stopping:
+                return
+            now = self.clock()
+            if not running:
+                deadline = now
+            elif now >= deadline:
+                self._metrics.wake_lateness.observe(now - deadline)
+                if now - deadline > LATE_S:
+                    log.warning("the engine woke %.0f ms late", 1e3 * (now - deadline))
+                self._round(now, deadline + PERIOD_S)
+                self._on_round()
+                deadline += PERIOD_S
+                if deadline < self.clock() - PERIOD_S:
+                    deadline = self.clock()
+
+    def _wait(self, deadline: float | None) -> bool:
+        """Sleep until the deadline, a job or the end."""
+        with self._wake:
+            if not self._jobs and not self._stopping:
+                pause = 1.0 if deadline is None else deadline - self.clock()
+                if pause > 0:
+                    self._wake.wait(pause)
+            return self._stopping
+
+    def _run_jobs(self) -> bool:
+        """Run every job that waits; true if there was one."""
+        done = False
+        while self._jobs:
+            self._jobs.popleft()()
+            done = True
+        return done
+
+    def _round(self, now: float, end: float) -> None:
+        """Bring every paced bench to its target, slice by slice in turn, then spend the rest on free ones."""
+        targets = [(work, work.target(now)) for work in self._work.values() if work.is_running]
+        paced = [pair for pair in targets if pair[1] is not None]
+        free = [pair for pair in targets if pair[1] is None]
+        self._turns(paced, end)
+        self._turns(free, end - SPARE_S)
+        done = self.clock()
+        for work, target in targets:
+            work.finish_round(target, done)
+        self._metrics.round_seconds.observe(done - now)
+
+    def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> None:
+        """Give each bench one slice in turn until all are there or the round is over."""
+        while pairs:
+            pairs = [(work, target) for work, target in pairs if self._slice(work, target)]
+            self._run_jobs()
+            if self.clock() >= end:
+                return
+
+    def _slice(self, work: Workload, target: int | None) -> bool:
+        """Advance one bench; an unexpected error stops that bench alone."""
+        if not work.is_running:
+            return False
+        try:
+            return work.slice(target)
+        except Exception as error:
+            log.exception("bench %s failed", work.id)
+            work.fail(error)
+            return False

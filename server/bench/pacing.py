@@ -1,0 +1,102 @@
+"""How far a bench should be: integer sample targets on an absolute clock, nothing silently slow."""
+
+from __future__ import annotations
+
+from collections import deque
+
+CATCH_UP_S = 0.05
+"""Wall time a bench may be behind; beyond it time is given up, counted and shown."""
+
+WINDOW_S = 1.0
+"""Wall time over which the achieved rate is measured."""
+
+CAPPED_BELOW = 0.98
+
+
+class Pacer:
+    """Turns wall time into a tick to reach.
+
+    The target is the integer part of ``(now - anchor) * rate`` and never a sum of steps, so it does not
+    drift. What lies more than `CATCH_UP_S` behind is given up: the anchor moves, the loss is counted.
+
+    Parameters
+    ----------
+    dt_s : float
+        Device time of one tick.
+    scale : float or None
+        Device seconds per wall second; none runs as fast as possible.
+    """
+
+    def __init__(self, dt_s: float, scale: float | None) -> None:
+        self._dt_s = dt_s
+        self._scale = scale
+        self._wall = 0.0
+        self._tick = 0
+        self._due = 0
+        self._seen: deque[tuple[float, int, int]] = deque()
+        self.given_up_s = 0.0
+        self.overruns = 0
+
+    @property
+    def scale(self) -> float | None:
+        """Device seconds per wall second; none is as fast as possible."""
+        return self._scale
+
+    def anchor(self, tick: int, now: float) -> None:
+        """Start counting here: after a start, a pause, a step, a restore."""
+        self._wall, self._tick, self._due = now, tick, 0
+        self._seen.clear()
+        self._seen.append((now, tick, tick))
+
+    def rescale(self, scale: float | None, tick: int, now: float) -> None:
+        """Change the time scale from here on."""
+        self._scale = scale
+        self.anchor(tick, now)
+
+    def target(self, tick: int, now: float) -> int | None:
+        """Return the tick to reach by now, or none when there is no limit.
+
+        Parameters
+        ----------
+        tick : int
+            Where the bench is.
+        now : float
+            Wall clock in seconds.
+        """
+        if self._scale is None:
+            return None
+        rate = self._scale / self._dt_s
+        target = self._tick + int((now - self._wall) * rate)
+        excess = target - tick - max(1, int(CATCH_UP_S * rate))
+        if excess > 0:
+            self._wall += excess / rate
+            self._due += excess
+            self.given_up_s += excess / rate
+            target -= excess
+        return target
+
+    def record(self, tick: int, target: int | None, now: float) -> None:
+        """Note what a round of work achieved."""
+        if target is not None and tick < target:
+            self.overruns += 1
+        due = self._due + (target if target is not None else tick)
+        self._seen.append((now, tick, due))
+        while len(self._seen) > 2 and now - self._seen[1][0] >= WINDOW_S:
+            self._seen.popleft()
+
+    @property
+    def achieved(self) -> float:
+        """Device seconds per wall second over the last second."""
+        if len(self._seen) < 2:
+            return self._scale or 0.0
+        (wall_0, tick_0, due_0), (wall_1, tick_1, due_1) = self._seen[0], self._seen[-1]
+        if self._scale is None:
+            elapsed = wall_1 - wall_0
+            return (tick_1 - tick_0) * self._dt_s / elapsed if elapsed > 0 else 0.0
+        # Against the ticks due, not against the clock: at 1 us/s a second holds less than one tick.
+        return self._scale * (tick_1 - tick_0) / (due_1 - due_0) if due_1 > due_0 else self._scale
+
+    @property
+    def capped(self) -> bool:
+        """Whether the machine cannot keep up."""
+        return self._scale is not None and self.achieved < CAPPED_BELOW * self._scale

@@ -1,0 +1,91 @@
+"""A bench as the API shows it: what stays, and what changes."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, Field
+
+from core.board.commands import Trip
+from core.board.score import Scores
+from core.signals import Signal
+
+State = Literal["running", "paused", "tripped"]
+
+
+class ActiveFault(BaseModel):
+    """A fault on the device now."""
+
+    name: str
+    severity: float
+    profile: dict[str, Any]
+    since_tick: int
+
+
+class Pending(BaseModel):
+    """A command that waits for its moment."""
+
+    text: str
+    actor: str
+    tick: int | None
+    when: str | None
+
+
+class Snapshot(BaseModel):
+    """A moment that can be gone back to."""
+
+    id: str
+    tick: int
+    name: str
+    created: datetime
+
+
+class BenchStatus(BaseModel):
+    """The changing part of a bench."""
+
+    state: State
+    tick: int = Field(description="The next tick to be computed")
+    first_tick: int = Field(description="The oldest tick of the history")
+    time_scale: float | None = Field(description="Device seconds per wall second wanted; null: no limit")
+    achieved_scale: float = Field(description="Device seconds per wall second over the last second")
+    capped: bool = Field(description="The machine cannot keep up")
+    overruns: int = Field(description="Rounds that missed their target")
+    given_up_ms: float = Field(description="Wall time given up catching up")
+    controller: str
+    faults: list[ActiveFault]
+    pending: list[Pending] = Field(description="Commands that wait for their moment")
+    trip: Trip | None
+    scores: dict[str, Scores] = Field(description="Of each diagnoser, against the truth the bench knows")
+    last_event: int
+    recording: list[str] = Field(description="Recordings under way")
+    watchers: int = 0
+    loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")
+
+
+class DiagnoserInfo(BaseModel):
+    """The hypotheses of a diagnoser, in the order of its indices."""
+
+    kind: str
+    names: list[str]
+
+
+class Bench(BenchStatus):
+    """A live bench."""
+
+    id: str
+    title: str
+    scenario_id: str
+    source: str
+    created: datetime
+    seed: int
+    dt_ms: float
+    sample_rate_khz: float
+    samples: int | None = Field(description="Where the scenario ends; the bench pauses there once")
+    drive_period_ticks: float | None
+    history_ticks: int
+    signals: list[Signal]
+    controllers: list[str]
+    diagnosers: dict[str, DiagnoserInfo]
+    parameters: dict[str, Any] = Field(description="The scenario as it is now, every live change in it")
+    view3d: str | None = Field(description="Path of the 3D page, if there is one")

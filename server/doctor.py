@@ -1,0 +1,60 @@
+"""What `combbench doctor` tells: settings and their sources, versions, caches."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+
+from scenarios.kernel_cache import core_hash, folder
+from server.page import DIST
+from server.security.identity import TOKEN_FILE
+from server.settings import describe_settings, load_settings
+from server.version import VERSION
+
+PACKAGES = ("numpy", "scipy", "numba", "pydantic", "fastapi", "uvicorn", "websockets", "sqlalchemy", "viser")
+
+
+def examine() -> dict[str, dict[str, str]]:
+    """Return the report: title to name to text.
+
+    Raises
+    ------
+    InputError
+        If the settings themselves are not valid.
+    """
+    settings = load_settings()
+    kernels = folder()
+    compiled = sum(1 for _ in kernels.rglob("*.nbc")) if kernels else 0
+    token = "from the settings" if settings.token else str(settings.data / TOKEN_FILE)
+    return {
+        "settings": {row.name: f"{row.value}  ({row.source})" for row in describe_settings(settings)},
+        "versions": {
+            "combbench": VERSION,
+            "python": platform.python_version(),
+            **{name: _version(name) for name in PACKAGES},
+        },
+        "state": {
+            "core": core_hash(),
+            "kernel cache": f"{kernels}, {compiled} kernels" if kernels else "no writable folder",
+            "page": "built" if (DIST / "index.html").is_file() else "not built: make setup",
+            "data folder": "can be written" if _can_write(settings.data) else "cannot be written",
+            "access token": token,
+        },
+    }
+
+
+def _version(package: str) -> str:
+    """Return the installed version."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _can_write(path: os.PathLike[str]) -> bool:
+    """Whether a folder can be written, or made."""
+    place = os.path.abspath(path)
+    while not os.path.exists(place):
+        place = os.path.dirname(place)
+    return os.access(place, os.W_OK)

@@ -1,0 +1,157 @@
+"""One error shape for everything the service refuses."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+
+from core.errors import InputError
+
+log = logging.getLogger(__name__)
+
+
+class ErrorBody(BaseModel):
+    """What went wrong, in one line; which field; what to do."""
+
+    code: str
+    message: str
+    field: str = ""
+    hint: str = ""
+
+
+class ErrorReply(BaseModel):
+    """The one error shape of every answer."""
+
+    error: ErrorBody
+
+
+class ApiError(HTTPException):
+    """A refusal with its HTTP status.
+
+    Parameters
+    ----------
+    status : int
+        HTTP status.
+    code : str
+        Short word a program can test for.
+    message : str
+        One line for a person.
+    field, hint : str
+        The field at fault; what to do about it.
+    headers : mapping, optional
+        Further response headers.
+    """
+
+    def __init__(
+        self,
+        status: int,
+        code: str,
+        message: str,
+        field: str = "",
+        hint: str = "",
+        headers: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__(status, message, dict(headers or {}))
+        self.body = ErrorBody(code=code, message=message, field=field, hint=hint)
+
+
+def not_found(noun: str, name: str, hint: str = "") -> ApiError:
+    """Refuse a name that stands for nothing."""
+    return ApiError(404, "not_found", f"there is no {noun} '{name}'", hint=hint)
+
+
+def body_of(error: Exception) -> ErrorBody:
+    """Put any refusal into the one shape."""
+    if isinstance(error, ApiError):
+        return error.body
+    if isinstance(error, InputError):
+        return ErrorBody(**error.as_dict())
+    raise TypeError(f"not a refusal: {error!r}")
+
+
+def reply(status: int, body: ErrorBody, headers: Mapping[str, str] | None = None) -> JSONResponse:
+    """Build the error response."""
+    return JSONResponse(ErrorReply(error=body).model_dump(), status, headers=dict(headers or {}))
+
+
+def clear_line(errors: Sequence[Any]) -> ErrorBody:
+    """Say in one line what the first of pydantic's complaints means.
+
+    Parameters
+    ----------
+    errors : sequence of dict
+        ``ValidationError.errors()``.
+    """
+    first = errors[0]
+    kind = str(first["type"])
+    if kind == "json_invalid":
+        reason = first.get("ctx", {}).get("error", first["msg"])
+        return ErrorBody(code="malformed", message=f"the body is not valid JSON: {reason}")
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        return body_of(cause)
+    where = [part for part in first["loc"] if part not in ("body", "query", "path")]
+    field = ".".join(str(part) for part in where)
+    code = "unknown_field" if kind == "extra_forbidden" else "invalid"
+    if not field and kind in ("missing", "model_attributes_type", "dict_type"):
+        hint = "send JSON with the header Content-Type: application/json"
+        return ErrorBody(code=code, message="the body must be a JSON object", hint=hint)
+    return ErrorBody(code=code, message=f"{field or 'body'}: {_reason(first)}", field=field)
+
+
+def _reason(error: Any) -> str:
+    """Word one pydantic complaint."""
+    kind, given = str(error["type"]), error.get("input")
+    if kind == "extra_forbidden":
+        return "unknown field"
+    if kind == "missing":
+        return "is required"
+    if kind.startswith("union_tag"):
+        context = error.get("ctx", {})
+        allowed = context.get("expected_tags")
+        tag = context.get("discriminator", "kind")
+        return f"needs {tag} to be one of {allowed}" if allowed else f"needs {tag}"
+    text = str(error["msg"])
+    text = text.removeprefix("Input ").removeprefix("Value error, ")
+    shown: Any = given if isinstance(given, bool | int | float) else None
+    if isinstance(given, str) and len(given) <= 40:
+        shown = repr(given)
+    return f"{text} (got {shown})" if shown is not None else text
+
+
+def install(app: FastAPI) -> None:
+    """Answer every failure of ``app`` in the one shape."""
+
+    @app.exception_handler(ApiError)
+    async def _(_request: Request, error: ApiError) -> JSONResponse:
+        return reply(error.status_code, error.body, error.headers)
+
+    @app.exception_handler(InputError)
+    async def _(_request: Request, error: InputError) -> JSONResponse:
+        return reply(422, body_of(error))
+
+    @app.exception_handler(RequestValidationError)
+    async def _(_request: Request, error: RequestValidationError) -> JSONResponse:
+        body = clear_line(error.errors())
+        return reply(400 if body.code == "malformed" else 422, body)
+
+    @app.exception_handler(HTTPException)
+    async def _(request: Request, error: HTTPException) -> JSONResponse:
+        phrase = HTTPStatus(error.status_code).phrase
+        code = phrase.lower().replace(" ", "_")
+        message = f"{phrase.lower()}: {request.method} {request.url.path}"
+        return reply(error.status_code, ErrorBody(code=code, message=message), error.headers)
+
+    @app.exception_handler(Exception)
+    async def _(request: Request, error: Exception) -> JSONResponse:
+        log.error("unhandled error in %s %s", request.method, request.url.path, exc_info=error)
+        body = ErrorBody(code="internal", message="the server failed on this request; its log says why")
+        return reply(500, body)

@@ -1,0 +1,1 @@
+"""Headless runs beside the live benches, in a process of their own."""

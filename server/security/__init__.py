@@ -1,0 +1,1 @@
+"""Who may speak to the bench, from where, and how much."""

@@ -1,0 +1,73 @@
+"""Who is asking: one access token, shown once in the address, then a cookie."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import os
+import secrets
+from pathlib import Path
+
+from starlette.requests import HTTPConnection
+
+COOKIE = "combbench"
+TOKEN_FILE = "token"
+
+
+class Identity:
+    """Checks callers against the access token.
+
+    The cookie carries a digest of the token, never the token; both are compared in constant time.
+
+    Parameters
+    ----------
+    token : str
+        The access token.
+    """
+
+    def __init__(self, token: str) -> None:
+        self._token = token.encode()
+        self.cookie = hmac.new(self._token, b"combbench session", hashlib.sha256).hexdigest()
+
+    @property
+    def token(self) -> str:
+        """The token, for the address printed at the start."""
+        return self._token.decode()
+
+    def is_token(self, given: str) -> bool:
+        """Whether ``given`` is the token."""
+        return hmac.compare_digest(given.encode(), self._token)
+
+    def has_bearer(self, connection: HTTPConnection) -> bool:
+        """Whether the caller sent the token as a bearer."""
+        scheme, _, value = connection.headers.get("authorization", "").partition(" ")
+        return scheme.lower() == "bearer" and self.is_token(value.strip())
+
+    def has_cookie(self, connection: HTTPConnection) -> bool:
+        """Whether the caller sent our cookie."""
+        given = connection.cookies.get(COOKIE, "")
+        return hmac.compare_digest(given.encode(), self.cookie.encode())
+
+    def knows(self, connection: HTTPConnection) -> bool:
+        """Whether the caller may come in."""
+        return self.has_bearer(connection) or self.has_cookie(connection)
+
+
+def token_of(data: Path) -> str:
+    """Return the token kept in the data folder; made there on the first start.
+
+    It survives restarts, so that an open page finds its way back; only the owner may read the file.
+    """
+    path = data / TOKEN_FILE
+    try:
+        kept = path.read_text().strip()
+    except FileNotFoundError:
+        kept = ""
+    if len(kept) >= 32:
+        return kept
+    token = secrets.token_urlsafe(32)
+    data.mkdir(parents=True, exist_ok=True)
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    with os.fdopen(descriptor, "w") as file:
+        file.write(token + "\n")
+    return token

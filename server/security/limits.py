@@ -1,0 +1,59 @@
+"""How much one caller may ask: token buckets."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+
+
+class Bucket:
+    """A token bucket: ``rate`` per second on average, ``burst`` at once.
+
+    Parameters
+    ----------
+    rate : float
+        Tokens gained per second.
+    burst : float
+        Most tokens held.
+    clock : callable
+        Seconds.
+    """
+
+    def __init__(self, rate: float, burst: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._rate, self._burst, self._clock = rate, burst, clock
+        self._tokens, self._at = burst, clock()
+
+    def take(self) -> bool:
+        """Take one token if there is one."""
+        now = self._clock()
+        self._tokens = min(self._burst, self._tokens + (now - self._at) * self._rate)
+        self._at = now
+        if self._tokens < 1.0:
+            return False
+        self._tokens -= 1.0
+        return True
+
+
+class Buckets:
+    """One bucket per caller, the longest unused forgotten first.
+
+    Parameters
+    ----------
+    rate, burst : float
+        Of every bucket.
+    most : int
+        Callers remembered.
+    """
+
+    def __init__(self, rate: float, burst: float, most: int = 1024) -> None:
+        self._rate, self._burst, self._most = rate, burst, most
+        self._buckets: OrderedDict[str, Bucket] = OrderedDict()
+
+    def take(self, caller: str) -> bool:
+        """Take one token of ``caller``."""
+        bucket = self._buckets.pop(caller, None) or Bucket(self._rate, self._burst)
+        self._buckets[caller] = bucket
+        if len(self._buckets) > self._most:
+            self._buckets.popitem(last=False)
+        return bucket.take()

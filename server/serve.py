@@ -1,0 +1,154 @@
+"""Serves the application: binds, prints the address to open, runs until told to stop."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+import sys
+import webbrowser
+
+import uvicorn
+from fastapi import FastAPI
+from starlette.requests import HTTPConnection
+
+from core.errors import InputError
+from server import logs
+from server.app import create_app
+from server.service import Service
+from server.settings import Settings
+
+log = logging.getLogger(__name__)
+
+MIN_TOKEN = 16
+GRACE_S = 6
+
+
+class Server(uvicorn.Server):
+    """uvicorn that says goodbye: pages are told before their sockets close.
+
+    Parameters
+    ----------
+    config : uvicorn.Config
+        As for uvicorn.
+    service : Service
+        Whose streams to close.
+    on_ready : callable, optional
+        Called once requests are answered.
+    """
+
+    def __init__(self, config: uvicorn.Config, service: Service, address: str = "") -> None:
+        super().__init__(config)
+        self._service, self._address = service, address
+        service.cut = self.cut
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start, then say where."""
+        await super().startup(sockets)
+        if self.started and self._address:
+            sys.stdout.write(f"CombBench is at {self._address}\n")
+            sys.stdout.flush()
+            if self._service.settings.open_page:
+                await asyncio.to_thread(webbrowser.open, self._address)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Tell the pages, then close."""
+        await self._service.farewell()
+        await super().shutdown(sockets)
+
+    def cut(self, connection: HTTPConnection) -> None:
+        """Cut the line of a client that takes not even a close."""
+        for protocol in list(self.server_state.connections):
+            if getattr(protocol, "client", None) == connection.scope.get("client"):
+                protocol.transport.abort()
+
+
+def check_binding(settings: Settings) -> None:
+    """Refuse to be reachable from other machines without a token somebody chose.
+
+    Raises
+    ------
+    InputError
+        Saying what to set.
+    """
+    token = settings.token.get_secret_value() if settings.token else ""
+    if settings.token is not None and len(token) < MIN_TOKEN:
+        raise InputError(f"must have at least {MIN_TOKEN} characters", "token")
+    if not settings.is_loopback and not token:
+        raise InputError(
+            f"{settings.host} can be reached from other machines, which needs an access token",
+            "host",
+            f"set COMBBENCH_TOKEN to {MIN_TOKEN} characters or more, or listen on 127.0.0.1",
+        )
+
+
+def bind(settings: Settings) -> socket.socket:
+    """Open the listening socket.
+
+    Raises
+    ------
+    InputError
+        If the address cannot be had.
+    """
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    # Frames wait in our one slot, not in a kernel buffer where they grow old.
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 256 << 10)
+    try:
+        listener.bind((settings.host, settings.port))
+        listener.listen(1024)
+    except OSError as error:
+        listener.close()
+        text = f"cannot listen on {settings.host}:{settings.port}: {error.strerror or error}"
+        raise InputError(text, "port", "another server may be running; choose another --port") from None
+    return listener
+
+
+def make_server(settings: Settings, app: FastAPI, address: str = "") -> Server:
+    """Configure uvicorn: one process owns the boards, so there is one worker."""
+    config = uvicorn.Config(
+        app,
+        loop="uvloop",
+        http="httptools",
+        ws="websockets-sansio",
+        ws_max_size=settings.message_limit_bytes,
+        ws_per_message_deflate=False,
+        ws_ping_interval=20.0,
+        ws_ping_timeout=20.0,
+        limit_concurrency=settings.max_clients + 256,
+        timeout_graceful_shutdown=GRACE_S,
+        timeout_keep_alive=30,
+        server_header=False,
+        access_log=False,
+        log_config=None,
+        proxy_headers=False,
+    )
+    return Server(config, app.state.service, address)
+
+
+def serve(settings: Settings) -> None:
+    """Serve until SIGINT or SIGTERM.
+
+    Raises
+    ------
+    InputError
+        If the settings do not allow it; the caller says so and exits with 2.
+    """
+    check_binding(settings)
+    logs.configure(settings)
+    listener = bind(settings)
+    try:
+        settings.data.mkdir(parents=True, exist_ok=True)
+        app = create_app(settings)
+    except OSError as error:
+        listener.close()
+        raise InputError(f"the data folder {settings.data} cannot be used: {error.strerror}", "data") from None
+    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else host
+    port = listener.getsockname()[1]
+    address = f"http://{shown}:{port}/?token={app.state.identity.token}"
+    server = make_server(settings, app, address)
+    server.run(sockets=[listener])
+    if not server.started:
+        raise InputError("the service did not start; the lines above say why", "serve")

@@ -1,0 +1,127 @@
+"""The running service: everything one application owns, from start to stop."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import importlib.util
+import logging
+import secrets
+from collections.abc import AsyncIterator, Callable
+from typing import TYPE_CHECKING
+
+from starlette.requests import HTTPConnection
+
+from core.board.history import History
+from scenarios.library import library
+from scenarios.run import build
+from server.bench.benches import Benches
+from server.bench.engine import Engine
+from server.bench.session import Session
+from server.bench.status import Bench
+from server.lag import LagProbe
+from server.metrics import Metrics
+from server.runs.jobs import Jobs
+from server.security.limits import Buckets
+from server.settings import Settings
+from server.store.database import Database
+from server.store.recordings import Recordings
+from server.stream.hub import Hub
+
+if TYPE_CHECKING:
+    from server.view3d.theatre import Theatre
+
+log = logging.getLogger(__name__)
+
+
+class Service:
+    """Engine, benches, streams, store and runs of one application.
+
+    Parameters
+    ----------
+    settings : Settings
+        Limits and places.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.id = secrets.token_hex(8)
+        self.metrics = Metrics()
+        self.lag = LagProbe(self.metrics)
+        self.hub = Hub(settings, self.metrics, self.lag)
+        self.engine = Engine(self.metrics, self._after_round)
+        self.database = Database(settings.data / "combbench.sqlite3")
+        self.recordings = Recordings(self.database, settings.data / "recordings")
+        self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
+        self.jobs = Jobs(self.database, settings, self.metrics)
+        self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
+        self.theatre = _theatre()
+        self.is_ready = self.has_kernels = False
+        self.cut: Callable[[HTTPConnection], None] = lambda _connection: None
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    @contextlib.asynccontextmanager
+    async def running(self) -> AsyncIterator[None]:
+        """Start everything, and stop it in the opposite order."""
+        self._loop = asyncio.get_running_loop()
+        await asyncio.to_thread(self.database.migrate)
+        await self.recordings.recover()
+        await self.jobs.recover()
+        self.engine.start()
+        await asyncio.to_thread(warm_up)
+        self.has_kernels = True
+        tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(self.lag.run())]
+        self.is_ready = True
+        try:
+            yield
+        finally:
+            self.is_ready = False
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            if self.theatre is not None:
+                await self.theatre.close()
+            await self.jobs.close()
+            await self.benches.close()
+            await asyncio.to_thread(self.engine.stop)
+            await asyncio.to_thread(self.database.close)
+
+    def view(self, session: Session) -> Bench:
+        """Describe a bench in full."""
+        view3d = f"/benches/{session.id}/3d/" if self.theatre is not None else None
+        return session.view(self.hub.watchers(session.id), self.lag.p99_ms(), view3d)
+
+    async def close_bench(self, session: Session) -> None:
+        """Close a bench and everything that shows it."""
+        await self.benches.close_bench(session)
+        self.hub.close_bench(session.id)
+        if self.theatre is not None:
+            await self.theatre.drop(session.id)
+
+    async def farewell(self) -> None:
+        """Tell every page that the server goes, and close its stream."""
+        self.hub.close_all("the server is stopping")
+        await asyncio.sleep(0.1)
+
+    def _after_round(self) -> None:
+        """Let the loop publish what the engine did; called on the engine thread."""
+        loop = self._loop
+        if loop is not None:
+            with contextlib.suppress(RuntimeError):  # the loop may be closing
+                loop.call_soon_threadsafe(self.hub.publish)
+
+
+def warm_up() -> None:
+    """Load the compiled kernels (or compile them) and compute one tick with them, before anyone waits."""
+    for scenario in library():
+        History(1, 1).columns([0], 0, 1, 1)
+        build(scenario).advance(1)
+
+
+def _theatre() -> Theatre | None:
+    """Return the 3D views, if their folder is there."""
+    if importlib.util.find_spec("server.view3d") is None:
+        return None
+    from server.view3d.theatre import Theatre
+
+    return Theatre()

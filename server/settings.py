@@ -1,0 +1,146 @@
+"""Settings of the service: one model, four sources, every value explained."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from dataclasses import dataclass
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, SecretStr, ValidationError
+from pydantic_settings import (
+    BaseSettings,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+    TomlConfigSettingsSource,
+)
+
+from core.errors import InputError
+
+CONFIG_FILE = Path("combbench.toml")
+PREFIX = "COMBBENCH_"
+
+
+class Settings(BaseSettings):
+    """Everything the service can be told; command line > environment > combbench.toml > default."""
+
+    model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", toml_file=CONFIG_FILE)
+
+    host: str = Field("127.0.0.1", description="Address to listen on; anything but loopback needs a token.")
+    port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 picks a free one.")
+    data: Path = Field(Path("data"), description="Folder for the database, recordings and run results.")
+    token: SecretStr | None = Field(None, description="Access token; made and kept in the data folder if unset.")
+    allowed_hosts: list[str] = Field([], description="Further host names the page may be opened under.")
+    metrics_open: bool = Field(False, description="Serve /metrics without a token.")
+    open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
+
+    max_benches: int = Field(16, ge=1, le=256, description="Live benches at once.")
+    max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
+    max_clients_per_bench: int = Field(256, ge=1, description="Open streams of one bench.")
+    max_snapshots: int = Field(32, ge=1, description="Snapshots kept per bench.")
+    max_queued_runs: int = Field(64, ge=1, description="Headless runs waiting or running.")
+    max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
+    max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
+    max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
+    max_trace_ticks: int = Field(200_000, ge=1, description="Ticks of one full-rate trace download.")
+    history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for.")
+
+    body_limit_bytes: int = Field(1 << 20, ge=1024, description="Largest request body.")
+    message_limit_bytes: int = Field(64 << 10, ge=1024, description="Largest WebSocket message of a client.")
+    command_rate_per_s: float = Field(20.0, gt=0, description="Commands per second one client may keep up.")
+    command_burst: int = Field(40, ge=1, description="Commands one client may send at once.")
+    frame_rate_hz: float = Field(60.0, gt=0, le=120, description="Frames per second of a stream.")
+
+    run_workers: int = Field(1, ge=0, le=64, description="Processes for headless runs; 0 refuses them.")
+    log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
+    log_level: str = Field("INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe line logged.")
+
+    @property
+    def is_loopback(self) -> bool:
+        """Whether only this machine can reach the service."""
+        if self.host == "localhost":
+            return True
+        try:
+            return ip_address(self.host).is_loopback
+        except ValueError:
+            return False
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,  # noqa: ARG003
+        file_secret_settings: PydanticBaseSettingsSource,  # noqa: ARG003
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Order the sources; no .env file, no secrets folder."""
+        return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, CONFIG_FILE)
+
+
+@dataclass(frozen=True)
+class EffectiveSetting:
+    """One setting as it is in force, and where it comes from."""
+
+    name: str
+    value: str
+    source: str
+    meaning: str
+
+
+def load_settings(**given: Any) -> Settings:
+    """Read the settings, with the values given on the command line on top.
+
+    Parameters
+    ----------
+    **given
+        Values by field name; ``None`` means "not given".
+
+    Raises
+    ------
+    InputError
+        One line naming the setting and its source.
+    """
+    told = {name: value for name, value in given.items() if value is not None}
+    try:
+        return Settings(**told)
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = str(first["loc"][0]) if first["loc"] else ""
+        if first["type"] == "extra_forbidden":
+            raise InputError(f"unknown setting '{name}' in {CONFIG_FILE}", field=name) from None
+        source = _source(name, told, _file_values())
+        raise InputError(f"setting '{name}' from {source}: {first['msg'].lower()}", field=name) from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{CONFIG_FILE} is not valid TOML: {error}") from None
+
+
+def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting]:
+    """List every effective setting with its source, secrets hidden."""
+    told = {name: value for name, value in given.items() if value is not None}
+    file_values = _file_values()
+    rows = []
+    for name, field in Settings.model_fields.items():
+        source = _source(name, told, file_values)
+        rows.append(EffectiveSetting(name, str(getattr(settings, name)), source, field.description or ""))
+    return rows
+
+
+def _source(name: str, told: dict[str, Any], file_values: dict[str, Any]) -> str:
+    """Name the source that wins for one setting."""
+    if name in told:
+        return "command line"
+    variable = PREFIX + name.upper()
+    if any(key.upper() == variable for key in os.environ):
+        return f"environment {variable}"
+    return str(CONFIG_FILE) if name in file_values else "default"
+
+
+def _file_values() -> dict[str, Any]:
+    """Read combbench.toml if there is one."""
+    try:
+        return tomllib.loads(CONFIG_FILE.read_text())
+    except (OSError, tomllib.TOMLDecodeError):
+        return {}

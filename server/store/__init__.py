@@ -1,0 +1,1 @@
+"""What outlives the process: the run table, the recordings, their files."""

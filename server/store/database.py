@@ -1,0 +1,95 @@
+"""The database: SQLite in WAL mode, migrated at the start, used from one thread of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, TypeVar
+
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import Engine, create_engine, event, text
+from sqlalchemy.orm import Session, sessionmaker
+
+MIGRATIONS = Path(__file__).parent / "migrations"
+T = TypeVar("T")
+
+
+class Database:
+    """Sessions over one SQLite file.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its folder is made.
+    """
+
+    def __init__(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.url = f"sqlite:///{path}"
+        self._engine = make_engine(self.url)
+        self._sessions = sessionmaker(self._engine, expire_on_commit=False)
+        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="combbench-db")
+
+    def migrate(self) -> None:
+        """Bring the tables to this version."""
+        level = logging.getLogger("alembic").level
+        logging.getLogger("alembic").setLevel(logging.WARNING)
+        try:
+            with self._engine.begin() as connection:
+                command.upgrade(alembic_config(self.url, connection), "head")
+        finally:
+            logging.getLogger("alembic").setLevel(level)
+
+    def transact(self, work: Callable[[Session], T]) -> T:
+        """Run ``work`` in a transaction, here and now."""
+        with self._sessions.begin() as session:
+            return work(session)
+
+    async def run(self, work: Callable[[Session], T]) -> T:
+        """Run ``work`` in a transaction on the database thread."""
+        return await asyncio.get_running_loop().run_in_executor(self._thread, self.transact, work)
+
+    async def is_writable(self) -> bool:
+        """Whether a write transaction can be opened."""
+
+        def probe(session: Session) -> bool:
+            session.execute(text("BEGIN IMMEDIATE"))
+            return True
+
+        try:
+            return await asyncio.wait_for(self.run(probe), 2.0)
+        except Exception:
+            return False
+
+    def close(self) -> None:
+        """Finish what is under way and close the file."""
+        self._thread.shutdown(wait=True)
+        self._engine.dispose()
+
+
+def make_engine(url: str) -> Engine:
+    """Open the database with its pragmas."""
+    engine = create_engine(url)
+
+    @event.listens_for(engine, "connect")
+    def _(connection: Any, _record: Any) -> None:
+        cursor = connection.cursor()
+        cursor.execute("PRAGMA journal_mode=WAL")
+        cursor.execute("PRAGMA synchronous=NORMAL")
+        cursor.execute("PRAGMA busy_timeout=5000")
+        cursor.close()
+
+    return engine
+
+
+def alembic_config(url: str, connection: Any = None) -> Config:
+    """Describe the migrations to Alembic without an ini file."""
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    config.set_main_option("sqlalchemy.url", url.replace("%", "%%"))
+    config.attributes["connection"] = connection
+    return config

@@ -1,0 +1,71 @@
+"""Tables: headless runs and recordings. Bulk data is in files; a row says which."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any, ClassVar
+
+from sqlalchemy import JSON, DateTime, Float, Integer, MetaData, String
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+
+def now() -> datetime:
+    """Return the time in UTC."""
+    return datetime.now(UTC)
+
+
+class Base(DeclarativeBase):
+    """Base of all tables; named constraints, so that SQLite can alter them."""
+
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(column_0_label)s",
+            "uq": "uq_%(table_name)s_%(column_0_name)s",
+            "ck": "ck_%(table_name)s_%(constraint_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_name)s_%(referred_table_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map: ClassVar[dict[Any, Any]] = {
+        dict[str, Any]: JSON,
+        list[Any]: JSON,
+        datetime: DateTime(timezone=True),
+    }
+
+
+class RunRow(Base):
+    """One headless run: what was asked, how far it is, what came out."""
+
+    __tablename__ = "runs"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    key: Mapped[str] = mapped_column(String(64), index=True)
+    state: Mapped[str] = mapped_column(String(16), index=True)
+    scenario_id: Mapped[str] = mapped_column(String(200))
+    title: Mapped[str] = mapped_column(String(400))
+    document: Mapped[dict[str, Any]]
+    seeds: Mapped[list[Any]]
+    created: Mapped[datetime] = mapped_column(default=now, index=True)
+    finished: Mapped[datetime | None]
+    progress: Mapped[float] = mapped_column(Float, default=0.0)
+    summary: Mapped[dict[str, Any] | None]
+    error: Mapped[dict[str, Any] | None]
+
+
+class RecordingRow(Base):
+    """One recording of a live bench."""
+
+    __tablename__ = "recordings"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    bench_id: Mapped[str] = mapped_column(String(32), index=True)
+    name: Mapped[str] = mapped_column(String(200))
+    state: Mapped[str] = mapped_column(String(16), index=True)
+    title: Mapped[str] = mapped_column(String(400))
+    dt_ms: Mapped[float] = mapped_column(Float)
+    start_tick: Mapped[int] = mapped_column(Integer)
+    ticks: Mapped[int] = mapped_column(Integer, default=0)
+    signals: Mapped[list[Any]]
+    created: Mapped[datetime] = mapped_column(default=now, index=True)
+    finished: Mapped[datetime | None]
+    reason: Mapped[str] = mapped_column(String(400), default="")

@@ -1,0 +1,71 @@
+"""The file of a recording while it grows, and what it becomes.
+
+Rows go to an Arrow stream first, which is readable up to its last whole batch even after a power cut; at the
+end it is rewritten as Parquet. What a crash left behind is recovered at the next start.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+PART = ".arrows"
+
+
+class RecordingFile:
+    """Appends tables to a growing stream.
+
+    Parameters
+    ----------
+    path : Path
+        The Parquet file it will become.
+    schema : pa.Schema
+        Columns.
+    """
+
+    def __init__(self, path: Path, schema: pa.Schema) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._path = path
+        self._sink = path.with_suffix(PART).open("wb")
+        self._stream = pa.ipc.new_stream(self._sink, schema)
+
+    def append(self, table: pa.Table) -> None:
+        """Write a batch; it survives from here on."""
+        self._stream.write_table(table)
+        self._sink.flush()
+
+    def finish(self) -> int:
+        """Close the stream, turn it into Parquet, return the number of ticks."""
+        self._stream.close()
+        self._sink.close()
+        return convert(self._path)
+
+
+def convert(path: Path) -> int:
+    """Rewrite the stream beside ``path`` as Parquet; return the number of ticks."""
+    source, part = path.with_suffix(PART), path.with_name(path.name + ".part")
+    ticks = 0
+    with source.open("rb") as file:
+        reader = pa.ipc.open_stream(file)
+        with pq.ParquetWriter(part, reader.schema, compression="zstd") as writer:
+            for batch in _whole_batches(reader):
+                writer.write_batch(batch)
+                ticks += batch.num_rows
+    with part.open("rb") as file:
+        os.fsync(file.fileno())
+    part.rename(path)
+    source.unlink()
+    return ticks
+
+
+def _whole_batches(reader: pa.RecordBatchStreamReader) -> Iterator[pa.RecordBatch]:
+    """Yield batches until the end, or until the one that was cut off."""
+    while True:
+        try:
+            yield reader.read_next_batch()
+        except (StopIteration, pa.ArrowInvalid, OSError):
+            return

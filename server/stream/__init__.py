@@ -1,0 +1,1 @@
+"""The live stream: panels cut on the server, binary frames, numbered events."""

@@ -1,0 +1,158 @@
+"""Every text message of the stream, both ways."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
+
+from server.bench.commands import Command
+from server.bench.events import Event
+from server.bench.status import Bench, BenchStatus
+from server.errors import ErrorBody
+
+SUBPROTOCOL = "combbench.v1"
+WIRE = 1
+MAX_PANELS = 32
+MAX_SIGNALS = 32
+MAX_COLUMNS = 4096
+MAX_POINTS = 262_144
+MAX_TICK = 2**53
+
+Panel = Annotated[int, Field(ge=0, le=65535, description="The client's number of the panel")]
+
+
+class Message(BaseModel):
+    """A message of a client: unknown fields and numbers that are not finite are refused."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class TriggerSpec(Message):
+    """When a panel takes its picture."""
+
+    signal: str = Field(max_length=200)
+    edge: Literal["rising", "falling", "either"] = "rising"
+    level: float = 0.0
+    hysteresis: float = Field(0.0, ge=0, description="How far the signal must go back before the next trigger")
+    position: float = Field(0.1, ge=0, le=1, description="Share of the window before the trigger")
+    sweep: Literal["auto", "normal", "single"] = "auto"
+
+
+class Subscribe(Message):
+    """Show signals in a panel; a second one for the same panel replaces the first."""
+
+    type: Literal["subscribe"]
+    panel: Panel
+    signals: list[Annotated[str, Field(max_length=200)]] = Field(min_length=1, max_length=MAX_SIGNALS)
+    mode: Literal["roll", "frozen", "triggered"] = "roll"
+    width: int = Field(800, ge=1, le=MAX_COLUMNS, description="Columns: one per pixel")
+    window_ms: float | None = Field(None, gt=0, le=1e9)
+    start_tick: int | None = Field(None, ge=-MAX_TICK, le=MAX_TICK)
+    end_tick: int | None = Field(None, ge=-MAX_TICK, le=MAX_TICK)
+    trigger: TriggerSpec | None = None
+
+    @model_validator(mode="after")
+    def _has_its_span(self) -> Subscribe:
+        """Each mode needs its own fields."""
+        if self.mode == "frozen":
+            if self.start_tick is None or self.end_tick is None or self.end_tick <= self.start_tick:
+                raise ValueError("mode frozen needs start_tick < end_tick")
+        elif self.window_ms is None:
+            raise ValueError(f"mode {self.mode} needs window_ms")
+        if self.mode == "triggered" and self.trigger is None:
+            raise ValueError("mode triggered needs trigger")
+        return self
+
+
+class Rearm(Message):
+    """Take one more picture of a panel in single sweep."""
+
+    type: Literal["rearm"]
+    panel: Panel
+
+
+class Unsubscribe(Message):
+    """Stop sending a panel."""
+
+    type: Literal["unsubscribe"]
+    panel: Panel
+
+
+class Ack(Message):
+    """The client has drawn (or taken) every frame up to this one."""
+
+    type: Literal["ack"]
+    frame: int = Field(ge=0, lt=2**32)
+
+
+class Resume(Message):
+    """Send every event after this one: the first message after a reconnect."""
+
+    type: Literal["resume"]
+    after: int = Field(ge=0)
+
+
+class CommandMessage(Message):
+    """A command; answered by a reply with the same id."""
+
+    type: Literal["command"]
+    id: str = Field(max_length=64)
+    command: Command
+
+
+ClientMessage = Annotated[Subscribe | Rearm | Unsubscribe | Ack | Resume | CommandMessage, Field(discriminator="type")]
+CLIENT_MESSAGE: TypeAdapter[Any] = TypeAdapter(ClientMessage)
+
+
+class Hello(BaseModel):
+    """The first message of the server."""
+
+    type: Literal["hello"] = "hello"
+    wire: int = WIRE
+    server: str = Field(description="Changes with every start of the server")
+    bench: Bench
+    last_event: int
+
+
+class Status(BenchStatus):
+    """What changes on a bench: five times a second, and after every event."""
+
+    type: Literal["status"] = "status"
+    parameters: dict[str, Any] | None = Field(None, description="The scenario as it is now; null: unchanged")
+    dropped_frames: int = Field(description="Frames this client was too slow for")
+
+
+class EventMessage(BaseModel):
+    """Something happened; numbered without gaps."""
+
+    type: Literal["event"] = "event"
+    event: Event
+
+
+class Reply(BaseModel):
+    """The answer to a command."""
+
+    type: Literal["reply"] = "reply"
+    id: str
+    ok: bool
+    tick: int | None = None
+    error: ErrorBody | None = None
+
+
+class ErrorMessage(BaseModel):
+    """A message of the client was refused; the connection stays."""
+
+    type: Literal["error"] = "error"
+    error: ErrorBody
+
+
+class Notice(BaseModel):
+    """Something the person should know about this connection."""
+
+    type: Literal["notice"] = "notice"
+    code: Literal["slow_client", "events_lost", "shutdown"]
+    message: str
+
+
+ServerMessage = Hello | Status | EventMessage | Reply | ErrorMessage | Notice

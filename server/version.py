@@ -1,0 +1,10 @@
+"""Which version this is."""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, version
+
+try:
+    VERSION = version("combbench")
+except PackageNotFoundError:  # run from a checkout that was never installed
+    VERSION = "0+checkout"

@@ -1,0 +1,150 @@
+"""The 3D scenes of all benches: built when someone comes to watch, moved while someone does, then closed."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from core.device.geometry import Geometry
+from server.bench.session import Session
+from server.view3d.layout import Layout
+from server.view3d.motion import caption, exaggeration, moment
+
+if TYPE_CHECKING:
+    from server.view3d.scene import Scene
+
+log = logging.getLogger(__name__)
+
+FRAME_S = 1.0 / 60.0
+SIGNALS = (
+    "plant.displacement",
+    "model.displacement",
+    "faults.added_mass",
+    "faults.stiffness",
+    "faults.damping",
+)
+
+
+class Show:
+    """The scene of one bench and who watches it.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._watchers = 0
+        self._factor = 1.0
+        self._scene: Scene | None = None
+        self._ready = asyncio.Lock()
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def watchers(self) -> int:
+        """Open 3D pages."""
+        return self._watchers
+
+    async def enter(self) -> int:
+        """Count a watcher in; return the port of the scene."""
+        self._watchers += 1
+        try:
+            async with self._ready:
+                if self._scene is None:
+                    self._scene = await asyncio.to_thread(build_scene, self._session)
+                    self._task = asyncio.create_task(self._play(self._scene))
+                return self._scene.port
+        except BaseException:
+            self._watchers -= 1
+            raise
+
+    async def leave(self) -> None:
+        """Count a watcher out; the last one turns off the light.
+
+        A scene keeps a number for every message it ever sent, and walks them for each newcomer: a fresh
+        scene for fresh watchers keeps that short.
+        """
+        self._watchers -= 1
+        async with self._ready:
+            if self._watchers == 0:
+                await self.close()
+
+    async def close(self) -> None:
+        """Stop moving and close the scene."""
+        task, scene, self._task, self._scene = self._task, self._scene, None, None
+        if task is not None:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+        if scene is not None:
+            await asyncio.to_thread(scene.close)
+
+    async def _play(self, scene: Scene) -> None:
+        """Show the bench 60 times a second."""
+        due = time.monotonic()
+        while True:
+            try:
+                self._show(scene)
+            except Exception:
+                log.exception("the 3D view of bench %s failed", self._session.id)
+                return
+            due = max(due + FRAME_S, time.monotonic())
+            await asyncio.sleep(due - time.monotonic())
+
+    def _show(self, scene: Scene) -> None:
+        """Read one moment from the history and show it."""
+        from server.view3d.scene import Pose
+
+        session, history = self._session, self._session.history
+        head = history.end_tick
+        if head <= history.first_tick:
+            scene.show(Pose(0.0, 0.0, 0.0, 0.0, 0.0, ""))
+            return
+        period = session.drive_period_ticks
+        # A bench that runs as fast as possible is strobed like one in real time.
+        rate = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
+        at = moment(head, period, rate, time.monotonic())
+        tick = max(at.tick, history.first_tick)
+        indices = session.indices(SIGNALS)
+        x, reference, mass, stiffness, damping = (float(value) for value in history.read(indices, tick, tick + 1)[:, 0])
+        recent = history.columns(indices[:2], head - round(3 * (period or 1000)), head, 1)
+        amplitude = float(np.nanmax(np.abs(recent))) if np.isfinite(recent).any() else 0.0
+        self._factor = exaggeration(amplitude, self._factor)
+        x, reference = x * self._factor, reference * self._factor
+        scene.show(Pose(x, reference, mass, stiffness, damping, caption(self._factor, at.is_strobed)))
+
+
+class Theatre:
+    """One show per bench."""
+
+    def __init__(self) -> None:
+        self._shows: dict[str, Show] = {}
+
+    def show_of(self, session: Session) -> Show:
+        """Return the show of a bench; made on the first visit."""
+        if session.id not in self._shows:
+            self._shows[session.id] = Show(session)
+        return self._shows[session.id]
+
+    async def drop(self, bench_id: str) -> None:
+        """Close the show of a bench that is gone."""
+        show = self._shows.pop(bench_id, None)
+        if show is not None:
+            await show.close()
+
+    async def close(self) -> None:
+        """Close every show."""
+        for bench_id in list(self._shows):
+            await self.drop(bench_id)
+
+
+def build_scene(session: Session) -> Scene:
+    """Build the scene; viser is loaded here, so that nothing else waits for it."""
+    from server.view3d.scene import Scene
+
+    return Scene(Layout(session.geometry or Geometry()))
