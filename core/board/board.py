@@ -75,6 +75,7 @@ class Board:
         self.trip: Trip | None = None
         self._sha = hashlib.sha256()
         self._known: dict[str, tuple[float, float]] = {}
+        self._allocate()
         self._link()
 
     # -- what it is
@@ -182,6 +183,9 @@ class Board:
         if self.compiled:
             self._functions = [program.compiled(step) for step in self._steps]
             self.wiring.table[:, program.ADDRESS] = [function.address for function in self._functions]
+
+    def _allocate(self) -> None:
+        """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""
         self._outputs = np.zeros((CHUNK, len(self.wiring.output_index)))
         self._taps = np.zeros((CHUNK, len(self.wiring.tap_index)))
 
@@ -337,6 +341,7 @@ class Board:
         board.wiring = copy.copy(kept["wiring"])
         for name, array in kept["arrays"].items():
             setattr(board.wiring, name, array.copy())
+        board._allocate()
         board._link()
         return board
 

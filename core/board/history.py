@@ -188,7 +188,7 @@ class History:
         """Return full-rate values, shape (signals, ticks); the span is cut to what is kept."""
         start, stop = max(start, self.first_tick), min(stop, self.end_tick)
         ticks = np.arange(start, max(stop, start)) % self.capacity
-        return self._ring[np.ix_(signals, ticks)]
+        return self._ring[np.array(signals, dtype=np.int64)[:, None], ticks]
 
     def crossing(self, signal: int, edge: str, level: float, hysteresis: float, start: int, stop: int) -> int | None:
         """Return the last tick in the span at which the signal crosses ``level`` on the rising or falling edge."""
