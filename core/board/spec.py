@@ -161,19 +161,25 @@ def normal_form(document: Document) -> Document:
         for name, table in doc.get(key, {}).items():
             if not isinstance(table, dict):
                 raise InputError(f"must be a table, got {short(table)}", f"{key}.{name}")
-    controller = doc["controller"]
-    kind = controller.pop("kind", "open_loop")
-    registry.block("control", kind, "controller.kind")
-    if controller:
-        own = doc.setdefault("controllers", {}).setdefault(kind, {})
-        own.update(controller)
-    doc["controller"] = {"kind": kind}
+    registry.block("control", doc["controller"].get("kind", "open_loop"), "controller.kind")
+    _park(doc)
     return doc
+
+
+def _park(doc: Document) -> None:
+    """Move the parameters of the controller that drives to where those of all controllers are."""
+    controller = doc.get("controller")
+    if isinstance(controller, dict):
+        kind = controller.pop("kind", "open_loop")
+        if controller and isinstance(kind, str):
+            doc.setdefault("controllers", {}).setdefault(kind, {}).update(controller)
+        doc["controller"] = {"kind": kind}
 
 
 def with_values(document: Document, values: dict[str, Any]) -> Document:
     """Return the document with dotted paths written over; tables on the way are made."""
     doc = copy.deepcopy(document)
+    _park(doc)
     for path, value in values.items():
         parts = path.split(".")
         if not all(parts):
