@@ -50,6 +50,8 @@ def event(command: dict[str, Any]) -> dict[str, Any]:
         }
     if kind == "reset_trip":
         return {**rest, "reset_trip": True}
+    if rest["profile"]["kind"] == "step":
+        del rest["profile"]  # what a fault does unless told otherwise
     return rest
 
 
