@@ -14,6 +14,7 @@ from core.board import changes, program, score
 from core.board.commands import Command, Heal, Inject, LogEntry, Set, Switch, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.guard import REASONS
+from core.board.observer import Observer
 from core.board.spec import Document, Spec, parse
 from core.board.wiring import Wiring, wire
 from core.errors import InputError
@@ -41,13 +42,26 @@ class Pending:
     tick: int | None = None
     condition: Condition | None = None
 
+    def event(self) -> Document:
+        """Return it as an event of a scenario."""
+        document = changes.event(self.command.model_dump(exclude_none=True, mode="json"))
+        if self.tick is not None:
+            document = {key: value for key, value in document.items() if key not in ("at_ms", "when")}
+            document["at_sample"] = self.tick
+        return document
 
-@dataclass
+
+COPIED = ("faults", "pending", "trip", "wiring", "_observer")
+SHARED = ("spec", "base", "compiled", "tick")
+"""What of a board is its own in every copy, and what never changes in place."""
+
+
+@dataclass(frozen=True)
 class Checkpoint:
     """Everything a board is, at a tick edge."""
 
-    board: dict[str, Any] = field(repr=False)
     tick: int
+    parts: dict[str, Any] = field(repr=False)
 
 
 class Board:
@@ -74,7 +88,7 @@ class Board:
         self.pending: list[Pending] = []
         self.trip: Trip | None = None
         self._sha = hashlib.sha256()
-        self._known: dict[str, tuple[float, float]] = {}
+        self._observer = Observer(self.spec, self.wiring)
         self._allocate()
         self._link()
 
@@ -122,7 +136,9 @@ class Board:
             upcoming = [entry.tick for entry in self.pending if entry.tick is not None]
             stop = min([self.tick + n - done, *upcoming])
             ran, why, which = self._run(stop - self.tick, done)
-            self._observe(done, ran)
+            rows = slice(done, done + ran)
+            for finding in self._observer.look(self.tick, self._outputs[rows], self._taps[rows]):
+                self._note("board", **finding)
             done += ran
             self.tick += ran
             if why == program.TRIPPED:
@@ -288,59 +304,21 @@ class Board:
         changes.disengage(self)
         self._note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())
 
-    def _observe(self, at: int, count: int) -> None:
-        """Log what the diagnosers found in the ticks just run: changes of the truth, and its recognition."""
-        for name in self.spec.diagnosers:
-            truth = self._outputs[at : at + count, self.signals.index(f"{name}.truth")]
-            delay = self._taps[at : at + count, self.signals.index(f"{name}.delay") - self.signals.outputs]
-            last_truth, last_delay = self._known.get(name, (-2.0, -1.0))
-            moved = np.flatnonzero(np.diff(truth, prepend=last_truth))
-            found = np.flatnonzero((np.diff(delay, prepend=last_delay) != 0) & (delay >= 0))
-            self._known[name] = (truth[-1], delay[-1])
-            names = [item.name for item in self.spec.diagnosers[name].params.hypotheses]  # type: ignore[attr-defined]
-            for i in sorted({*moved.tolist(), *found.tolist()}):
-                tick = self.tick + i
-                label = names[int(truth[i])] if truth[i] >= 0 else "none of the hypotheses"
-                if i in moved:
-                    self._note("board", "truth_changed", f"{name}: the truth is {label}", tick=tick, new=label)
-                if i in found:
-                    samples = int(delay[i])
-                    text = f"{name} found {label} after {samples} samples ({samples * self.dt_ms:.3g} ms)"
-                    self._note("board", "recognised", text, tick=tick, old=samples, new=label)
-
     # -- copies
 
     def checkpoint(self) -> Checkpoint:
         """Return everything the board is at this tick edge."""
-        kept = {
-            name: copy.deepcopy(getattr(self, name))
-            for name in ("base", "faults", "pending", "trip", "_known", "compiled", "tick")
-        }
-        wiring = self.wiring
-        arrays = {name: getattr(wiring, name).copy() for name in ("table", "p", "s", "w", "io")}
-        return Checkpoint(
-            {
-                **kept,
-                "spec": self.spec,
-                "wiring": wiring,
-                "arrays": arrays,
-                "log": list(self.log),
-                "_sha": self._sha.copy(),
-            },
-            self.tick,
-        )
+        kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
+        shared = {name: getattr(self, name) for name in SHARED}
+        return Checkpoint(self.tick, {**kept, **shared, "log": list(self.log), "_sha": self._sha.copy()})
 
     @classmethod
     def restore(cls, checkpoint: Checkpoint) -> Board:
         """Return a board that goes on from a checkpoint, bit for bit; restoring twice forks it."""
         board = cls.__new__(cls)
-        kept = checkpoint.board
-        for name in ("base", "faults", "pending", "trip", "_known", "compiled", "tick"):
-            setattr(board, name, copy.deepcopy(kept[name]))
-        board.spec, board.log, board._sha = kept["spec"], list(kept["log"]), kept["_sha"].copy()
-        board.wiring = copy.copy(kept["wiring"])
-        for name, array in kept["arrays"].items():
-            setattr(board.wiring, name, array.copy())
+        for name, value in checkpoint.parts.items():
+            setattr(board, name, copy.deepcopy(value) if name in COPIED else value)
+        board.log, board._sha = list(board.log), board._sha.copy()
         board._allocate()
         board._link()
         return board
@@ -350,16 +328,9 @@ class Board:
 
         Run headless it gives the same bits.
         """
-        events = [
+        done = [
             {**changes.event(entry.command), "at_sample": entry.tick}
             for entry in self.log
             if entry.command is not None and entry.kind not in ("scheduled", "refused")
         ]
-        for waiting in self.pending:
-            document = changes.event(waiting.command.model_dump(exclude_none=True, mode="json"))
-            if waiting.tick is not None:
-                document.pop("at_ms", None)
-                document.pop("when", None)
-                document["at_sample"] = waiting.tick
-            events.append(document)
-        return {**copy.deepcopy(self.base), "samples": self.tick, "events": events}
+        return {**copy.deepcopy(self.base), "samples": self.tick, "events": done + [w.event() for w in self.pending]}
