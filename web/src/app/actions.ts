@@ -1,0 +1,77 @@
+import { notifications } from "@mantine/notifications";
+import { api } from "../api/api";
+import { useBench } from "../stream/bench-store";
+import { jump } from "../ui/jump";
+import { openBench } from "./open-bench";
+import { send, showError } from "./send";
+import { stepTimeScale } from "./time-scale";
+import { useView } from "./view-store";
+
+const bench = () => useBench.getState().bench;
+
+/** What can be done to the bench from buttons and keys alike. */
+export const actions = {
+  toggle: () =>
+    void (bench()?.state === "running" ? send({ kind: "pause" }, "Paused") : send({ kind: "start" }, "Running")),
+  pause: () => void send({ kind: "pause" }, "Paused"),
+  stepTick: () => void send({ kind: "step", ticks: 1 }, "One tick"),
+  stepPeriod: () => void send({ kind: "step_period" }, "One period"),
+  reset: () => {
+    jump.to("live");
+    void send({ kind: "reset" }, "Reset");
+  },
+  resetTrip: () => void send({ kind: "reset_trip" }, "Trip reset"),
+  faster: () => scale(2),
+  slower: () => scale(0.5),
+  healAll: () => void send({ kind: "heal", faults: "all" }, "All faults healed"),
+  live: () => jump.to("live"),
+  controller: (controller: string, cold = false) =>
+    void send({ kind: "switch", controller, cold }, `Controller ${controller}`),
+  nextController: () => {
+    const { controllers = [], controller = "" } = bench() ?? {};
+    const next = controllers[(controllers.indexOf(controller) + 1) % controllers.length];
+    if (next) actions.controller(next);
+  },
+  keys: () => useView.setState({ dialog: "keys" }),
+  newBench: () => useView.setState({ dialog: "bench" }),
+  fork: () => void fork(),
+  saveScenario: () => void saveScenario(),
+};
+
+function scale(factor: number): void {
+  void send({ kind: "time_scale", value: stepTimeScale(bench()?.time_scale ?? null, factor) });
+}
+
+async function fork(): Promise<void> {
+  const from = bench();
+  if (!from) return;
+  try {
+    const made = await api.fork(from.id);
+    openBench(made.id);
+    notifications.show({
+      title: "Forked",
+      message: `This is a copy of ${from.title} as it was; the original goes on by itself.`,
+    });
+  } catch (error) {
+    showError(error);
+  }
+}
+
+async function saveScenario(): Promise<void> {
+  const from = bench();
+  if (!from) return;
+  try {
+    const toml = await api.scenarioToml(from.id);
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([toml], { type: "application/toml" }));
+    link.download = `${from.scenario_id || "bench"}-${from.tick}.toml`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    notifications.show({
+      title: "Saved as a scenario",
+      message: `Run it again with: combbench run ${link.download}. It gives the same bits.`,
+    });
+  } catch (error) {
+    showError(error);
+  }
+}

@@ -1,0 +1,34 @@
+import { useEffect } from "react";
+import { eventTone } from "../panels/events/event-tone";
+import { useBench } from "../stream/bench-store";
+import { alarm, announce, useAnnouncements } from "./announce";
+
+/** The page's live regions: faults, trips and a lost connection as alarms, findings politely. */
+export function Announcer() {
+  const { polite, alarm: loud } = useAnnouncements();
+  const event = useBench((s) => s.events.at(-1));
+  const phase = useBench((s) => s.connection.phase);
+
+  useEffect(() => {
+    if (!event) return;
+    const tone = eventTone(event);
+    if (tone === "alarm") alarm(event.text);
+    if (tone === "found") announce(event.text);
+  }, [event]);
+
+  useEffect(() => {
+    if (phase === "waiting") alarm("Connection lost, trying again.");
+    if (phase === "open") announce("Connected.");
+  }, [phase]);
+
+  return (
+    <>
+      <div className="visually-hidden" role="status" aria-live="polite">
+        {polite}
+      </div>
+      <div className="visually-hidden" role="alert" aria-live="assertive">
+        {loud}
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,75 @@
+import { Button } from "@mantine/core";
+import { useMediaQuery } from "@mantine/hooks";
+import { useCallback, useEffect, useState } from "react";
+import { ApiError } from "../api/api-error";
+import { useBench } from "../stream/bench-store";
+import { closeReason } from "../stream/close-reason";
+import { stream } from "../stream/stream";
+import { EmptyState } from "../ui/empty-state";
+import { Announcer } from "./announcer";
+import { Banner } from "./banner";
+import { openFirstBench } from "./first-bench";
+import { Header } from "./header/header";
+import { KeySheet } from "./key-sheet";
+import { NewBench } from "./new-bench";
+import { benchInAddress } from "./open-bench";
+import { Phone } from "./phone";
+import { useKeys } from "./use-keys";
+import { Workspace } from "./workspace";
+
+interface Failure {
+  title: string;
+  advice: string;
+}
+
+/** The page: a header, a line for what needs to be known, and the panels. */
+export function App() {
+  const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
+  const stale = useBench((s) => s.connection.staleSince !== undefined);
+  const [failure, setFailure] = useState<Failure | undefined>(undefined);
+  useKeys();
+
+  const start = useCallback(() => {
+    setFailure(undefined);
+    openFirstBench().catch((error: unknown) => setFailure(explain(error)));
+  }, []);
+
+  useEffect(() => {
+    start();
+    const back = () => {
+      const id = benchInAddress();
+      if (id && id !== useBench.getState().bench?.id) stream.open(id);
+    };
+    window.addEventListener("popstate", back);
+    return () => window.removeEventListener("popstate", back);
+  }, [start]);
+
+  return (
+    <div className="page" data-stale={stale}>
+      {phone ? null : <Header />}
+      <Banner />
+      {failure ? (
+        <EmptyState title={failure.title} action={<Button onClick={start}>Try again</Button>}>
+          {failure.advice}
+        </EmptyState>
+      ) : phone ? (
+        <Phone />
+      ) : (
+        <Workspace />
+      )}
+      <KeySheet />
+      <NewBench />
+      <Announcer />
+    </div>
+  );
+}
+
+function explain(error: unknown): Failure {
+  if (error instanceof ApiError && error.status === 401) return closeReason(4401);
+  if (error instanceof ApiError)
+    return {
+      title: error.body.message,
+      advice: error.body.hint || "Is the server running? Start it with: combbench serve",
+    };
+  return { title: "The page could not start", advice: String(error) };
+}

@@ -1,0 +1,123 @@
+import { Button, CloseButton } from "@mantine/core";
+import type { ReactNode } from "react";
+import { useEffect, useState } from "react";
+import { useBench } from "../stream/bench-store";
+import { stream } from "../stream/stream";
+import { formatDeviceTime } from "../ui/time-axis";
+import { actions } from "./actions";
+import styles from "./banner.module.css";
+import { openAnyBench } from "./first-bench";
+import { showError } from "./send";
+
+const HINT_KEY = "combbench.hint.seen";
+
+/** One line under the header when something needs to be known: a trip, a lost connection, silence; else what to try. */
+export function Banner() {
+  const connection = useBench((s) => s.connection);
+  const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const notice = useBench((s) => s.notice);
+  const [hint, setHint] = useState(() => localStorage.getItem(HINT_KEY) === null);
+
+  if (connection.phase === "closed" && connection.reason)
+    return (
+      <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
+        <Button size="compact-sm" onClick={() => openAnyBench().catch(showError)}>
+          Open a bench
+        </Button>
+        <Button size="compact-sm" variant="default" onClick={() => window.location.reload()}>
+          Reload
+        </Button>
+      </Line>
+    );
+  if (connection.phase === "waiting" && connection.reason)
+    return (
+      <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
+        <Countdown until={connection.retryAt} />
+        <Button size="compact-sm" variant="default" onClick={stream.retry}>
+          Try now
+        </Button>
+      </Line>
+    );
+  if (connection.staleSince)
+    return (
+      <Line
+        tone="warn"
+        title={`Nothing heard since ${connection.staleSince.toLocaleTimeString()}`}
+        text="What you see is that old. The page reconnects by itself if the server went away."
+      />
+    );
+  if (trip)
+    return (
+      <Line
+        tone="alarm"
+        title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
+        text={`at ${formatDeviceTime(trip.tick * dtMs)} s, tick ${trip.tick}. Drive and controllers are at zero.`}
+      >
+        <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
+          Reset the trip
+        </Button>
+        <Button size="compact-sm" variant="default" onClick={actions.fork}>
+          Fork
+        </Button>
+        <Button size="compact-sm" variant="default" onClick={actions.reset}>
+          Start over
+        </Button>
+      </Line>
+    );
+  if (notice)
+    return (
+      <Line tone="warn" title={notice} text="">
+        <CloseButton size="sm" aria-label="Dismiss" onClick={() => useBench.setState({ notice: undefined })} />
+      </Line>
+    );
+  if (hint)
+    return (
+      <Line
+        tone="hint"
+        title="Try this:"
+        text="inject Added mass +5 % under Faults, and watch Diagnosis find it. Then change the controller above."
+      >
+        <CloseButton
+          size="sm"
+          aria-label="Dismiss the hint"
+          onClick={() => {
+            localStorage.setItem(HINT_KEY, "yes");
+            setHint(false);
+          }}
+        />
+      </Line>
+    );
+  return null;
+}
+
+function Line({
+  tone,
+  title,
+  text,
+  children,
+}: {
+  tone: "alarm" | "warn" | "hint";
+  title: string;
+  text: string;
+  children?: ReactNode;
+}) {
+  return (
+    <div className={styles.banner} data-tone={tone} role={tone === "alarm" ? "alert" : "status"}>
+      <strong>{title}</strong>
+      <span>{text}</span>
+      <div className={styles.actions}>{children}</div>
+    </div>
+  );
+}
+
+function Countdown({ until }: { until: number | undefined }) {
+  const [now, setNow] = useState(performance.now());
+  useEffect(() => {
+    const timer = setInterval(() => setNow(performance.now()), 200);
+    return () => clearInterval(timer);
+  }, []);
+  if (until === undefined) return null;
+  const left = Math.ceil((until - now) / 1000);
+  return <span className={styles.countdown}>{left > 0 ? `again in ${left} s` : "trying"}</span>;
+}

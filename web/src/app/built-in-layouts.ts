@@ -1,0 +1,92 @@
+import type { AddPanelOptions, DockviewApi } from "dockview-react";
+import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
+import { PANELS } from "./panels";
+import type { LayoutName } from "./view-store";
+
+const MOTION = scopeConfig(["model.displacement", "plant.displacement", "sensor.displacement"]);
+const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
+
+interface Where {
+  below?: string;
+  right?: string;
+  left?: string;
+  within?: string;
+  inactive?: boolean;
+}
+
+function add(api: DockviewApi, id: string, kind: string, where: Where = {}, scope?: ScopeConfig, title?: string): void {
+  const direction = where.below
+    ? "below"
+    : where.right
+      ? "right"
+      : where.left
+        ? "left"
+        : where.within
+          ? "within"
+          : undefined;
+  const referencePanel = where.below ?? where.right ?? where.left ?? where.within;
+  const options = {
+    id,
+    component: kind,
+    title: title ?? PANELS[kind].title,
+    params: scope ? { scope } : {},
+    inactive: where.inactive ?? false,
+    ...(direction && referencePanel ? { position: { direction, referencePanel } } : {}),
+  };
+  api.addPanel(options as AddPanelOptions);
+}
+
+/** Set the heights and widths of panels, as shares of the page. */
+function size(
+  api: DockviewApi,
+  width: number,
+  height: number,
+  shares: Record<string, { w?: number; h?: number }>,
+): void {
+  for (const [id, { w, h }] of Object.entries(shares))
+    api.getPanel(id)?.api.setSize({ ...(w ? { width: w * width } : {}), ...(h ? { height: h * height } : {}) });
+}
+
+/** The layouts everybody has; sizes are shares of the page. */
+export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, height: number) => void> = {
+  lecture(api, width, height) {
+    add(api, "motion", "scope", {}, MOTION, "Displacement");
+    add(api, "faults", "faults", { right: "motion" });
+    add(api, "view3d", "view3d", { below: "faults" });
+    add(api, "lanes", "lanes", { below: "motion" });
+    size(api, width, height, { faults: { w: 0.3, h: 0.42 }, lanes: { h: 0.52 } });
+  },
+  lab(api, width, height) {
+    add(api, "motion", "scope", {}, MOTION, "Displacement");
+    add(api, "schematic", "schematic", { left: "motion" });
+    add(api, "faults", "faults", { below: "schematic" });
+    add(api, "card", "card", { within: "faults", inactive: true });
+    add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
+    add(api, "lanes", "lanes", { below: "voltage" });
+    add(api, "events", "events", { within: "lanes", inactive: true });
+    size(api, width, height, {
+      schematic: { w: 0.26, h: 0.34 },
+      motion: { h: 0.36 },
+      voltage: { h: 0.22 },
+      lanes: { h: 0.42 },
+    });
+  },
+  research(api, width, height) {
+    add(api, "motion", "scope", {}, MOTION, "Displacement");
+    add(api, "schematic", "schematic", { left: "motion" });
+    add(api, "view3d", "view3d", { right: "motion" });
+    add(api, "card", "card", { below: "view3d" });
+    add(api, "scores", "scores", { within: "card", inactive: true });
+    add(api, "events", "events", { within: "card", inactive: true });
+    add(api, "faults", "faults", { below: "schematic" });
+    add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
+    add(api, "lanes", "lanes", { below: "voltage" });
+    size(api, width, height, {
+      schematic: { w: 0.225, h: 0.32 },
+      view3d: { w: 0.25, h: 0.4 },
+      motion: { h: 0.34 },
+      voltage: { h: 0.22 },
+      lanes: { h: 0.44 },
+    });
+  },
+};

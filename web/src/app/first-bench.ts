@@ -1,0 +1,22 @@
+import { api } from "../api/api";
+import { benchInAddress, openBench } from "./open-bench";
+
+/** Worth seeing at first sight: the first of these that the library has. */
+const SHOWPIECES = ["live", "ch5-seven-step"];
+
+/** Open the bench of the address, else one that is running, else start the showpiece. */
+export async function openFirstBench(): Promise<void> {
+  const named = benchInAddress();
+  if (named) return openBench(named, true);
+  await openAnyBench();
+}
+
+export async function openAnyBench(): Promise<void> {
+  const benches = await api.benches();
+  const running = benches.find((b) => b.state === "running") ?? benches[0];
+  if (running) return openBench(running.id, true);
+  const library = await api.scenarios();
+  const id = SHOWPIECES.find((name) => library.some((s) => s.id === name)) ?? library[0]?.id;
+  if (!id) throw new Error("The library holds no scenario to start from.");
+  openBench((await api.createBench({ scenario: id, paused: false })).id, true);
+}

@@ -1,0 +1,74 @@
+import { Menu, UnstyledButton } from "@mantine/core";
+import { IconChevronDown, IconPlus, IconTrash } from "@tabler/icons-react";
+import { useState } from "react";
+import { api } from "../../api/api";
+import type { Bench } from "../../api/types";
+import { useBench } from "../../stream/bench-store";
+import { actions } from "../actions";
+import { openBench } from "../open-bench";
+import { showError } from "../send";
+import styles from "./header.module.css";
+
+/** Which bench this is; the others that run; a new one. */
+export function BenchMenu() {
+  const id = useBench((s) => s.bench?.id);
+  const title = useBench((s) => s.bench?.title);
+  const rate = useBench((s) => s.bench?.sample_rate_khz);
+  const watchers = useBench((s) => s.bench?.watchers ?? 0);
+  const [benches, setBenches] = useState<Bench[]>([]);
+  const load = () => api.benches().then(setBenches, showError);
+
+  return (
+    <Menu width={340} position="bottom-start" shadow="md" onOpen={load}>
+      <Menu.Target>
+        <UnstyledButton className={styles.bench} aria-label={`Bench: ${title ?? "none"}. Change bench`}>
+          <span>{title ?? "No bench"} </span>
+          <small>
+            {rate ? `${rate} kHz board · ${watchers} watching` : "connecting"}
+            <IconChevronDown size={12} style={{ verticalAlign: -2 }} />
+          </small>
+        </UnstyledButton>
+      </Menu.Target>
+      <Menu.Dropdown>
+        <Menu.Item leftSection={<IconPlus size={16} />} onClick={actions.newBench}>
+          New bench
+        </Menu.Item>
+        <Menu.Divider />
+        <Menu.Label>On this server</Menu.Label>
+        {benches.map((b) => (
+          <Menu.Item
+            key={b.id}
+            aria-current={b.id === id}
+            fw={b.id === id ? 650 : undefined}
+            onClick={() => b.id !== id && openBench(b.id)}
+            rightSection={b.id === id ? undefined : <Remove bench={b} onDone={load} />}
+          >
+            {b.title}
+            <small className={styles.menuNote}>
+              {b.state} · {b.controller.replaceAll("_", " ")} · {b.watchers} watching
+            </small>
+          </Menu.Item>
+        ))}
+      </Menu.Dropdown>
+    </Menu>
+  );
+}
+
+function Remove({ bench, onDone }: { bench: Bench; onDone(): void }) {
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: a button may not stand inside the menu item's button
+    <span
+      role="button"
+      tabIndex={-1}
+      title={`Stop and remove ${bench.title}`}
+      onClick={(event) => {
+        event.stopPropagation();
+        if (bench.watchers > 0 && !window.confirm(`${bench.watchers} people watch ${bench.title}. Remove it?`)) return;
+        api.removeBench(bench.id).then(onDone, showError);
+      }}
+      onKeyDown={() => undefined}
+    >
+      <IconTrash size={15} />
+    </span>
+  );
+}

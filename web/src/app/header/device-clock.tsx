@@ -1,0 +1,33 @@
+import { useEffect, useRef } from "react";
+import { useBench } from "../../stream/bench-store";
+import { stream } from "../../stream/stream";
+import { formatDeviceTime } from "../../ui/time-axis";
+import styles from "./header.module.css";
+
+/** Device time and tick, straight from the frames. */
+export function DeviceClock() {
+  const time = useRef<HTMLSpanElement>(null);
+  const tickText = useRef<HTMLElement>(null);
+  useEffect(
+    () =>
+      stream.loop.add(() => {
+        const { bench } = useBench.getState();
+        const head = stream.client.head;
+        const dt = head.dtMs || bench?.dt_ms || 0;
+        const tick = Math.max(head.dtMs ? head.tick : 0, bench?.state === "running" ? 0 : (bench?.tick ?? 0));
+        const text = formatDeviceTime(tick * dt);
+        if (time.current && time.current.textContent !== text) time.current.textContent = text;
+        const ticks = `tick ${tick.toLocaleString("en-US").replaceAll(",", "\u2009")}`;
+        if (tickText.current && tickText.current.textContent !== ticks) tickText.current.textContent = ticks;
+      }),
+    [],
+  );
+  return (
+    <div className={styles.clock} role="timer" aria-label="Device time" aria-live="off">
+      <div>
+        <span ref={time}>0.000 000</span> s
+      </div>
+      <small ref={tickText}>tick 0</small>
+    </div>
+  );
+}

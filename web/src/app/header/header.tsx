@@ -1,0 +1,27 @@
+import { BenchMenu } from "./bench-menu";
+import { ControllerSelect } from "./controller-select";
+import { DeviceClock } from "./device-clock";
+import styles from "./header.module.css";
+import { RunControls } from "./run-controls";
+import { StateBadge } from "./state-badge";
+import { TimeScaleControl } from "./time-scale-control";
+import { Tools } from "./tools";
+
+/** The strip along the top: what runs, how fast, and the few things done all the time. */
+export function Header() {
+  return (
+    <header className={styles.header}>
+      <img src="/comb.svg" alt="" width="26" height="26" />
+      <h1 className={styles.title}>CombBench</h1>
+      <BenchMenu />
+      <ControllerSelect />
+      <div className={styles.middle}>
+        <RunControls />
+        <StateBadge />
+        <TimeScaleControl />
+        <DeviceClock />
+      </div>
+      <Tools />
+    </header>
+  );
+}

@@ -1,0 +1,54 @@
+import { ActionIcon, Tooltip } from "@mantine/core";
+import {
+  IconPlayerPauseFilled,
+  IconPlayerPlayFilled,
+  IconPlayerSkipForward,
+  IconPlayerTrackNext,
+  IconRotate,
+} from "@tabler/icons-react";
+import type { ReactNode } from "react";
+import { useBench } from "../../stream/bench-store";
+import { actions } from "../actions";
+import styles from "./header.module.css";
+
+/** Run, pause, step a tick, step a period, reset. */
+export function RunControls() {
+  const running = useBench((s) => s.bench?.state === "running");
+  const tripped = useBench((s) => s.bench?.state === "tripped");
+  return (
+    <div className={styles.run}>
+      <Tooltip label={running ? "Pause (space)" : "Run (space)"}>
+        <ActionIcon
+          size={38}
+          radius="xl"
+          variant="filled"
+          color={running ? "accent" : "accent"}
+          aria-label={running ? "Pause" : "Run"}
+          disabled={tripped}
+          onClick={actions.toggle}
+        >
+          {running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
+        </ActionIcon>
+      </Tooltip>
+      <Small label="One tick ( . )" name="Step one tick" onClick={actions.stepTick} disabled={tripped}>
+        <IconPlayerSkipForward size={18} />
+      </Small>
+      <Small label="One drive period ( , )" name="Step one period" onClick={actions.stepPeriod} disabled={tripped}>
+        <IconPlayerTrackNext size={18} />
+      </Small>
+      <Small label="Reset to the start (shift R)" name="Reset" onClick={actions.reset}>
+        <IconRotate size={18} />
+      </Small>
+    </div>
+  );
+}
+
+function Small(props: { label: string; name: string; disabled?: boolean; onClick(): void; children: ReactNode }) {
+  return (
+    <Tooltip label={props.label}>
+      <ActionIcon size={32} variant="subtle" aria-label={props.name} disabled={props.disabled} onClick={props.onClick}>
+        {props.children}
+      </ActionIcon>
+    </Tooltip>
+  );
+}

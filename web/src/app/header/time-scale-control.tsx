@@ -1,0 +1,87 @@
+import { ActionIcon, Button, Group, Popover, Slider, Stack, Text, Tooltip } from "@mantine/core";
+import { useState } from "react";
+import { useBench } from "../../stream/bench-store";
+import { send } from "../send";
+import { formatTimeScale, sliderToTimeScale, stepTimeScale, timeScaleToSlider } from "../time-scale";
+import styles from "./header.module.css";
+
+const set = (value: number | null) => send({ kind: "time_scale", value }, `Time scale ${formatTimeScale(value)}`);
+
+/** How fast device time runs: halve, double, slide, or let go; beside it what the machine achieves. */
+export function TimeScaleControl() {
+  const target = useBench((s) => s.bench?.time_scale ?? null);
+  const achieved = useBench((s) => s.bench?.achieved_scale ?? 0);
+  const capped = useBench((s) => s.bench?.capped ?? false);
+  const state = useBench((s) => s.bench?.state);
+  const [draft, setDraft] = useState<number | undefined>(undefined);
+  const shown = draft ?? timeScaleToSlider(target);
+
+  return (
+    <fieldset className={styles.scale} aria-label="Time scale">
+      <Tooltip label="Half as fast ( [ )">
+        <ActionIcon
+          variant="subtle"
+          size="md"
+          aria-label="Half as fast"
+          onClick={() => set(stepTimeScale(target, 0.5))}
+        >
+          ÷2
+        </ActionIcon>
+      </Tooltip>
+      <Popover width={320} position="bottom">
+        <Popover.Target>
+          <button type="button" className={styles.target} aria-label={`Time scale ${formatTimeScale(target)}, change`}>
+            <span>{target === null ? "max" : formatTimeScale(target)}</span>
+            <small data-capped={capped} data-idle={state !== "running"}>
+              {capped && <b>CAPPED </b>}
+              {state === "running" ? `runs ${formatTimeScale(achieved)}` : "stands still"}
+            </small>
+          </button>
+        </Popover.Target>
+        <Popover.Dropdown>
+          <Stack gap="sm">
+            <Text size="sm">
+              Device time per second of yours:{" "}
+              <b>{formatTimeScale(draft === undefined ? target : sliderToTimeScale(draft))}</b>
+            </Text>
+            <Slider
+              min={0}
+              max={1}
+              step={0.001}
+              value={shown}
+              label={null}
+              thumbLabel="Time scale"
+              onChange={setDraft}
+              onChangeEnd={(position) => {
+                setDraft(undefined);
+                set(sliderToTimeScale(position));
+              }}
+              marks={[
+                { value: 0, label: "1 µs/s" },
+                { value: 0.5, label: "1 ms/s" },
+                { value: 1, label: "real time" },
+              ]}
+              mb="lg"
+            />
+            <Group grow gap="sm">
+              <Button size="xs" variant="default" onClick={() => set(0.002)}>
+                2 ms/s
+              </Button>
+              <Button size="xs" variant="default" onClick={() => set(1)}>
+                Real time
+              </Button>
+              <Button size="xs" variant={target === null ? "filled" : "default"} onClick={() => set(null)}>
+                As fast as possible
+              </Button>
+            </Group>
+          </Stack>
+        </Popover.Dropdown>
+      </Popover>
+      <Tooltip label="Twice as fast ( ] )">
+        <ActionIcon variant="subtle" size="md" aria-label="Twice as fast" onClick={() => set(stepTimeScale(target, 2))}>
+          ×2
+        </ActionIcon>
+      </Tooltip>
+    </fieldset>
+  );
+}

@@ -1,0 +1,39 @@
+import { actions } from "./actions";
+import { focusNextGroup, setLayout } from "./layouts";
+
+export interface KeyBinding {
+  /** `KeyboardEvent.key`, as typed. */
+  key: string;
+  shown: string;
+  does: string;
+  group: "Run" | "Look" | "Bench";
+  run(): void;
+}
+
+/** Every key of the page; the sheet and the listener read the same list. */
+export const KEYMAP: KeyBinding[] = [
+  { key: " ", shown: "Space", does: "run or pause", group: "Run", run: actions.toggle },
+  { key: ".", shown: ".", does: "one tick", group: "Run", run: actions.stepTick },
+  { key: ",", shown: ",", does: "one drive period", group: "Run", run: actions.stepPeriod },
+  { key: "]", shown: "]", does: "twice as fast", group: "Run", run: actions.faster },
+  { key: "[", shown: "[", does: "half as fast", group: "Run", run: actions.slower },
+  { key: "R", shown: "Shift R", does: "reset to the start", group: "Run", run: actions.reset },
+  { key: "h", shown: "H", does: "heal all faults", group: "Bench", run: actions.healAll },
+  { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
+  { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
+  { key: "f", shown: "F", does: "fork", group: "Bench", run: actions.fork },
+  { key: "n", shown: "N", does: "new bench", group: "Bench", run: actions.newBench },
+  { key: "l", shown: "L", does: "all panels live", group: "Look", run: actions.live },
+  { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
+  { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
+  { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
+  { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
+  { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },
+];
+
+/** Keys that belong to the thing in focus. */
+export const LOCAL_KEYS: { shown: string; does: string }[] = [
+  { shown: "← →", does: "on a scope: move through the past" },
+  { shown: "+ −", does: "on a scope: zoom" },
+  { shown: "drag, wheel", does: "on a scope: look at the past; double click returns to live" },
+];

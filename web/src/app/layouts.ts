@@ -1,0 +1,78 @@
+import type { DockviewApi, SerializedDockview } from "dockview-react";
+import { scopeConfig } from "../panels/scope/scope-config";
+import { BUILT_IN } from "./built-in-layouts";
+import { PANELS } from "./panels";
+import { type LayoutName, useView } from "./view-store";
+
+let current: DockviewApi | undefined;
+
+const storageKey = (name: LayoutName) => `combbench.layout.2.${name}`;
+
+/** The dock to lay out; called once it stands. */
+export function attachDock(api: DockviewApi): void {
+  current = api;
+  const asked = new URLSearchParams(window.location.search).get("layout");
+  const name = asked && asked in BUILT_IN ? (asked as LayoutName) : useView.getState().layout;
+  arrange(name, stored(name));
+  api.onDidLayoutChange(() =>
+    localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(api.toJSON())),
+  );
+}
+
+/** Choose a built-in layout afresh; what was rearranged in it is forgotten. */
+export function setLayout(name: LayoutName): void {
+  localStorage.removeItem(storageKey(name));
+  arrange(name, undefined);
+}
+
+/** Open another panel of a kind beside the active one. */
+export function addPanel(kind: string): void {
+  if (!current) return;
+  const number = current.panels.filter((p) => p.view.contentComponent === kind).length + 1;
+  const title = kind === "scope" ? `Scope ${number}` : PANELS[kind].title;
+  current.addPanel({
+    id: `${kind}-${Date.now()}`,
+    component: kind,
+    title,
+    params: kind === "scope" ? { scope: scopeConfig(["plant.displacement"]) } : {},
+  });
+}
+
+/** Move the keyboard to the next group of panels. */
+export function focusNextGroup(): void {
+  const groups = current?.groups ?? [];
+  const at = groups.findIndex((g) => g.element.contains(document.activeElement));
+  const next = groups[(at + 1) % groups.length];
+  next?.activePanel?.api.setActive();
+  next?.element.querySelector<HTMLElement>("[role=tab][aria-selected=true], [role=tab], button")?.focus();
+}
+
+/** Bring the panel of a kind to the front, opening one if there is none. */
+export function showPanel(kind: string): void {
+  const panel = current?.panels.find((p) => p.view.contentComponent === kind);
+  if (panel) panel.api.setActive();
+  else addPanel(kind);
+}
+
+function stored(name: LayoutName): SerializedDockview | undefined {
+  const text = localStorage.getItem(storageKey(name));
+  return text ? (JSON.parse(text) as SerializedDockview) : undefined;
+}
+
+function arrange(name: LayoutName, saved: SerializedDockview | undefined): void {
+  const api = current;
+  useView.setState({ layout: name, large: name === "lecture" });
+  document.documentElement.dataset.size = name === "lecture" ? "large" : "normal";
+  if (!api) return;
+  if (saved) {
+    try {
+      api.fromJSON(saved);
+      return;
+    } catch (error) {
+      console.warn("the stored layout does not fit this version", error);
+      localStorage.removeItem(storageKey(name));
+    }
+  }
+  api.clear();
+  BUILT_IN[name](api, api.width || window.innerWidth, api.height || window.innerHeight);
+}

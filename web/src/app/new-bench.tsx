@@ -1,0 +1,95 @@
+import { Button, NativeSelect, Switch, Text, TextInput } from "@mantine/core";
+import { useEffect, useState } from "react";
+import { api } from "../api/api";
+import type { Device, ScenarioSummary } from "../api/types";
+import { EmptyState } from "../ui/empty-state";
+import styles from "./dialogs.module.css";
+import { openBench } from "./open-bench";
+import { showError } from "./send";
+import { SideSheet } from "./side-sheet";
+import { useView } from "./view-store";
+
+/** Start a bench from the library, on its own device or another. */
+export function NewBench() {
+  return (
+    <SideSheet name="bench" title="New bench" size={520}>
+      <Gallery />
+    </SideSheet>
+  );
+}
+
+function Gallery() {
+  const [scenarios, setScenarios] = useState<ScenarioSummary[] | undefined>(undefined);
+  const [devices, setDevices] = useState<Device[]>([]);
+  const [device, setDevice] = useState("");
+  const [query, setQuery] = useState("");
+  const [paused, setPaused] = useState(false);
+  const [busy, setBusy] = useState<string | undefined>(undefined);
+
+  useEffect(() => {
+    api.scenarios().then(setScenarios, showError);
+    api.devices().then(setDevices, showError);
+  }, []);
+
+  const start = async (scenario: string) => {
+    setBusy(scenario);
+    try {
+      const bench = await api.createBench({ scenario, paused, ...(device ? { set: { "device.id": device } } : {}) });
+      openBench(bench.id);
+      useView.setState({ dialog: "none" });
+    } catch (error) {
+      showError(error);
+    } finally {
+      setBusy(undefined);
+    }
+  };
+
+  const found = scenarios?.filter((s) => `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()));
+  return (
+    <>
+      <div className={styles.filters}>
+        <TextInput
+          size="xs"
+          label="Search"
+          value={query}
+          onChange={(e) => setQuery(e.currentTarget.value)}
+          data-autofocus
+        />
+        <NativeSelect
+          size="xs"
+          label="Device"
+          value={device}
+          data={[{ value: "", label: "the scenario's own" }, ...devices.map((d) => ({ value: d.id, label: d.title }))]}
+          onChange={(e) => setDevice(e.currentTarget.value)}
+        />
+        <Switch size="xs" label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />
+      </div>
+      {!found && <Text c="dimmed">Loading the library…</Text>}
+      {found?.length === 0 && <EmptyState title="Nothing matches">Try another word.</EmptyState>}
+      <ul className={styles.gallery}>
+        {found?.map((s) => (
+          <li key={s.id}>
+            <div>
+              <h3>{s.title}</h3>
+              <p>{s.summary}</p>
+              <small>
+                {s.id}
+                {s.source && ` · ${s.source}`}
+                {s.verdict && <span data-verdict={s.verdict.split(" ")[0]}> · {s.verdict}</span>}
+              </small>
+            </div>
+            <Button
+              size="xs"
+              variant="light"
+              loading={busy === s.id}
+              onClick={() => start(s.id)}
+              aria-label={`Start ${s.title}`}
+            >
+              Start
+            </Button>
+          </li>
+        ))}
+      </ul>
+    </>
+  );
+}

@@ -1,0 +1,20 @@
+import { stream } from "../stream/stream";
+
+const PARAMETER = "bench";
+
+/** The bench named in the address, if any. */
+export function benchInAddress(): string | undefined {
+  const hash = new URLSearchParams(window.location.hash.replace(/^#/, ""));
+  const query = new URLSearchParams(window.location.search);
+  return hash.get(PARAMETER) ?? query.get(PARAMETER) ?? undefined;
+}
+
+/** Show a bench and put it into the address, so that the link can be shared and back works. */
+export function openBench(id: string, replace = false): void {
+  const url = new URL(window.location.href);
+  url.searchParams.set(PARAMETER, id);
+  url.hash = "";
+  if (replace) window.history.replaceState(null, "", url);
+  else window.history.pushState(null, "", url);
+  stream.open(id);
+}

@@ -1,0 +1,36 @@
+import type { ComponentType } from "react";
+import { CardPanel } from "../panels/card/card-panel";
+import { EventsPanel } from "../panels/events/events-panel";
+import { FaultsPanel } from "../panels/faults/faults-panel";
+import { LanesPanel } from "../panels/lanes/lanes-panel";
+import { SchematicPanel } from "../panels/schematic/schematic-panel";
+import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
+import { ScopePanel } from "../panels/scope/scope-panel";
+import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
+import { View3dPanel } from "../panels/view3d/view3d-panel";
+
+export interface PanelProps {
+  params: { scope?: ScopeConfig };
+  setParams(params: { scope?: ScopeConfig }): void;
+}
+
+export interface PanelKind {
+  title: string;
+  component: ComponentType<PanelProps>;
+}
+
+/** Every kind of panel; a new one is its folder and a line here. */
+export const PANELS: Record<string, PanelKind> = {
+  scope: { title: "Scope", component: Scope },
+  lanes: { title: "Diagnosis", component: LanesPanel },
+  schematic: { title: "Bench", component: SchematicPanel },
+  faults: { title: "Faults", component: FaultsPanel },
+  card: { title: "Block", component: CardPanel },
+  events: { title: "Events", component: EventsPanel },
+  scores: { title: "Scoreboard", component: ScoreboardPanel },
+  view3d: { title: "3D", component: View3dPanel },
+};
+
+function Scope({ params, setParams }: PanelProps) {
+  return <ScopePanel config={params.scope ?? scopeConfig([])} onChange={(scope) => setParams({ scope })} />;
+}

@@ -1,0 +1,64 @@
+import { Button } from "@mantine/core";
+import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
+import { useState } from "react";
+import { LanesPanel } from "../panels/lanes/lanes-panel";
+import { scopeConfig } from "../panels/scope/scope-config";
+import { ScopePanel } from "../panels/scope/scope-panel";
+import { View3dPanel } from "../panels/view3d/view3d-panel";
+import { useBench } from "../stream/bench-store";
+import { ErrorFence } from "../ui/error-fence";
+import { PanelVisible } from "../ui/panel-visible";
+import { usePageVisible } from "../ui/use-page-visible";
+import { actions } from "./actions";
+import { DeviceClock } from "./header/device-clock";
+import { StateBadge } from "./header/state-badge";
+import styles from "./phone.module.css";
+
+/** A bench in the hand: status, one scope, the lanes, 3D, and the button that stops it. */
+export function Phone() {
+  const running = useBench((s) => s.bench?.state === "running");
+  const tripped = useBench((s) => s.bench?.state === "tripped");
+  const title = useBench((s) => s.bench?.title);
+  const [scope, setScope] = useState(() => scopeConfig(["model.displacement", "plant.displacement"]));
+  const page = usePageVisible();
+  return (
+    <PanelVisible value={page}>
+      <header className={styles.status}>
+        <div>
+          <h1>{title ?? "CombBench"}</h1>
+          <StateBadge />
+        </div>
+        <DeviceClock />
+      </header>
+      <main className={styles.panels}>
+        <div className={styles.scope}>
+          <ErrorFence name="Scope">
+            <ScopePanel config={scope} onChange={setScope} />
+          </ErrorFence>
+        </div>
+        <div className={styles.lanes}>
+          <ErrorFence name="Diagnosis">
+            <LanesPanel />
+          </ErrorFence>
+        </div>
+        <div className={styles.view}>
+          <ErrorFence name="3D">
+            <View3dPanel />
+          </ErrorFence>
+        </div>
+      </main>
+      <footer className={styles.stop}>
+        <Button
+          fullWidth
+          size="lg"
+          disabled={tripped}
+          color={running ? "alarm" : "accent"}
+          leftSection={running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
+          onClick={actions.toggle}
+        >
+          {running ? "Stop" : "Run"}
+        </Button>
+      </footer>
+    </PanelVisible>
+  );
+}

@@ -1,0 +1,28 @@
+import { notifications } from "@mantine/notifications";
+import { ApiError } from "../api/api-error";
+import type { Command } from "../api/types";
+import { stream } from "../stream/stream";
+import { announce } from "./announce";
+
+/** Send a command to the bench; a refusal is shown where it happened, with what to do. Resolves to whether it took effect. */
+export async function send(command: Command, said?: string): Promise<boolean> {
+  try {
+    const tick = await stream.client.command(command);
+    if (said) announce(`${said}, at tick ${tick}.`);
+    return true;
+  } catch (error) {
+    showError(error);
+    return false;
+  }
+}
+
+export function showError(error: unknown): void {
+  if (!(error instanceof ApiError)) throw error;
+  const { message, hint, field } = error.body;
+  notifications.show({
+    color: "alarm",
+    title: message,
+    message: [field && `Field: ${field}.`, hint].filter(Boolean).join(" "),
+    autoClose: 8000,
+  });
+}

@@ -1,0 +1,94 @@
+import { type CSSVariablesResolver, createTheme, type MantineColorsTuple } from "@mantine/core";
+
+const accent: MantineColorsTuple = [
+  "#eef3ff",
+  "#dbe5ff",
+  "#b6caff",
+  "#8fb0ff",
+  "#6a92f5",
+  "#4b76e2",
+  "#3a63d4",
+  "#2c55c8",
+  "#2648ab",
+  "#1c3787",
+];
+const alarm: MantineColorsTuple = [
+  "#fff0ef",
+  "#ffdcd9",
+  "#ffb6b0",
+  "#ff8c83",
+  "#ff6b60",
+  "#ee4a3e",
+  "#d9352a",
+  "#c4261d",
+  "#a62820",
+  "#841a14",
+];
+
+/** Mantine's own dark greys, in our hue. */
+const dark: MantineColorsTuple = [
+  "#e8ecf1",
+  "#c4ccd5",
+  "#9aa6b4",
+  "#6b7886",
+  "#2a333d",
+  "#27303a",
+  "#1e252d",
+  "#161b21",
+  "#11161b",
+  "#0d1115",
+];
+
+/** Mantine on our tokens. */
+export const theme = createTheme({
+  fontFamily: "var(--font)",
+  headings: { fontFamily: "var(--font)", fontWeight: "600" },
+  primaryColor: "accent",
+  primaryShade: { light: 7, dark: 3 },
+  autoContrast: true,
+  luminanceThreshold: 0.35,
+  colors: { accent, alarm, dark },
+  defaultRadius: "sm",
+  cursorType: "pointer",
+  respectReducedMotion: true,
+  fontSizes: {
+    xs: "var(--size-0)",
+    sm: "var(--size-1)",
+    md: "var(--size-2)",
+    lg: "var(--size-3)",
+    xl: "var(--size-4)",
+  },
+  spacing: { xs: "4px", sm: "8px", md: "12px", lg: "16px", xl: "24px" },
+  radius: { xs: "3px", sm: "5px", md: "6px", lg: "8px", xl: "12px" },
+  components: {
+    Tooltip: {
+      defaultProps: {
+        openDelay: 400,
+        withArrow: true,
+        multiline: true,
+        maw: 320,
+        color: "var(--raised)",
+        c: "var(--text)",
+      },
+    },
+    Popover: { defaultProps: { shadow: "md", withinPortal: true } },
+  },
+});
+
+export const cssVariables: CSSVariablesResolver = () => {
+  const shared = {
+    "--mantine-color-body": "var(--panel)",
+    "--mantine-color-text": "var(--text)",
+    "--mantine-color-dimmed": "var(--muted)",
+    "--mantine-color-default": "var(--raised)",
+    "--mantine-color-default-hover": "var(--hover)",
+    "--mantine-color-default-color": "var(--text)",
+    "--mantine-color-default-border": "var(--line)",
+    "--mantine-color-placeholder": "var(--muted)",
+    "--mantine-color-error": "var(--alarm)",
+    "--mantine-color-accent-light": "var(--accent-soft)",
+    "--mantine-color-accent-light-hover": "var(--accent-hover)",
+    "--mantine-color-accent-light-color": "var(--accent)",
+  };
+  return { variables: {}, dark: shared, light: shared };
+};

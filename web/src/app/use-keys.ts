@@ -1,0 +1,28 @@
+import { useMantineColorScheme } from "@mantine/core";
+import { useEffect } from "react";
+import { KEYMAP } from "./keymap";
+import { useScheme } from "./use-scheme";
+
+const TYPING =
+  "input, textarea, select, [contenteditable], [role=slider], [role=menu], [role=listbox], [role=radiogroup]";
+
+/** Listens for the page's keys, except while something else wants them. */
+export function useKeys(): void {
+  const scheme = useScheme();
+  const { setColorScheme } = useMantineColorScheme();
+  useEffect(() => {
+    const listen = (event: KeyboardEvent) => {
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+      const target = event.target as HTMLElement;
+      if (target.closest(TYPING)) return;
+      if (event.key === " " && target.closest("button, a, summary, [role=button], [role=tab]")) return;
+      if (event.key === "d") return setColorScheme(scheme === "dark" ? "light" : "dark");
+      const binding = KEYMAP.find((b) => b.key === event.key);
+      if (!binding) return;
+      event.preventDefault();
+      binding.run();
+    };
+    window.addEventListener("keydown", listen);
+    return () => window.removeEventListener("keydown", listen);
+  }, [scheme, setColorScheme]);
+}

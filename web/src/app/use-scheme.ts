@@ -1,0 +1,5 @@
+import { useComputedColorScheme } from "@mantine/core";
+import type { Scheme } from "../ui/palette";
+
+/** The colour scheme in force. */
+export const useScheme = (): Scheme => useComputedColorScheme("dark", { getInitialValueInEffect: false });

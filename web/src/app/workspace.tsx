@@ -1,0 +1,90 @@
+import "dockview-react/dist/styles/dockview.css";
+import { Menu } from "@mantine/core";
+import { IconMaximize, IconMinimize, IconPlus } from "@tabler/icons-react";
+import { DockviewReact, type IDockviewHeaderActionsProps, type IDockviewPanelProps } from "dockview-react";
+import { type FunctionComponent, useEffect, useState } from "react";
+import { ErrorFence } from "../ui/error-fence";
+import { PanelVisible } from "../ui/panel-visible";
+import { usePageVisible } from "../ui/use-page-visible";
+import "./dock.css";
+import { addPanel, attachDock } from "./layouts";
+import { PANELS, type PanelKind } from "./panels";
+
+const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: 6 };
+
+const components = Object.fromEntries(Object.entries(PANELS).map(([name, kind]) => [name, dockPanel(kind)]));
+
+/** The panels, docked; they keep their places in this browser. */
+export function Workspace() {
+  return (
+    <main className="workspace">
+      <DockviewReact
+        components={components}
+        rightHeaderActionsComponent={GroupActions}
+        theme={THEME}
+        disableFloatingGroups
+        onReady={({ api }) => attachDock(api)}
+      />
+    </main>
+  );
+}
+
+function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
+  return function DockPanel({ api, params }: IDockviewPanelProps) {
+    const [shown, setShown] = useState(api.isVisible);
+    const page = usePageVisible();
+    useEffect(() => {
+      const subscription = api.onDidVisibilityChange((event) => setShown(event.isVisible));
+      return () => subscription.dispose();
+    }, [api]);
+    const Panel = kind.component;
+    return (
+      <PanelVisible value={shown && page}>
+        <ErrorFence name={kind.title}>
+          <Panel params={params} setParams={(next) => api.updateParameters(next)} />
+        </ErrorFence>
+      </PanelVisible>
+    );
+  };
+}
+
+function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActionsProps) {
+  const [maximised, setMaximised] = useState(false);
+  useEffect(() => {
+    const subscription = containerApi.onDidMaximizedGroupChange(() => setMaximised(containerApi.hasMaximizedGroup()));
+    return () => subscription.dispose();
+  }, [containerApi]);
+  return (
+    <div className="dock-actions">
+      <Menu position="bottom-end" shadow="md">
+        <Menu.Target>
+          <button
+            type="button"
+            aria-label="Add a panel here"
+            title="Add a panel here"
+            onPointerDown={() => group.api.setActive()}
+          >
+            <IconPlus size={14} />
+          </button>
+        </Menu.Target>
+        <Menu.Dropdown>
+          {Object.entries(PANELS).map(([kind, { title }]) => (
+            <Menu.Item key={kind} onClick={() => addPanel(kind)}>
+              {title}
+            </Menu.Item>
+          ))}
+        </Menu.Dropdown>
+      </Menu>
+      <button
+        type="button"
+        aria-label={maximised ? "Back to all panels" : "Fill the page with this panel"}
+        title={maximised ? "Back to all panels" : "Fill the page with this panel"}
+        onClick={() =>
+          maximised ? containerApi.exitMaximizedGroup() : activePanel && containerApi.maximizeGroup(activePanel)
+        }
+      >
+        {maximised ? <IconMinimize size={14} /> : <IconMaximize size={14} />}
+      </button>
+    </div>
+  );
+}

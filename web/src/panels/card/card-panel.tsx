@@ -1,0 +1,78 @@
+import { Button, NativeSelect } from "@mantine/core";
+import { useMemo } from "react";
+import { useCatalog } from "../../api/use-catalog";
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { BlockEquation } from "./block-equation";
+import styles from "./card.module.css";
+import { instances } from "./instances";
+import { ParameterList } from "./parameter-list";
+
+/** What was last clicked: what the block does, its equations and its parameters. */
+export function CardPanel() {
+  const card = useView((s) => s.card);
+  const parameters = useBench((s) => s.bench?.parameters);
+  const controller = useBench((s) => s.bench?.controller);
+  const controllers = useBench((s) => s.bench?.controllers);
+  const diagnosers = useBench((s) => s.bench?.diagnosers);
+  const { blocks, block, failed, retry } = useCatalog();
+  const list = useMemo(
+    () =>
+      parameters && controller && controllers && diagnosers
+        ? instances({ parameters, controller, controllers, diagnosers })
+        : [],
+    [parameters, controller, controllers, diagnosers],
+  );
+  const wanted = card === "controller" ? `controllers.${controller}` : card;
+  const instance = list.find((i) => i.id === wanted) ?? list[0];
+  if (!instance || !parameters)
+    return (
+      <EmptyState title="No block chosen">Click a block of the loop to see its equations and parameters.</EmptyState>
+    );
+  const found = block(instance.family, instance.name);
+  const options = list.map((i) => ({
+    value: i.id,
+    label: `${i.title}: ${block(i.family, i.name)?.title ?? i.name.replaceAll("_", " ")}`,
+  }));
+  return (
+    <section className={styles.card} aria-label={`Block: ${found?.title ?? instance.name}`}>
+      <NativeSelect
+        size="xs"
+        aria-label="Block"
+        value={instance.id}
+        data={options}
+        onChange={(e) => useView.setState({ card: e.currentTarget.value })}
+      />
+      {found ? (
+        <>
+          <h2 className={styles.title}>{found.title}</h2>
+          <p className={styles.summary}>{found.summary}</p>
+          {found.equations.length > 0 && (
+            <div className={styles.equations}>
+              {found.equations.map((equation) => (
+                <BlockEquation key={equation.label + equation.latex} equation={equation} />
+              ))}
+            </div>
+          )}
+          <ParameterList key={instance.id} instance={instance} parameters={found.parameters} document={parameters} />
+        </>
+      ) : (
+        <EmptyState
+          title={
+            failed ? "The catalogue did not come" : blocks.length ? "Not in the catalogue" : "Loading the catalogue"
+          }
+          action={
+            failed && (
+              <Button size="xs" onClick={retry}>
+                Ask again
+              </Button>
+            )
+          }
+        >
+          {instance.family} {instance.name}
+        </EmptyState>
+      )}
+    </section>
+  );
+}

@@ -1,0 +1,78 @@
+import { Button, Checkbox, Group } from "@mantine/core";
+import { useState } from "react";
+import type { Document, Parameter } from "../../api/types";
+import { send } from "../../app/send";
+import styles from "./card.module.css";
+import { type Instance, valueAt } from "./instances";
+import { ParameterRow } from "./parameter-row";
+
+interface ParameterListProps {
+  instance: Instance;
+  parameters: Parameter[];
+  document: Document;
+}
+
+type Values = Record<string, unknown>;
+
+/** The parameters of a block: change at once, or collect changes and apply them in one tick. */
+export function ParameterList({ instance, parameters, document }: ParameterListProps) {
+  const [collect, setCollect] = useState(false);
+  const [staged, setStaged] = useState<Values>({});
+  const [undo, setUndo] = useState<Values | undefined>(undefined);
+  const current = (name: string) => valueAt(document, `${instance.path}.${name}`);
+  const shown = parameters.filter((p) => p.type !== "list" && p.type !== "table");
+
+  const apply = async (values: Values) => {
+    const before = Object.fromEntries(Object.keys(values).map((path) => [path, valueAt(document, path)]));
+    const names = Object.keys(values).map((path) => path.split(".").at(-1)?.replaceAll("_", " "));
+    if (!(await send({ kind: "set", values }, `Set ${names.join(", ")}`))) return;
+    setStaged({});
+    setUndo(Object.values(before).includes(undefined) ? undefined : before);
+  };
+
+  const change = (parameter: Parameter, value: unknown) => {
+    const path = `${instance.path}.${parameter.name}`;
+    if (collect) setStaged({ ...staged, [path]: value });
+    else void apply({ [path]: value });
+  };
+
+  if (shown.length === 0) return <p className={styles.none}>This block has no parameters.</p>;
+  const count = Object.keys(staged).length;
+  return (
+    <>
+      <div className={styles.parameters}>
+        {shown.map((parameter) => {
+          const path = `${instance.path}.${parameter.name}`;
+          const value = path in staged ? staged[path] : (current(parameter.name) ?? parameter.default);
+          return (
+            <ParameterRow
+              key={parameter.name}
+              parameter={parameter}
+              value={value}
+              staged={path in staged}
+              onChange={(next) => change(parameter, next)}
+            />
+          );
+        })}
+      </div>
+      <Group gap="sm" className={styles.actions}>
+        <Checkbox
+          size="xs"
+          label="Collect changes, apply them in one tick"
+          checked={collect}
+          onChange={(e) => setCollect(e.currentTarget.checked)}
+        />
+        {count > 0 && (
+          <Button size="compact-sm" onClick={() => apply(staged)}>
+            Apply {count} in one tick
+          </Button>
+        )}
+        {undo && (
+          <Button size="compact-sm" variant="default" onClick={() => apply(undo)}>
+            Undo
+          </Button>
+        )}
+      </Group>
+    </>
+  );
+}

@@ -1,0 +1,90 @@
+import { ActionIcon, NativeSelect, Switch, Tooltip } from "@mantine/core";
+import { IconArrowBackUp, IconLock } from "@tabler/icons-react";
+import type { Parameter } from "../../api/types";
+import { NumberField } from "../../ui/number-field";
+import { unitText } from "../../ui/unit-scale";
+import styles from "./card.module.css";
+
+interface ParameterRowProps {
+  parameter: Parameter;
+  value: unknown;
+  staged: boolean;
+  onChange(value: unknown): void;
+}
+
+/** One parameter: what it means, its value with unit, its default and limits, and whether it may change now. */
+export function ParameterRow({ parameter, value, staged, onChange }: ParameterRowProps) {
+  const { label, meaning, live, type } = parameter;
+  const isDefault = JSON.stringify(value) === JSON.stringify(parameter.default);
+  const range = limits(parameter);
+  return (
+    <div className={styles.parameter} data-staged={staged}>
+      <div className={styles.words}>
+        <span className={styles.label}>
+          {label}
+          {!live && (
+            <Tooltip label="Fixed while the bench exists: it changes the wiring. Start a new bench to choose it.">
+              <IconLock size={12} role="img" aria-label="fixed while running" />
+            </Tooltip>
+          )}
+        </span>
+        <span className={styles.meaning}>
+          {meaning}
+          {range && ` (${range})`}
+        </span>
+      </div>
+      <div className={styles.entry}>
+        {!isDefault && live && parameter.default !== null && type !== "list" && (
+          <Tooltip label={`Back to the default ${String(parameter.default)}`}>
+            <ActionIcon
+              size={22}
+              variant="subtle"
+              aria-label={`${label}: back to the default`}
+              onClick={() => onChange(parameter.default)}
+            >
+              <IconArrowBackUp size={14} />
+            </ActionIcon>
+          </Tooltip>
+        )}
+        {type === "boolean" ? (
+          <Switch
+            size="xs"
+            aria-label={label}
+            checked={value === true}
+            disabled={!live}
+            onChange={(e) => onChange(e.currentTarget.checked)}
+          />
+        ) : type === "choice" ? (
+          <NativeSelect
+            size="xs"
+            w={132}
+            aria-label={label}
+            disabled={!live}
+            value={String(value)}
+            data={parameter.choices ?? []}
+            onChange={(e) => onChange(e.currentTarget.value)}
+          />
+        ) : typeof value === "number" || value === null || value === undefined ? (
+          <NumberField
+            label={label}
+            unit={unitText(parameter.unit)}
+            value={typeof value === "number" ? value : undefined}
+            minimum={parameter.minimum}
+            maximum={parameter.maximum}
+            integer={type === "integer"}
+            disabled={!live}
+            onCommit={onChange}
+          />
+        ) : (
+          <code>{String(value)}</code>
+        )}
+      </div>
+    </div>
+  );
+}
+
+function limits({ minimum, maximum }: Parameter): string {
+  if (minimum !== null && maximum !== null) return `${minimum} to ${maximum}`;
+  if (minimum !== null) return `at least ${minimum}`;
+  return maximum === null ? "" : `at most ${maximum}`;
+}

@@ -1,0 +1,43 @@
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatNumber } from "../../ui/format";
+import { jump } from "../../ui/jump";
+import { eventTone } from "./event-tone";
+import styles from "./events.module.css";
+
+const SHOWN = 300;
+
+/** Everything that happened, numbered, newest first; a click takes the scopes there. */
+export function EventsPanel() {
+  const events = useBench((s) => s.events);
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  if (events.length === 0)
+    return (
+      <EmptyState title="Nothing has happened yet">
+        Every command, fault, finding and trip will stand here with its tick.
+      </EmptyState>
+    );
+  return (
+    <ol className={styles.list} aria-label="Events, newest first">
+      {events
+        .slice(-SHOWN)
+        .reverse()
+        .map((event) => (
+          <li key={event.seq}>
+            <button
+              type="button"
+              className={styles.event}
+              data-tone={eventTone(event)}
+              onClick={() => jump.to({ tick: event.tick })}
+              title={`Tick ${event.tick}: show it on the scopes`}
+            >
+              <span className={styles.number}>{event.seq}</span>
+              <span className={styles.time}>{formatNumber(event.tick * dtMs, 2)} ms</span>
+              <span className={styles.text}>{event.text}</span>
+              <span className={styles.actor}>{event.actor}</span>
+            </button>
+          </li>
+        ))}
+    </ol>
+  );
+}

@@ -1,0 +1,137 @@
+import { Button, Group, NumberInput, SegmentedControl, Slider, Stack, TextInput } from "@mantine/core";
+import type { BlockCard, Parameter } from "../../api/types";
+import { Formula } from "../../ui/formula";
+import { unitText } from "../../ui/unit-scale";
+import type { FaultDraft } from "./fault-draft";
+import styles from "./faults.module.css";
+import { type SeverityScale, severityText } from "./severity";
+
+interface FaultFormProps {
+  fault: BlockCard;
+  parameter: Parameter | undefined;
+  scale: SeverityScale;
+  suggested: number;
+  draft: FaultDraft;
+  onChange(draft: FaultDraft): void;
+  onInject(): void;
+}
+
+/** How much, how it comes, and when. */
+export function FaultForm({ fault, parameter, scale, suggested, draft, onChange, onInject }: FaultFormProps) {
+  const set = (part: Partial<FaultDraft>) => onChange({ ...draft, ...part });
+  const number = (key: "durationMs" | "periodMs" | "atMs") => (value: string | number) =>
+    typeof value === "number" && set({ [key]: value });
+  const factor = scale.percent ? 100 : 1;
+  const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
+  return (
+    <div className={styles.form}>
+      <p className={styles.changes}>Changes the {fault.changes ?? fault.summary}.</p>
+      {fault.equations.map((equation) => (
+        <Formula key={equation.latex} latex={equation.latex} />
+      ))}
+      <Stack gap="sm">
+        <Group gap="md" wrap="nowrap" align="center">
+          <Slider
+            flex={1}
+            size="sm"
+            min={scale.low * factor}
+            max={scale.high * factor}
+            step={(scale.high - scale.low) * factor > 40 ? 1 : 0.1}
+            value={draft.severity * factor}
+            label={null}
+            thumbLabel={`Severity of ${fault.title}`}
+            marks={[
+              { value: 0, label: "0" },
+              { value: suggested * factor, label: severityText(suggested, scale, unit) },
+            ]}
+            onChange={(value) => set({ severity: value / factor })}
+            mb={18}
+          />
+          <NumberInput
+            w={96}
+            size="xs"
+            aria-label={`Severity of ${fault.title}, exact`}
+            suffix={` ${unit}`}
+            min={scale.minimum * factor}
+            max={scale.maximum * factor}
+            value={Number((draft.severity * factor).toPrecision(6))}
+            onChange={(value) => typeof value === "number" && set({ severity: value / factor })}
+          />
+        </Group>
+        <SegmentedControl
+          size="xs"
+          fullWidth
+          aria-label="How it comes"
+          value={draft.profile}
+          data={["step", "ramp", "intermittent"]}
+          onChange={(profile) => set({ profile: profile as FaultDraft["profile"] })}
+        />
+        {draft.profile === "ramp" && (
+          <NumberInput
+            size="xs"
+            label="Over"
+            suffix=" ms"
+            min={0.01}
+            value={draft.durationMs}
+            onChange={number("durationMs")}
+          />
+        )}
+        {draft.profile === "intermittent" && (
+          <Group grow gap="sm">
+            <NumberInput
+              size="xs"
+              label="Every"
+              suffix=" ms"
+              min={0.01}
+              value={draft.periodMs}
+              onChange={number("periodMs")}
+            />
+            <NumberInput
+              size="xs"
+              label="On for"
+              suffix=" %"
+              min={1}
+              max={100}
+              value={draft.duty * 100}
+              onChange={(v) => typeof v === "number" && set({ duty: v / 100 })}
+            />
+          </Group>
+        )}
+        <SegmentedControl
+          size="xs"
+          fullWidth
+          aria-label="When it comes"
+          value={draft.moment}
+          data={[
+            { value: "now", label: "now" },
+            { value: "at", label: "at a time" },
+            { value: "when", label: "on a condition" },
+          ]}
+          onChange={(moment) => set({ moment: moment as FaultDraft["moment"] })}
+        />
+        {draft.moment === "at" && (
+          <NumberInput
+            size="xs"
+            label="At device time"
+            suffix=" ms"
+            min={0}
+            value={draft.atMs}
+            onChange={number("atMs")}
+          />
+        )}
+        {draft.moment === "when" && (
+          <TextInput
+            size="xs"
+            label="When"
+            description="A signal, > or <, and a value"
+            value={draft.when}
+            onChange={(e) => set({ when: e.currentTarget.value })}
+          />
+        )}
+        <Button size="xs" onClick={onInject}>
+          {draft.moment === "now" ? "Inject" : "Let it wait for its moment"} {severityText(draft.severity, scale, unit)}
+        </Button>
+      </Stack>
+    </div>
+  );
+}

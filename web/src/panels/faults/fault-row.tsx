@@ -1,0 +1,79 @@
+import { Button } from "@mantine/core";
+import { IconChevronRight } from "@tabler/icons-react";
+import { useState } from "react";
+import type { ActiveFault, BlockCard } from "../../api/types";
+import { send } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+import { formatNumber } from "../../ui/format";
+import { injectCommand, newDraft } from "./fault-draft";
+import { FaultForm } from "./fault-form";
+import styles from "./faults.module.css";
+import { severityScale, severityText } from "./severity";
+
+interface FaultRowProps {
+  fault: BlockCard;
+  active: ActiveFault | undefined;
+  open: boolean;
+  onToggle(): void;
+}
+
+/** One fault: inject with one press, or open it to choose how and when. */
+export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
+  const parameter = fault.parameters.find((p) => p.name === "severity");
+  const suggested = fault.suggested || Number(parameter?.default) || 0.05;
+  const [draft, setDraft] = useState(() => newDraft(suggested));
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const scale = severityScale(parameter, suggested);
+  const unit = parameter?.unit ?? "";
+  const inject = () =>
+    send(
+      injectCommand(fault.name, draft),
+      `${fault.title} ${severityText(draft.severity, scale, unit)} ${draft.moment === "now" ? "injected" : "is waiting"}`,
+    );
+
+  return (
+    <li className={styles.fault} data-active={active !== undefined}>
+      <div className={styles.row}>
+        <button type="button" className={styles.name} aria-expanded={open} onClick={onToggle}>
+          <IconChevronRight size={14} className={styles.chevron} aria-hidden="true" />
+          <span>{fault.title}</span>
+        </button>
+        {active ? (
+          <>
+            <b className={styles.acting}>
+              {severityText(active.severity, scale, unit)}
+              {active.since_tick !== undefined && <small> since {formatNumber(active.since_tick * dtMs, 1)} ms</small>}
+            </b>
+            <Button
+              size="compact-sm"
+              variant="default"
+              onClick={() => send({ kind: "heal", faults: [fault.name] }, `${fault.title} healed`)}
+            >
+              Heal
+            </Button>
+          </>
+        ) : (
+          <Button
+            size="compact-sm"
+            variant="light"
+            onClick={inject}
+            aria-label={`Inject ${fault.title} ${severityText(draft.severity, scale, unit)}`}
+          >
+            Inject {severityText(draft.severity, scale, unit)}
+          </Button>
+        )}
+      </div>
+      {open && (
+        <FaultForm
+          fault={fault}
+          parameter={parameter}
+          scale={scale}
+          suggested={suggested}
+          draft={draft}
+          onChange={setDraft}
+          onInject={inject}
+        />
+      )}
+    </li>
+  );
+}

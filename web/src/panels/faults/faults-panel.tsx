@@ -1,0 +1,57 @@
+import { Button } from "@mantine/core";
+import { useState } from "react";
+import { useCatalog } from "../../api/use-catalog";
+import { actions } from "../../app/actions";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { FaultRow } from "./fault-row";
+import styles from "./faults.module.css";
+
+/** Every fault of the catalogue: what it changes, how much, how and when; several at once. */
+export function FaultsPanel() {
+  const { blocks, failed, retry } = useCatalog();
+  const active = useBench((s) => s.bench?.faults);
+  const [open, setOpen] = useState<string | undefined>(undefined);
+  const faults = blocks.filter((b) => b.family === "faults");
+  if (faults.length === 0)
+    return (
+      <EmptyState
+        title={failed ? "The catalogue did not come" : "Loading the faults"}
+        action={
+          failed && (
+            <Button size="xs" onClick={retry}>
+              Ask again
+            </Button>
+          )
+        }
+      >
+        Faults come from the server's catalogue.
+      </EmptyState>
+    );
+  const acting = active?.filter((f) => f.severity !== 0) ?? [];
+  return (
+    <section className={styles.panel} aria-label="Faults">
+      <div className={styles.top}>
+        <span>
+          {acting.length === 0
+            ? "The device is healthy"
+            : `${acting.length} ${acting.length === 1 ? "fault acts" : "faults act"}`}
+        </span>
+        <Button size="compact-sm" variant="default" disabled={acting.length === 0} onClick={actions.healAll}>
+          Heal all
+        </Button>
+      </div>
+      <ul className={styles.list}>
+        {faults.map((fault) => (
+          <FaultRow
+            key={fault.name}
+            fault={fault}
+            active={acting.find((f) => f.name === fault.name)}
+            open={open === fault.name}
+            onToggle={() => setOpen(open === fault.name ? undefined : fault.name)}
+          />
+        ))}
+      </ul>
+    </section>
+  );
+}

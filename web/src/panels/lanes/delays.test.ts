@@ -1,0 +1,28 @@
+import { expect, it } from "vitest";
+import type { LogEntry } from "../../api/types";
+import { truthSwitches } from "./delays";
+
+const entry = (tick: number, kind: string, text: string, old: unknown, fresh: unknown): LogEntry => ({
+  seq: tick,
+  tick,
+  actor: "board",
+  kind,
+  text,
+  command: null,
+  old,
+  new: fresh,
+});
+
+it("pairs each change of the truth with the delay of its recognition, per diagnoser", () => {
+  const log = [
+    entry(100, "truth_changed", "kalman: the truth is m+5", null, "m+5"),
+    entry(100, "truth_changed", "imm: the truth is m+5", null, "m+5"),
+    entry(156, "recognised", "kalman found m+5 after 37 samples (0.74 ms)", 37, "m+5"),
+    entry(300, "truth_changed", "kalman: the truth is healthy", null, "healthy"),
+  ];
+  expect(truthSwitches(log, "kalman")).toEqual([
+    { tick: 100, label: "m+5", delay: 37 },
+    { tick: 300, label: "healthy", delay: undefined },
+  ]);
+  expect(truthSwitches(log, "imm")[0].delay).toBeUndefined();
+});

@@ -1,0 +1,46 @@
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { formatNumber, formatPercent } from "../../ui/format";
+import type { TruthSwitch } from "./delays";
+import styles from "./lanes.module.css";
+
+/** The figures of a diagnoser that are read from the last row. */
+export function LanesHeadline({ id, names, switches }: { id: string; names: string[]; switches: TruthSwitch[] }) {
+  const score = useBench((s) => s.scores[id]);
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const last = switches.at(-1);
+  const winner = typeof score?.winner === "number" ? names[score.winner] : score?.winner;
+  const right = score !== undefined && score.winner === score.truth;
+  return (
+    <dl className={styles.headline}>
+      <div>
+        <dt>
+          <button type="button" className={styles.name} onClick={() => useView.setState({ card: `diagnosers.${id}` })}>
+            {id.replaceAll("_", " ")} says
+          </button>
+        </dt>
+        <dd className={styles.winner} data-right={right}>
+          {winner ?? "–"}
+        </dd>
+      </div>
+      <div>
+        <dt>delay</dt>
+        <dd>
+          {last?.delay === undefined
+            ? last
+              ? "not found yet"
+              : "–"
+            : `${last.delay} samples · ${formatNumber(last.delay * dtMs, 2)} ms`}
+        </dd>
+      </div>
+      <div>
+        <dt>correct</dt>
+        <dd>{score ? formatPercent(score.correct_fraction) : "–"}</dd>
+      </div>
+      <div>
+        <dt>false switches</dt>
+        <dd>{score?.false_switches ?? "–"}</dd>
+      </div>
+    </dl>
+  );
+}

@@ -1,0 +1,30 @@
+/** A box of the loop as drawn: which card it opens and which signal it shows. */
+export interface LoopBox {
+  id: "reference" | "controller" | "drive" | "plant" | "sensor" | "diagnosis";
+  title: string;
+  x: number;
+  y: number;
+}
+
+export const BOX = { width: 102, height: 66 };
+
+/** The loop, drawn once round: reference, controller, drive above; device, sensor, diagnosis below. */
+export const LOOP: LoopBox[] = [
+  { id: "reference", title: "Reference", x: 1, y: 2 },
+  { id: "controller", title: "Controller", x: 119, y: 2 },
+  { id: "drive", title: "Drive", x: 237, y: 2 },
+  { id: "plant", title: "Device", x: 237, y: 108 },
+  { id: "sensor", title: "Sensor", x: 119, y: 108 },
+  { id: "diagnosis", title: "Diagnosis", x: 1, y: 108 },
+];
+
+/** Signal paths between the boxes. */
+export const WIRES: { id: string; d: string; label: string; at: [number, number] }[] = [
+  { id: "r", d: "M103 35 H119", label: "r", at: [108, 29] },
+  { id: "u", d: "M221 35 H237", label: "u", at: [225, 29] },
+  { id: "v", d: "M288 68 V108", label: "V", at: [294, 92] },
+  { id: "x", d: "M237 141 H221", label: "x", at: [226, 135] },
+  { id: "z", d: "M170 108 V68", label: "z", at: [176, 104] },
+  { id: "zd", d: "M119 148 H103", label: "z", at: [108, 142] },
+  { id: "ud", d: "M228 35 V86 H52 V108", label: "u", at: [58, 104] },
+];

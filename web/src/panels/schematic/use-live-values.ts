@@ -1,0 +1,52 @@
+import { useCallback, useMemo, useRef } from "react";
+import { useBench } from "../../stream/bench-store";
+import { useFeed } from "../../stream/use-feed";
+import { formatOn } from "../../ui/format";
+import { unitScale } from "../../ui/unit-scale";
+
+const EVERY_MS = 100;
+const FORGET = 0.995;
+
+/** Newest values of named signals, written straight into elements; give each element `live(key)` as its ref. */
+export function useLiveValues(shown: Record<string, string>) {
+  const signals = useBench((s) => s.bench?.signals);
+  const elements = useRef(new Map<string, Element>());
+  const peaks = useRef(new Map<string, number>());
+  const last = useRef(0);
+  const entries = useMemo(
+    () =>
+      Object.entries(shown).flatMap(([key, name]) => {
+        const signal = signals?.find((s) => s.name === name);
+        return signal ? [{ key, name, unit: signal.unit }] : [];
+      }),
+    [shown, signals],
+  );
+  const subscription = useMemo(
+    () =>
+      entries.length
+        ? { mode: "roll" as const, signals: entries.map((e) => e.name), window_ms: 0.5, width: 2 }
+        : undefined,
+    [entries],
+  );
+  useFeed(subscription, (frame) => {
+    const now = performance.now();
+    if (now - last.current < EVERY_MS) return;
+    last.current = now;
+    entries.forEach(({ key, unit }, i) => {
+      const value = frame.latest[i];
+      const high = Math.max(Math.abs(frame.data[i * 2 * frame.columns]) || 0, Math.abs(value) || 0);
+      const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
+      peaks.current.set(key, peak);
+      const scale = unitScale(unit, peak, 3);
+      const element = elements.current.get(key);
+      if (element) element.textContent = `${formatOn(scale, value)} ${scale.unit}`;
+    });
+  });
+  return useCallback(
+    (key: string) => (element: Element | null) => {
+      if (element) elements.current.set(key, element);
+      else elements.current.delete(key);
+    },
+    [],
+  );
+}

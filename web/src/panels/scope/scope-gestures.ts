@@ -1,0 +1,87 @@
+import { zoomSpan } from "./time-window";
+
+export interface ScopeGestures {
+  /** The span moved under the hand; ticks. */
+  onSpan(start: number, end: number): void;
+  onLive(): void;
+}
+
+interface Span {
+  start: number;
+  end: number;
+}
+
+const WHEEL_STEP = 1.2;
+
+/** Drag pans, wheel zooms about the pointer, two fingers pinch, double click goes live. Returns how to stop. */
+export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, span: () => Span): () => void {
+  const stop = new AbortController();
+  const { signal } = stop;
+  const pointers = new Map<number, number>();
+  let grabbed: Span | undefined;
+  let grabbedAt: number[] = [];
+
+  const tickAt = (x: number, s: Span) => s.start + (x / over.clientWidth) * (s.end - s.start);
+  const grab = () => {
+    grabbed = { ...span() };
+    grabbedAt = [...pointers.values()];
+  };
+
+  over.addEventListener(
+    "pointerdown",
+    (event) => {
+      if (event.button !== 0) return;
+      over.setPointerCapture(event.pointerId);
+      pointers.set(event.pointerId, event.offsetX);
+      grab();
+    },
+    { signal },
+  );
+  over.addEventListener(
+    "pointermove",
+    (event) => {
+      if (!grabbed || !pointers.has(event.pointerId)) return;
+      pointers.set(event.pointerId, event.offsetX);
+      const xs = [...pointers.values()];
+      if (xs.length === 1 && Math.abs(xs[0] - grabbedAt[0]) < 3) return;
+      if (xs.length >= 2) {
+        const zoom = Math.max(10, Math.abs(grabbedAt[1] - grabbedAt[0])) / Math.max(10, Math.abs(xs[1] - xs[0]));
+        const next = zoomSpan(grabbed.start, grabbed.end, tickAt((grabbedAt[0] + grabbedAt[1]) / 2, grabbed), zoom);
+        gestures.onSpan(next.start, next.end);
+        return;
+      }
+      const shift = tickAt(grabbedAt[0], grabbed) - tickAt(xs[0], grabbed);
+      gestures.onSpan(grabbed.start + shift, grabbed.end + shift);
+    },
+    { signal },
+  );
+  const release = (event: PointerEvent) => {
+    pointers.delete(event.pointerId);
+    if (pointers.size) grab();
+    else grabbed = undefined;
+  };
+  over.addEventListener("pointerup", release, { signal });
+  over.addEventListener("pointercancel", release, { signal });
+  over.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      const now = span();
+      if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) {
+        const shift = (Math.sign(event.deltaX || event.deltaY) * (now.end - now.start)) / 12;
+        gestures.onSpan(now.start + shift, now.end + shift);
+        return;
+      }
+      const next = zoomSpan(
+        now.start,
+        now.end,
+        tickAt(event.offsetX, now),
+        event.deltaY > 0 ? WHEEL_STEP : 1 / WHEEL_STEP,
+      );
+      gestures.onSpan(next.start, next.end);
+    },
+    { signal, passive: false },
+  );
+  over.addEventListener("dblclick", () => gestures.onLive(), { signal });
+  return () => stop.abort();
+}

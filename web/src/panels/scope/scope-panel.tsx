@@ -1,0 +1,126 @@
+import "uplot/dist/uPlot.min.css";
+import { useCallback, useEffect, useMemo, useRef, useState } from "react";
+import { useScheme } from "../../app/use-scheme";
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { stream } from "../../stream/stream";
+import { useFeed } from "../../stream/use-feed";
+import { EmptyState } from "../../ui/empty-state";
+import { faultSpans } from "../faults/fault-spans";
+import { RearmContext } from "./rearm-context";
+import styles from "./scope.module.css";
+import type { ScopeConfig } from "./scope-config";
+import { ScopeLegend } from "./scope-legend";
+import { ScopePlot } from "./scope-plot";
+import { ScopeToolbar, type TriggerState } from "./scope-toolbar";
+import { SignalPicker } from "./signal-picker";
+import { scopeSubscription } from "./time-window";
+import { useScopeKeys } from "./use-scope-keys";
+import { useTimeView } from "./use-time-view";
+import { useTraces } from "./use-traces";
+
+interface ScopePanelProps {
+  config: ScopeConfig;
+  onChange(config: ScopeConfig): void;
+}
+
+/** An oscilloscope: rolls, triggers, or stands still on a span of the past while the board runs on. */
+export function ScopePanel({ config, onChange }: ScopePanelProps) {
+  const scheme = useScheme();
+  const large = useView((s) => s.large);
+  const dtMs = useBench((s) => s.bench?.dt_ms);
+  const traces = useTraces(config.signals);
+  const host = useRef<HTMLDivElement>(null);
+  const plot = useRef<ScopePlot | undefined>(undefined);
+  const { view, span, look, goLive } = useTimeView(config.windowMs, dtMs, (start, end) =>
+    plot.current?.move(start, end),
+  );
+  const [pixels, setPixels] = useState(0);
+  const [trigger, setTrigger] = useState<TriggerState>("none");
+
+  useEffect(() => {
+    if (!host.current || traces.length === 0) return;
+    const made = new ScopePlot({
+      host: host.current,
+      traces,
+      scheme,
+      lineWidth: large ? 2.6 : 1.6,
+      fontSize: large ? 15 : 12,
+      marks: marksNow,
+      gestures: { onSpan: look, onLive: goLive },
+    });
+    plot.current = made;
+    setPixels(made.pixels);
+    const observer = new ResizeObserver(([entry]) => {
+      made.resize(entry.contentRect.width, entry.contentRect.height);
+      setPixels(made.pixels);
+    });
+    observer.observe(host.current);
+    return () => {
+      observer.disconnect();
+      made.destroy();
+      plot.current = undefined;
+    };
+  }, [traces, scheme, large, look, goLive]);
+
+  const subscription = useMemo(() => {
+    if (!dtMs || traces.length === 0 || pixels < 20) return undefined;
+    return scopeSubscription({ ...config, signals: traces.map((t) => t.name) }, view, pixels, dtMs);
+  }, [config, traces, view, pixels, dtMs]);
+
+  const feed = useFeed(subscription, (frame) => {
+    if (frame.frozen !== (span.current !== undefined)) return;
+    plot.current?.draw(frame, span.current);
+    const state: TriggerState = frame.waiting ? "waiting" : frame.triggered ? "triggered" : "none";
+    if (state !== trigger) setTrigger(state);
+  });
+
+  const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
+  const onKeyDown = useScopeKeys(plot, look, goLive);
+  if (dtMs === undefined)
+    return <EmptyState title="No bench yet">The scope fills as soon as a bench is connected.</EmptyState>;
+  return (
+    <section className={styles.scope} aria-label={`Scope: ${traces.map((t) => t.name).join(", ") || "empty"}`}>
+      <RearmContext value={rearm}>
+        <ScopeToolbar config={config} onChange={onChange} past={view.kind === "past"} onLive={goLive} trigger={trigger}>
+          <ScopeLegend
+            traces={traces}
+            plot={plot}
+            onRemove={(name) => onChange({ ...config, signals: config.signals.filter((s) => s !== name) })}
+          />
+          <SignalPicker chosen={config.signals} onChange={(signals) => onChange({ ...config, signals })} />
+        </ScopeToolbar>
+      </RearmContext>
+      {traces.length === 0 ? (
+        <EmptyState title="Nothing on this scope">
+          Pick signals with +. Every signal of the bench can be shown, taps inside the blocks included.
+        </EmptyState>
+      ) : (
+        // biome-ignore lint/a11y/useSemanticElements: a live plot has no element of its own
+        <div
+          ref={host}
+          className={styles.plot}
+          role="group"
+          // biome-ignore lint/a11y/noNoninteractiveTabindex: the plot is worked by keys
+          tabIndex={0}
+          onKeyDown={onKeyDown}
+          aria-label="Plot. Arrow keys move, plus and minus zoom, L returns to live."
+        />
+      )}
+    </section>
+  );
+}
+
+let marked: { events: unknown; marks: ReturnType<typeof marksOf> } | undefined;
+
+function marksOf() {
+  const { events } = useBench.getState();
+  return { events, faults: faultSpans(events) };
+}
+
+/** Events and fault spans, worked out once per change of the log. */
+function marksNow() {
+  const { events } = useBench.getState();
+  if (marked?.events !== events) marked = { events, marks: marksOf() };
+  return marked.marks;
+}

@@ -1,0 +1,70 @@
+import { NativeSelect } from "@mantine/core";
+import type { ReactNode } from "react";
+import { formatSi } from "../../ui/format";
+import styles from "./scope.module.css";
+import type { ScopeConfig } from "./scope-config";
+import { TriggerMenu } from "./trigger-menu";
+
+export type TriggerState = "none" | "waiting" | "triggered";
+
+const WINDOWS_MS = [0.2, 0.5, 1, 2, 4, 10, 20, 50, 100, 200, 500, 1000];
+
+interface ScopeToolbarProps {
+  config: ScopeConfig;
+  onChange(config: ScopeConfig): void;
+  past: boolean;
+  onLive(): void;
+  trigger: TriggerState;
+  children: ReactNode;
+}
+
+/** What a scope shows and how: signals, roll or trigger, window, live. */
+export function ScopeToolbar({ config, onChange, past, onLive, trigger, children }: ScopeToolbarProps) {
+  const windows = WINDOWS_MS.includes(config.windowMs)
+    ? WINDOWS_MS
+    : [...WINDOWS_MS, config.windowMs].sort((a, b) => a - b);
+  return (
+    <div className={styles.toolbar}>
+      <div className={styles.signals}>{children}</div>
+      <div className={styles.tools}>
+        {config.mode === "triggered" && (
+          <TriggerMenu
+            trigger={config.trigger}
+            state={trigger}
+            onChange={(next) => onChange({ ...config, trigger: next })}
+          />
+        )}
+        <button
+          type="button"
+          className={styles.toggle}
+          aria-pressed={config.mode === "triggered"}
+          title={config.mode === "triggered" ? "Let the picture roll again" : "Hold the picture at an edge of a signal"}
+          onClick={() => onChange({ ...config, mode: config.mode === "triggered" ? "roll" : "triggered" })}
+        >
+          Trigger
+        </button>
+        <NativeSelect
+          size="xs"
+          aria-label="Time window"
+          w={84}
+          value={String(config.windowMs)}
+          data={windows.map((ms) => ({
+            value: String(ms),
+            label: formatSi(ms, "ms", 3).replace(/\.?0+(?=\u00a0)/, ""),
+          }))}
+          onChange={(event) => onChange({ ...config, windowMs: Number(event.currentTarget.value) })}
+        />
+        <button
+          type="button"
+          className={styles.live}
+          data-past={past}
+          aria-pressed={!past}
+          onClick={onLive}
+          title={past ? "Return to the newest data" : "Drag or scroll the plot to look at the past; the board runs on"}
+        >
+          LIVE
+        </button>
+      </div>
+    </div>
+  );
+}

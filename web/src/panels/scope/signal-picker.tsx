@@ -1,0 +1,78 @@
+import { ActionIcon, Checkbox, Popover, ScrollArea, Stack, Text, TextInput, Tooltip } from "@mantine/core";
+import { IconPlus } from "@tabler/icons-react";
+import { useMemo, useState } from "react";
+import { useBench } from "../../stream/bench-store";
+import { unitText } from "../../ui/unit-scale";
+
+interface SignalPickerProps {
+  chosen: string[];
+  onChange(signals: string[]): void;
+}
+
+/** Every signal of the bench by block, searchable; what it means stands beside it. */
+export function SignalPicker({ chosen, onChange }: SignalPickerProps) {
+  const signals = useBench((s) => s.bench?.signals);
+  const [query, setQuery] = useState("");
+  const groups = useMemo(() => {
+    const found = new Map<string, NonNullable<typeof signals>>();
+    const wanted = query.toLowerCase();
+    for (const signal of signals ?? []) {
+      if (!`${signal.name} ${signal.meaning}`.toLowerCase().includes(wanted)) continue;
+      const block = signal.name.split(".")[0];
+      found.set(block, [...(found.get(block) ?? []), signal]);
+    }
+    return [...found];
+  }, [signals, query]);
+
+  return (
+    <Popover position="bottom-start" width={360} trapFocus>
+      <Popover.Target>
+        <Tooltip label="Add or remove signals">
+          <ActionIcon size={24} variant="subtle" aria-label="Choose signals">
+            <IconPlus size={15} />
+          </ActionIcon>
+        </Tooltip>
+      </Popover.Target>
+      <Popover.Dropdown>
+        <TextInput
+          size="xs"
+          placeholder="Search signals"
+          aria-label="Search signals"
+          value={query}
+          onChange={(e) => setQuery(e.currentTarget.value)}
+          mb="sm"
+        />
+        <ScrollArea.Autosize mah={340} type="auto" offsetScrollbars>
+          {groups.map(([block, list]) => (
+            <Stack key={block} gap={4} mb="sm">
+              <Text size="xs" fw={600} c="dimmed">
+                {block.replaceAll("_", " ")}
+              </Text>
+              {list.map((signal) => (
+                <Checkbox
+                  key={signal.name}
+                  size="xs"
+                  checked={chosen.includes(signal.name)}
+                  label={`${signal.name.slice(block.length + 1)}${unitText(signal.unit) ? ` · ${unitText(signal.unit)}` : ""}`}
+                  description={signal.meaning}
+                  onChange={(e) =>
+                    onChange(
+                      e.currentTarget.checked
+                        ? [...chosen, signal.name]
+                        : chosen.filter((name) => name !== signal.name),
+                    )
+                  }
+                />
+              ))}
+            </Stack>
+          ))}
+          {groups.length === 0 && (
+            <Text size="xs" c="dimmed">
+              No signal of this bench matches.
+            </Text>
+          )}
+        </ScrollArea.Autosize>
+      </Popover.Dropdown>
+    </Popover>
+  );
+}

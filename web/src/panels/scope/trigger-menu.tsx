@@ -1,0 +1,104 @@
+import { Button, Group, NativeSelect, NumberInput, Popover, SegmentedControl, Stack, Text } from "@mantine/core";
+import { useContext } from "react";
+import { useBench } from "../../stream/bench-store";
+import type { Trigger } from "../../stream/wire";
+import { unitText } from "../../ui/unit-scale";
+import { RearmContext } from "./rearm-context";
+import type { TriggerState } from "./scope-toolbar";
+
+interface TriggerMenuProps {
+  trigger: Trigger;
+  state: TriggerState;
+  onChange(trigger: Trigger): void;
+}
+
+/** Where the picture starts: a level and an edge of any signal, found at full rate on the server. */
+export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
+  const signals = useBench((s) => s.bench?.signals) ?? [];
+  const rearm = useContext(RearmContext);
+  const unit = unitText(signals.find((s) => s.name === trigger.signal)?.unit ?? "");
+  const set = (part: Partial<Trigger>) => onChange({ ...trigger, ...part });
+  return (
+    <Popover position="bottom-end" width={280}>
+      <Popover.Target>
+        <Button size="compact-xs" variant="default" h={26}>
+          {state === "triggered" ? "● " : state === "waiting" ? "○ waiting " : ""}
+          {trigger.edge === "rising" ? "↗" : "↘"} {trigger.level} {unit}
+        </Button>
+      </Popover.Target>
+      <Popover.Dropdown>
+        <Stack gap="sm">
+          <NativeSelect
+            size="xs"
+            label="Signal"
+            value={trigger.signal}
+            data={signals.map((s) => s.name)}
+            onChange={(e) => set({ signal: e.currentTarget.value })}
+          />
+          <SegmentedControl
+            size="xs"
+            fullWidth
+            aria-label="Edge"
+            value={trigger.edge}
+            data={[
+              { value: "rising", label: "↗ rising" },
+              { value: "falling", label: "↘ falling" },
+            ]}
+            onChange={(edge) => set({ edge: edge as Trigger["edge"] })}
+          />
+          <Group grow gap="sm">
+            <NumberInput
+              size="xs"
+              label="Level"
+              suffix={unit ? ` ${unit}` : ""}
+              value={trigger.level}
+              step={0.1}
+              onChange={(v) => typeof v === "number" && set({ level: v })}
+            />
+            <NumberInput
+              size="xs"
+              label="Hysteresis"
+              suffix={unit ? ` ${unit}` : ""}
+              min={0}
+              step={0.1}
+              value={trigger.hysteresis}
+              onChange={(v) => typeof v === "number" && set({ hysteresis: v })}
+            />
+          </Group>
+          <NumberInput
+            size="xs"
+            label="Shown before the edge"
+            suffix=" %"
+            min={0}
+            max={100}
+            step={5}
+            value={Math.round(trigger.position * 100)}
+            onChange={(v) => typeof v === "number" && set({ position: v / 100 })}
+          />
+          <SegmentedControl
+            size="xs"
+            fullWidth
+            aria-label="Sweep"
+            value={trigger.sweep}
+            data={["auto", "normal", "single"]}
+            onChange={(sweep) => set({ sweep: sweep as Trigger["sweep"] })}
+          />
+          <Text size="xs" c="dimmed">
+            {SWEEPS[trigger.sweep]}
+          </Text>
+          {trigger.sweep === "single" && (
+            <Button size="xs" variant="light" onClick={rearm}>
+              Arm again
+            </Button>
+          )}
+        </Stack>
+      </Popover.Dropdown>
+    </Popover>
+  );
+}
+
+const SWEEPS: Record<Trigger["sweep"], string> = {
+  auto: "Auto: without an edge the picture rolls on.",
+  normal: "Normal: without an edge the last picture stays.",
+  single: "Single: the first edge is kept until armed again.",
+};

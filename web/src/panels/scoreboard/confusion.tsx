@@ -1,0 +1,51 @@
+import { formatNumber } from "../../ui/format";
+import styles from "./scoreboard.module.css";
+
+interface ConfusionProps {
+  id: string;
+  names: string[];
+  /** Samples by truth (row) and verdict (column). */
+  counts: number[][];
+}
+
+/** What was said while what was true: shares of each row, the diagonal is right. */
+export function Confusion({ id, names, counts }: ConfusionProps) {
+  return (
+    <table className={styles.confusion}>
+      <caption>{id.replaceAll("_", " ")}: share of samples, truth down, verdict across</caption>
+      <thead>
+        <tr>
+          <td />
+          {names.map((name) => (
+            <th key={name} scope="col">
+              {name}
+            </th>
+          ))}
+        </tr>
+      </thead>
+      <tbody>
+        {names.map((truth, row) => {
+          const total = counts[row].reduce((sum, n) => sum + n, 0);
+          return (
+            <tr key={truth}>
+              <th scope="row">{truth}</th>
+              {counts[row].map((count, column) => {
+                const share = total ? count / total : 0;
+                return (
+                  <td
+                    key={names[column]}
+                    data-right={row === column}
+                    title={`${count} of ${total} samples`}
+                    style={{ "--share": `${Math.round(share * 55)}%` } as React.CSSProperties}
+                  >
+                    {total ? (count ? formatNumber(share * 100, 1) : "") : "·"}
+                  </td>
+                );
+              })}
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}

@@ -1,0 +1,55 @@
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatNumber, formatPercent } from "../../ui/format";
+import { Confusion } from "./confusion";
+import styles from "./scoreboard.module.css";
+
+/** Each diagnoser against the truth the bench knows. */
+export function ScoreboardPanel() {
+  const scores = useBench((s) => s.scores);
+  const diagnosers = useBench((s) => s.bench?.diagnosers);
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const entries = Object.entries(scores);
+  if (entries.length === 0)
+    return (
+      <EmptyState title="No score yet">A diagnoser is scored from its first sample on; this bench has none.</EmptyState>
+    );
+  return (
+    <div className={styles.panel}>
+      <table className={styles.table}>
+        <thead>
+          <tr>
+            <th scope="col">Diagnoser</th>
+            <th scope="col">Correct</th>
+            <th scope="col">Mean delay</th>
+            <th scope="col">Not found</th>
+            <th scope="col">False switches</th>
+          </tr>
+        </thead>
+        <tbody>
+          {entries.map(([id, score]) => {
+            const found = score.delays.filter((d) => d !== null);
+            const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
+            return (
+              <tr key={id}>
+                <th scope="row">{id.replaceAll("_", " ")}</th>
+                <td>{formatPercent(score.correct_fraction, 2)}</td>
+                <td>{found.length ? `${formatNumber(mean, 1)} samples · ${formatNumber(mean * dtMs, 2)} ms` : "–"}</td>
+                <td>
+                  {score.delays.length - found.length} of {score.delays.length}
+                </td>
+                <td>{score.false_switches}</td>
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+      {entries.map(
+        ([id, score]) =>
+          score.confusion && (
+            <Confusion key={id} id={id} names={score.names ?? diagnosers?.[id]?.names ?? []} counts={score.confusion} />
+          ),
+      )}
+    </div>
+  );
+}

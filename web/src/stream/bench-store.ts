@@ -1,0 +1,33 @@
+import { create } from "zustand";
+import type { Bench, LogEntry, Score } from "../api/types";
+import type { CloseReason } from "./close-reason";
+
+export type Phase = "idle" | "connecting" | "open" | "waiting" | "closed";
+
+export interface Connection {
+  phase: Phase;
+  reason: CloseReason | undefined;
+  /** Next attempt, on `performance.now()`'s clock. */
+  retryAt: number | undefined;
+  /** Wall time since when the page has heard nothing, while it hears nothing. */
+  staleSince: Date | undefined;
+}
+
+export interface BenchStore {
+  connection: Connection;
+  bench: Bench | undefined;
+  scores: Record<string, Score>;
+  events: LogEntry[];
+  droppedFrames: number;
+  notice: string | undefined;
+}
+
+/** What the page knows of the bench it shows. Written only by the stream; frames never pass through here. */
+export const useBench = create<BenchStore>(() => ({
+  connection: { phase: "idle", reason: undefined, retryAt: undefined, staleSince: undefined },
+  bench: undefined,
+  scores: {},
+  events: [],
+  droppedFrames: 0,
+  notice: undefined,
+}));

@@ -1,0 +1,44 @@
+export interface CloseReason {
+  /** Whether trying again by itself can help. */
+  retry: boolean;
+  title: string;
+  advice: string;
+}
+
+const REASONS: Record<number, CloseReason> = {
+  4001: {
+    retry: false,
+    title: "The server speaks a newer version",
+    advice: "Reload the page to get the matching one.",
+  },
+  4003: {
+    retry: false,
+    title: "This address may not open the bench",
+    advice: "Open the page at the address the server printed.",
+  },
+  4401: {
+    retry: false,
+    title: "You are not logged in",
+    advice: "Open the address with the token that the server printed when it started.",
+  },
+  4404: {
+    retry: false,
+    title: "This bench is gone",
+    advice: "Benches live as long as the server runs. Start a new one, or pick one that is running.",
+  },
+  4408: { retry: true, title: "This page fell too far behind", advice: "Close panels you do not need; reconnecting." },
+  1008: { retry: true, title: "Too many messages from this page", advice: "Reconnecting." },
+  1009: { retry: true, title: "A message was too big", advice: "Reconnecting." },
+  1013: { retry: true, title: "The server has no room for another watcher", advice: "Trying again." },
+};
+
+const LOST: CloseReason = {
+  retry: true,
+  title: "Connection lost",
+  advice: "Trying again by itself; the board runs on.",
+};
+
+/** What a WebSocket close code means to the person at the page. */
+export function closeReason(code: number): CloseReason {
+  return REASONS[code] ?? LOST;
+}

@@ -1,0 +1,26 @@
+import type { PanelFrame } from "./panel-frame";
+import type { Subscription } from "./wire";
+
+/** What one visible panel wants, and the newest picture it has been sent. */
+export class Feed {
+  readonly panel: number;
+  readonly draw: (frame: PanelFrame) => void;
+  subscription: Subscription;
+  /** How often this panel has subscribed on this connection; older pictures are ignored. */
+  revision = 0;
+  frame: PanelFrame | undefined;
+  dirty = false;
+
+  constructor(panel: number, subscription: Subscription, draw: (frame: PanelFrame) => void) {
+    this.panel = panel;
+    this.subscription = subscription;
+    this.draw = draw;
+  }
+
+  /** Take a picture from the wire, unless it answers an older subscription. */
+  store(frame: PanelFrame): void {
+    if (frame.revision !== this.revision) return;
+    this.frame = frame;
+    this.dirty = true;
+  }
+}

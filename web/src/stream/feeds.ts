@@ -1,0 +1,89 @@
+import type { Frame } from "./decode-frame";
+import { Feed } from "./feed";
+import type { PanelFrame } from "./panel-frame";
+import type { ClientMessage, Subscription } from "./wire";
+
+const PANEL_IDS = 65535;
+
+/**
+ * The panels that are visible now, what they subscribe to, and which frame they have drawn.
+ *
+ * `receive` only stores; `draw` paints what is new and acknowledges it, so the server never runs ahead.
+ */
+export class Feeds {
+  private readonly feeds = new Map<number, Feed>();
+  private readonly send: (message: ClientMessage) => void;
+  private nextPanel = 1;
+  private received = 0;
+  private acknowledged = 0;
+
+  constructor(send: (message: ClientMessage) => void) {
+    this.send = send;
+  }
+
+  get size(): number {
+    return this.feeds.size;
+  }
+
+  open(subscription: Subscription, draw: (frame: PanelFrame) => void): Feed {
+    while (this.feeds.has(this.nextPanel)) this.nextPanel = (this.nextPanel % PANEL_IDS) + 1;
+    const feed = new Feed(this.nextPanel, subscription, draw);
+    this.nextPanel = (this.nextPanel % PANEL_IDS) + 1;
+    this.feeds.set(feed.panel, feed);
+    this.subscribe(feed);
+    return feed;
+  }
+
+  change(feed: Feed, subscription: Subscription): void {
+    feed.subscription = subscription;
+    this.subscribe(feed);
+  }
+
+  close(feed: Feed): void {
+    if (this.feeds.delete(feed.panel)) this.send({ type: "unsubscribe", panel: feed.panel });
+  }
+
+  rearm(feed: Feed): void {
+    this.send({ type: "rearm", panel: feed.panel });
+  }
+
+  /** A new connection knows nothing: count subscriptions and frames from the start again. */
+  reconnected(): void {
+    this.received = 0;
+    this.acknowledged = 0;
+    for (const feed of this.feeds.values()) {
+      feed.revision = 0;
+      this.subscribe(feed);
+    }
+  }
+
+  receive(frame: Frame): void {
+    this.received = Math.max(this.received, frame.frame);
+    for (const picture of frame.panels) this.feeds.get(picture.panel)?.store(picture);
+  }
+
+  /** Draw what is new and say so. Returns how many panels were drawn. */
+  draw(): number {
+    let drawn = 0;
+    for (const feed of this.feeds.values()) {
+      if (!feed.dirty || !feed.frame) continue;
+      feed.dirty = false;
+      drawn += 1;
+      try {
+        feed.draw(feed.frame);
+      } catch (error) {
+        console.error("panel could not draw", error);
+      }
+    }
+    if (this.received > this.acknowledged) {
+      this.acknowledged = this.received;
+      this.send({ type: "ack", frame: this.received });
+    }
+    return drawn;
+  }
+
+  private subscribe(feed: Feed): void {
+    feed.revision += 1;
+    this.send({ type: "subscribe", panel: feed.panel, ...feed.subscription });
+  }
+}

@@ -1,0 +1,159 @@
+import { ApiError } from "../api/api-error";
+import type { Command } from "../api/types";
+import { type CloseReason, closeReason } from "./close-reason";
+import { decodeFrame } from "./decode-frame";
+import { Feeds } from "./feeds";
+import { reconnectDelay } from "./reconnect-delay";
+import { type ClientMessage, type ServerMessage, SUBPROTOCOL } from "./wire";
+
+const REPLY_TIMEOUT_MS = 5000;
+
+export interface StreamHandlers {
+  onMessage(message: ServerMessage): void;
+  onOpen(): void;
+  /** `retryAt` is the time of the next attempt on `performance.now()`'s clock, if there will be one. */
+  onClose(reason: CloseReason, code: number, retryAt: number | undefined): void;
+  /** Asked when a connection never opened: why, if the server can be asked. */
+  explain(): Promise<number | undefined>;
+}
+
+export interface Head {
+  tick: number;
+  dtMs: number;
+  running: boolean;
+}
+
+interface Pending {
+  resolve(tick: number): void;
+  reject(error: ApiError): void;
+  timer: ReturnType<typeof setTimeout>;
+}
+
+/** One page's connection to one bench: keeps itself alive, stores what arrives, sends what is wanted. */
+export class StreamClient {
+  readonly feeds = new Feeds((message) => this.send(message));
+  head: Head = { tick: 0, dtMs: 0, running: false };
+  /** When anything last arrived, on `performance.now()`'s clock. */
+  lastHeard = performance.now();
+  private readonly handlers: StreamHandlers;
+  private readonly replies = new Map<string, Pending>();
+  private socket: WebSocket | undefined;
+  private url = "";
+  private attempt = 0;
+  private nextId = 1;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(handlers: StreamHandlers) {
+    this.handlers = handlers;
+  }
+
+  get isOpen(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  connect(url: string): void {
+    this.disconnect();
+    this.url = url;
+    this.attempt = 0;
+    this.open();
+  }
+
+  disconnect(): void {
+    clearTimeout(this.timer);
+    const old = this.socket;
+    this.socket = undefined;
+    old?.close(1000);
+    this.failReplies("The page left this bench.");
+  }
+
+  retryNow(): void {
+    clearTimeout(this.timer);
+    if (!this.socket && this.url) this.open();
+  }
+
+  send(message: ClientMessage): void {
+    if (this.isOpen) this.socket?.send(JSON.stringify(message));
+  }
+
+  /** Send a command; resolves with the tick at which it took effect. */
+  command(command: Command): Promise<number> {
+    if (!this.isOpen) return Promise.reject(this.failure("The bench is not connected; nothing was sent."));
+    const id = `c${this.nextId++}`;
+    return new Promise((resolve, reject) => {
+      const timer = setTimeout(() => {
+        this.replies.delete(id);
+        reject(this.failure("The server did not answer in time."));
+      }, REPLY_TIMEOUT_MS);
+      this.replies.set(id, { resolve, reject, timer });
+      this.send({ type: "command", id, command });
+    });
+  }
+
+  private open(): void {
+    const socket = new WebSocket(this.url, SUBPROTOCOL);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    let opened = false;
+    socket.onopen = () => {
+      opened = true;
+      this.lastHeard = performance.now();
+      this.handlers.onOpen();
+      this.feeds.reconnected();
+    };
+    socket.onmessage = (event) => this.receive(event.data as ArrayBuffer | string);
+    socket.onclose = async (event) => {
+      if (this.socket !== socket) return;
+      this.failReplies("The connection was lost before the answer came.");
+      const code = opened ? event.code : ((await this.handlers.explain()) ?? event.code);
+      if (this.socket !== socket) return;
+      this.socket = undefined;
+      this.closed(code);
+    };
+  }
+
+  private closed(code: number): void {
+    const reason = closeReason(code);
+    if (!reason.retry) {
+      this.handlers.onClose(reason, code, undefined);
+      return;
+    }
+    const delay = reconnectDelay(this.attempt++);
+    this.timer = setTimeout(() => this.open(), delay);
+    this.handlers.onClose(reason, code, performance.now() + delay);
+  }
+
+  private receive(data: ArrayBuffer | string): void {
+    this.lastHeard = performance.now();
+    if (typeof data === "string") {
+      const message = JSON.parse(data) as ServerMessage;
+      if (message.type === "reply") this.reply(message);
+      if (message.type === "hello") this.attempt = 0;
+      this.handlers.onMessage(message);
+      return;
+    }
+    const frame = decodeFrame(data);
+    this.head = { tick: frame.headTick, dtMs: frame.dtMs, running: frame.running };
+    this.feeds.receive(frame);
+  }
+
+  private reply(message: Extract<ServerMessage, { type: "reply" }>): void {
+    const pending = this.replies.get(message.id);
+    if (!pending) return;
+    this.replies.delete(message.id);
+    clearTimeout(pending.timer);
+    if (message.ok) pending.resolve(message.tick);
+    else pending.reject(new ApiError(422, message.error));
+  }
+
+  private failReplies(why: string): void {
+    for (const pending of this.replies.values()) {
+      clearTimeout(pending.timer);
+      pending.reject(this.failure(why));
+    }
+    this.replies.clear();
+  }
+
+  private failure(message: string): ApiError {
+    return new ApiError(0, { code: "offline", message, field: "", hint: "" });
+  }
+}

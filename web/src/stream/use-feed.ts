@@ -1,0 +1,39 @@
+import { useEffect, useRef } from "react";
+import { usePanelVisible } from "../ui/panel-visible";
+import type { Feed } from "./feed";
+import type { PanelFrame } from "./panel-frame";
+import { stream } from "./stream";
+import type { Subscription } from "./wire";
+
+/**
+ * Stream to `draw` while the panel is visible; `draw` runs in the animation loop and must not set React state
+ * per frame.
+ */
+export function useFeed(subscription: Subscription | undefined, draw: (frame: PanelFrame) => void) {
+  const visible = usePanelVisible();
+  const feed = useRef<Feed | undefined>(undefined);
+  const painter = useRef(draw);
+  painter.current = draw;
+  const wanted = subscription && visible ? JSON.stringify(subscription) : undefined;
+
+  useEffect(() => {
+    const { feeds } = stream.client;
+    if (wanted === undefined) {
+      if (feed.current) feeds.close(feed.current);
+      feed.current = undefined;
+    } else if (feed.current) {
+      feeds.change(feed.current, JSON.parse(wanted) as Subscription);
+    } else {
+      feed.current = feeds.open(JSON.parse(wanted) as Subscription, (frame) => painter.current(frame));
+    }
+  }, [wanted]);
+
+  useEffect(
+    () => () => {
+      if (feed.current) stream.client.feeds.close(feed.current);
+      feed.current = undefined;
+    },
+    [],
+  );
+  return feed;
+}

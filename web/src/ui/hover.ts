@@ -1,0 +1,22 @@
+type Listener = (tick: number | undefined, source: object | undefined) => void;
+
+const listeners = new Set<Listener>();
+let current: number | undefined;
+
+/** The tick under the pointer, shared by every panel; outside React because it moves with every frame. */
+export const hover = {
+  get tick(): number | undefined {
+    return current;
+  },
+  set(tick: number | undefined, source: object): void {
+    if (tick === current) return;
+    current = tick;
+    for (const listener of listeners) listener(tick, source);
+  },
+  listen(listener: Listener): () => void {
+    listeners.add(listener);
+    return () => {
+      listeners.delete(listener);
+    };
+  },
+};

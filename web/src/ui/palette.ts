@@ -1,0 +1,49 @@
+export type Scheme = "dark" | "light";
+
+/**
+ * Okabe and Ito's colours in the order traces take them; on white the pale ones are darkened to stay visible.
+ * Slot 0 is the neutral one: what should be.
+ */
+export const TRACE_COLOURS: Record<Scheme, readonly string[]> = {
+  dark: ["#dfe4ea", "#56b4e9", "#e69f00", "#1fb88f", "#cc79a7", "#e8703a", "#f0e442", "#4a90e2"],
+  light: ["#2b3036", "#0072b2", "#b97900", "#008a64", "#b04f86", "#c84e00", "#857a00", "#2f86c1"],
+};
+
+/** Dashes in device-independent pixels; the first is solid. */
+export const DASHES: readonly (readonly number[])[] = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [12, 3, 2, 3, 2, 3]];
+
+/** Canvas colours that CSS cannot reach; the rest are tokens in theme.css. */
+export const CANVAS: Record<
+  Scheme,
+  {
+    panel: string;
+    text: string;
+    muted: string;
+    grid: string;
+    axis: string;
+    accent: string;
+    alarm: string;
+    event: string;
+  }
+> = {
+  dark: {
+    panel: "#161b21",
+    text: "#e8ecf1",
+    muted: "#9aa6b4",
+    grid: "#262e37",
+    axis: "#3a4552",
+    accent: "#8fb0ff",
+    alarm: "#ff6b60",
+    event: "#7d8b9b",
+  },
+  light: {
+    panel: "#ffffff",
+    text: "#1a1f26",
+    muted: "#56616e",
+    grid: "#e6eaee",
+    axis: "#b9c2cc",
+    accent: "#2c55c8",
+    alarm: "#c4261d",
+    event: "#7a8795",
+  },
+};

@@ -1,0 +1,32 @@
+import { expect, it } from "vitest";
+import { hypothesisStyle, traceStyle } from "./trace-style";
+
+const hypotheses = ["healthy", "m+5", "k+5"];
+const signals = [
+  "reference.voltage",
+  "plant.displacement",
+  "mrac.gain.r",
+  "mrac.gain.w1",
+  "kalman.probability.m+5",
+  "kalman.residual.m+5",
+];
+const style = (name: string) => traceStyle(name, signals, hypotheses);
+
+it("gives the same signal the same style wherever it is asked for", () => {
+  expect(style("mrac.gain.r")).toEqual(style("mrac.gain.r"));
+  expect(traceStyle("plant.displacement", [], [])).toEqual(style("plant.displacement"));
+});
+
+it("gives neighbouring signals different colours and dashes", () => {
+  expect(style("mrac.gain.r").slot).not.toBe(style("mrac.gain.w1").slot);
+  expect(style("mrac.gain.r").dash).not.toBe(style("mrac.gain.w1").dash);
+});
+
+it("gives everything of one hypothesis its colour", () => {
+  expect(style("kalman.probability.m+5")).toEqual(hypothesisStyle(1));
+  expect(style("kalman.residual.m+5").slot).toBe(hypothesisStyle(1).slot);
+});
+
+it("keeps the first eight hypotheses apart by colour alone", () => {
+  expect(new Set(Array.from({ length: 8 }, (_, i) => hypothesisStyle(i).slot)).size).toBe(8);
+});

@@ -1,0 +1,18 @@
+import { DASHES } from "./palette";
+
+/** A short stroke in a trace's colour and dash. */
+export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) {
+  return (
+    <svg width="22" height="8" aria-hidden="true" style={{ flex: "none" }}>
+      <line
+        x1="1"
+        y1="4"
+        x2="21"
+        y2="4"
+        stroke={colour}
+        strokeWidth="2.4"
+        strokeDasharray={DASHES[dash].map((d) => d * 0.8).join(" ")}
+      />
+    </svg>
+  );
+}
