@@ -114,8 +114,10 @@ class Service:
 def warm_up() -> None:
     """Load the compiled kernels (or compile them) and compute one tick with them, before anyone waits."""
     for scenario in library():
-        History(1, 1).columns([0], 0, 1, 1)
-        build(scenario).advance(1)
+        board = build(scenario)
+        history = History(len(board.signals), 1)
+        history.append(board.advance(1))
+        history.columns([0], 0, 1, 1)
 
 
 def _theatre() -> Theatre | None:

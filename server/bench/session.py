@@ -223,9 +223,13 @@ class Session:
         twin._ends_at = self._ends_at if self._ends_at is not None and board.tick < self._ends_at else None
         first = max(self.history.first_tick, board.tick - FORK_TICKS)
         if first < board.tick <= self.history.end_tick:
-            past = self.history.read(list(range(len(self._index))), first, board.tick).T.astype(np.float64)
-            split = self.board.signals.outputs
-            twin.history.append(Rows(first, len(past), past[:, :split], past[:, split:]))
+            past = self.history.read(list(range(len(self._index))), first, board.tick).T
+            outputs, taps = np.split(past, [self.board.signals.outputs], axis=1)
+            twin.history.append(
+                Rows(
+                    first, len(past), np.ascontiguousarray(outputs, np.float64), np.ascontiguousarray(taps, np.float64)
+                )
+            )
         twin._note("api", "forked", f"forked from bench {self.id}")
         twin.status = twin._look()
         return twin

@@ -1,0 +1,160 @@
+"""Pictures of a panel: the right span, the right extremes, sent only when they change."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from core.board.board import Rows
+from core.board.history import History
+from server.stream.codec import FROZEN, TRIGGERED, WAITING
+from server.stream.panel import Panel, Span
+from server.stream.wire import Subscribe, TriggerSpec
+
+DT = 0.01
+
+
+def fill(history: History, values: np.ndarray[Any, Any]) -> None:
+    """Append a signal (and its negative as a tap) behind what is there."""
+    for start in range(0, len(values), 100):
+        part = np.ascontiguousarray(values[start : start + 100, None], np.float64)
+        history.append(Rows(history.end_tick, len(part), part, -part))
+
+
+def panel(head: int = 0, **fields: Any) -> Panel:
+    spec = Subscribe(**{"type": "subscribe", "panel": 1, "signals": ["a"], "window_ms": 1.0, **fields})
+    return Panel(spec, [0], 0 if spec.trigger else None, 1, DT, head)
+
+
+@given(st.integers(0, 10**6), st.integers(2, 10**5), st.integers(1, 4096))
+def test_a_rolling_span_covers_its_window_in_whole_columns(head: int, window: int, width: int) -> None:
+    span = Span.ending(head, window, width)
+    step = (span.end - span.start) // span.columns
+    assert span.start + step * span.columns == span.end
+    assert span.start % step == 0
+    assert head <= span.end < head + step
+    assert span.columns <= width
+    assert span.end - span.start >= window
+
+
+@given(st.integers(-1000, 10**6), st.integers(1, 10**5), st.integers(1, 4096))
+def test_a_frozen_span_covers_what_was_asked(start: int, length: int, width: int) -> None:
+    span = Span.between(start, start + length, width)
+    step = (span.end - span.start) // span.columns
+    assert span.start <= start < span.start + step
+    assert start + length <= span.end
+    assert span.columns <= width + 1
+
+
+def test_a_rolling_picture_keeps_its_columns_while_it_moves() -> None:
+    history = History(2, 20_000)
+    rng = np.random.default_rng(1)
+    fill(history, rng.normal(size=1003))
+    rolling = panel(window_ms=8.0, width=100)
+    first = rolling.picture(history)
+    fill(history, rng.normal(size=9))
+    second = rolling.picture(history)
+    assert first is not None and second is not None
+    step = (first.end - first.start) / first.columns.shape[2]
+    moved = round((second.start - first.start) / step)
+    assert (second.start - first.start) % step == 0
+    # All columns that were complete in both pictures are the same.
+    np.testing.assert_array_equal(first.columns[:, :, moved:-1], second.columns[:, :, : -1 - moved])
+
+
+def test_a_spike_of_one_tick_is_never_lost() -> None:
+    history = History(2, 200_000)
+    values = np.zeros(100_000)
+    values[77_777] = 5.0
+    fill(history, values)
+    picture = panel(window_ms=1000.0, width=100).picture(history)
+    assert picture is not None
+    assert np.nanmax(picture.columns[0, 1]) == 5.0
+
+
+def test_the_same_picture_is_not_sent_twice() -> None:
+    history = History(2, 20_000)
+    fill(history, np.zeros(50))
+    for kind in ({"mode": "roll"}, {"mode": "frozen", "start_tick": 0, "end_tick": 40}):
+        one = panel(**kind)
+        assert one.picture(history) is not None
+        assert one.picture(history) is None
+
+
+def test_a_frozen_picture_follows_until_its_end_is_reached() -> None:
+    history = History(2, 20_000)
+    fill(history, np.zeros(50))
+    frozen = panel(mode="frozen", start_tick=20, end_tick=80, width=60)
+    first = frozen.picture(history)
+    assert first is not None and first.flags == FROZEN
+    assert np.isnan(first.columns[0, 0]).sum() == 30
+    fill(history, np.ones(50))
+    second = frozen.picture(history)
+    assert second is not None and not np.isnan(second.columns).any()
+    fill(history, np.ones(50))
+    assert frozen.picture(history) is None
+
+
+def sine(ticks: int, period: float = 40.0) -> np.ndarray[Any, Any]:
+    return np.sin(2 * np.pi * (np.arange(ticks) - 0.5) / period)
+
+
+def triggered(sweep: str, **fields: Any) -> Panel:
+    spec = TriggerSpec(signal="a", level=0.0, hysteresis=0.05, position=0.25, sweep=sweep)  # type: ignore[arg-type]
+    return panel(mode="triggered", trigger=spec, window_ms=0.6, width=200, **fields)
+
+
+def test_a_triggered_picture_stands_still_at_any_moment() -> None:
+    history = History(2, 20_000)
+    fill(history, sine(500))
+    auto = triggered("auto", head=500)
+    seen = []
+    for piece in (7, 33, 80, 1, 1, 1, 200):
+        data = sine(history.end_tick + piece)[history.end_tick :]
+        fill(history, data)
+        picture = auto.picture(history)
+        if picture is None:
+            continue
+        assert picture.flags == TRIGGERED
+        assert picture.end <= history.end_tick
+        assert picture.start + 15 == pytest.approx(picture.trigger, abs=1.0)
+        # The crossing of this sine is half a tick behind a multiple of its period.
+        seen.append((picture.trigger - 0.5) % 40)
+    assert len(seen) >= 4
+    np.testing.assert_allclose((np.array(seen) + 20) % 40 - 20, 0.0, atol=2e-3)
+
+
+def test_normal_waits_and_auto_rolls_when_nothing_triggers() -> None:
+    history = History(2, 20_000)
+    fill(history, np.ones(500))
+    waiting, rolling = triggered("normal").picture(history), triggered("auto").picture(history)
+    assert waiting is not None and waiting.flags == WAITING and np.isnan(waiting.columns).all()
+    assert rolling is not None and rolling.flags == WAITING and not np.isnan(rolling.columns).all()
+
+
+def test_normal_keeps_the_last_picture_and_single_the_first() -> None:
+    history = History(2, 20_000)
+    fill(history, np.zeros(100) - 1)
+    normal, single = triggered("normal", head=100), triggered("single", head=100)
+    fill(history, sine(200))
+    shown = normal.picture(history)
+    assert shown is not None and shown.flags == TRIGGERED and shown.trigger > 200
+    first = single.picture(history)
+    assert first is not None and first.flags == TRIGGERED
+    assert first.trigger == pytest.approx(100.5, abs=0.6)
+    fill(history, sine(400))
+    assert single.picture(history) is None
+    single.rearm(history.end_tick)
+    armed = single.picture(history)
+    assert armed is not None and armed.flags == TRIGGERED | WAITING
+    assert armed.trigger == first.trigger
+    fill(history, sine(200))
+    again = single.picture(history)
+    assert again is not None and again.flags == TRIGGERED and again.trigger > 700
+    fill(history, np.ones(400))
+    late = normal.picture(history)
+    assert late is not None and late.flags & WAITING and not np.isnan(late.columns).all()

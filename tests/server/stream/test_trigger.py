@@ -1,0 +1,104 @@
+"""The trigger against an oracle that walks the samples one by one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from server.stream import trigger as module
+from server.stream.trigger import Trigger, crossing_time
+
+
+class Samples:
+    """A history of one signal that can grow and forget."""
+
+    def __init__(self, values: Any, first: int = 0) -> None:
+        self.values = np.asarray(values, np.float32)
+        self.first_tick, self.end_tick = first, len(self.values)
+
+    def read(self, signals: list[int], start: int, stop: int) -> NDArray[np.float32]:
+        assert signals == [0] and start >= self.first_tick and stop <= self.end_tick
+        return self.values[None, start:stop]
+
+
+def walk(values: Any, edge: str, level: float, hysteresis: float) -> list[int]:
+    """The definition of a crossing, one sample after the other."""
+    found = []
+    for rising in (True, False):
+        if edge not in ("either", "rising" if rising else "falling"):
+            continue
+        sign = 1.0 if rising else -1.0
+        ready = False
+        for tick, value in enumerate(np.asarray(values, np.float32)):
+            height = sign * (np.float64(value) - level)
+            if height >= 0.0:
+                if ready:
+                    found.append(tick)
+                ready = False
+            elif height < -hysteresis:
+                ready = True
+    return sorted(set(found))
+
+
+signals = st.lists(st.sampled_from([-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, float("nan")]), max_size=60)
+
+
+@given(
+    signals,
+    st.sampled_from(["rising", "falling", "either"]),
+    st.sampled_from([-0.5, 0.0, 0.5]),
+    st.sampled_from([0.0, 0.4, 1.0]),
+    st.lists(st.integers(1, 20), max_size=20),
+    st.integers(1, 9),
+)
+def test_every_crossing_is_found_once_however_the_data_arrives(
+    values: list[float], edge: Any, level: float, hysteresis: float, pieces: list[int], block: int
+) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "BLOCK", block)
+        history = Samples(values)
+        trigger = Trigger(0, edge, level, hysteresis, 0)
+        found: list[int] = []
+        arrived = 0
+        for piece in [*pieces, len(values)]:
+            arrived = history.end_tick = min(arrived + piece, len(values))
+            found += trigger.scan(history)
+    assert found == walk(values, edge, level, hysteresis)
+
+
+@given(signals, st.sampled_from(["rising", "falling", "either"]), st.integers(1, 9))
+def test_taken_one_by_one_they_are_the_same(values: list[float], edge: Any, block: int) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "BLOCK", block)
+        history, trigger = Samples(values), Trigger(0, edge, 0.0, 0.4, 0)
+        found: list[int] = []
+        while True:
+            one = trigger.scan(history, first_only=True)
+            assert len(one) <= 1
+            if not one:
+                break
+            found += one
+    assert found == walk(values, edge, 0.0, 0.4)
+
+
+def test_what_the_history_has_forgotten_cannot_trigger() -> None:
+    values = np.tile([-1.0, 1.0], 50)
+    trigger = Trigger(0, "rising", 0.0, 0.0, 0)
+    assert trigger.scan(Samples(values, first=90)) == [91, 93, 95, 97, 99]
+
+
+def test_noise_within_the_hysteresis_does_not_trigger_again() -> None:
+    noisy = [-1.0, 0.1, -0.1, 0.1, -0.1, 0.1, -1.0, 0.1]
+    assert Trigger(0, "rising", 0.0, 0.5, 0).scan(Samples(noisy)) == [1, 7]
+    assert Trigger(0, "rising", 0.0, 0.0, 0).scan(Samples(noisy)) == [1, 3, 5, 7]
+
+
+def test_a_crossing_is_placed_on_the_line_between_two_samples() -> None:
+    history = Samples([-1.0, 3.0])
+    assert crossing_time(history, 0, 1, 0.0) == pytest.approx(0.25)
+    assert crossing_time(Samples([0.0, 0.0]), 0, 1, 5.0) == 1.0
