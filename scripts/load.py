@@ -103,9 +103,7 @@ class Watcher:
     async def _ask(self, stream: ClientConnection) -> None:
         command = {"kind": "time_scale", "value": self.scale}
         while True:
-            await stream.send(
-                json.dumps({"type": "command", "id": str(time.monotonic()), "command": command})
-            )
+            await stream.send(json.dumps({"type": "command", "id": str(time.monotonic()), "command": command}))
             await asyncio.sleep(0.5)
 
 
@@ -143,7 +141,7 @@ class Server:
 
     def add_bench(self, scale: float) -> str:
         """Start a bench and return its id."""
-        answer = self.http.post("/api/v1/benches", json={"scenario": "ch5-seven-step", "time_scale": scale})
+        answer = self.http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": scale})
         answer.raise_for_status()
         return str(answer.json()["id"])
 
@@ -174,9 +172,7 @@ class Server:
 async def drive(server: Server, told: argparse.Namespace) -> dict[str, Any]:
     """Run the load and return the measurements."""
     ids = [server.add_bench(told.scale) for _ in range(told.benches)]
-    streams = [
-        f"ws://{server.address}/api/v1/benches/{ids[i % len(ids)]}/stream" for i in range(told.watchers + 1)
-    ]
+    streams = [f"ws://{server.address}/api/v1/benches/{ids[i % len(ids)]}/stream" for i in range(told.watchers + 1)]
     watchers = [Watcher(stream, server.token, told.scale) for stream in streams]
     memory: list[float] = []
 
@@ -227,9 +223,7 @@ def broken(found: dict[str, Any], told: argparse.Namespace) -> list[str]:
 
 def main() -> int:
     """Read the arguments, run, report."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--benches", type=int, default=1)
     parser.add_argument("--watchers", type=int, default=20, help="spread over the benches")
     parser.add_argument("--seconds", type=float, default=20.0)

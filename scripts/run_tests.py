@@ -17,9 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BIN = ".venv/bin/"
 NPM = ["scripts/npm", "--prefix", "web"]
 COUNT = re.compile(r"(\d+) (passed|failed|errors?|skipped|xfailed|flaky)")
-CLOSING = re.compile(
-    r"^(=+ .*\bin [\d.]+s.*=+|\s*Tests\s+.*\(\d+\)|\s+\d+ (passed|failed|flaky|skipped)\b.*)$"
-)
+CLOSING = re.compile(r"^(=+ .*\bin [\d.]+s.*=+|\s*Tests\s+.*\(\d+\)|\s+\d+ (passed|failed|flaky|skipped)\b.*)$")
 
 
 @dataclass
@@ -87,9 +85,7 @@ def main() -> int:
     todo = steps(quick)
     if not quick:
         # The browser tests find their browser by this name.
-        browser = subprocess.run(
-            ["scripts/chromium"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False
-        )
+        browser = subprocess.run(["scripts/chromium"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
         os.environ["CHROMIUM"] = browser.stdout.strip()
         if browser.returncode:
             print("No Chromium could be found or installed, so the browser tests will fail.", file=sys.stderr)
@@ -101,9 +97,7 @@ def main() -> int:
     for step in todo:
         counts = step.count() if step.tests else {}
         said = ", ".join(f"{number} {word}" for word, number in counts.items() if number)
-        print(
-            f"  {step.name:11}{'ok' if step.code == 0 else 'FAILED':8}{step.seconds:6.1f} s   {said}".rstrip()
-        )
+        print(f"  {step.name:11}{'ok' if step.code == 0 else 'FAILED':8}{step.seconds:6.1f} s   {said}".rstrip())
         for word, number in counts.items():
             total[word] += number
     for step in todo:

@@ -87,9 +87,7 @@ def test_every_setting_is_in_the_readme_with_its_default(documents: dict[str, st
             assert default in rows[name].lower(), f"README gives {name} another default than {default}"
 
 
-def test_documents_and_container_files_name_only_settings_that_exist(
-    root: Path, documents: dict[str, str]
-) -> None:
+def test_documents_and_container_files_name_only_settings_that_exist(root: Path, documents: dict[str, str]) -> None:
     from server.settings import PREFIX, Settings
 
     texts = [*documents.values(), *((root / name).read_text() for name in ("Dockerfile", "compose.yaml"))]
