@@ -17,7 +17,7 @@ PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune
 .PHONY: run setup test check fix dev bench load soak image codegen lock clean help
 
 run: setup  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
-	@exec .venv/bin/combbench serve $(ARGS)
+	@.venv/bin/combbench serve $(ARGS) || [ $$? -eq 130 ]
 
 setup: $(PYTHON_STAMP) $(PAGE) $(KERNEL_STAMP)  ## Set everything up, serve nothing
 
@@ -47,7 +47,7 @@ image: ## Build the container image, start it, ask for its health and stop it
 	@scripts/image
 
 codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document
-	@.venv/bin/python scripts/openapi.py > web/openapi.json
+	@.venv/bin/python -m server.openapi > web/openapi.json
 	@scripts/npm --prefix web run codegen
 
 lock: $(PYTHON_STAMP)  ## Renew requirements.lock (ARGS=--upgrade for newer versions)
@@ -76,5 +76,5 @@ $(NODE_STAMP): web/package.json web/package-lock.json | $(PYTHON_STAMP)
 
 $(PAGE): $(NODE_STAMP) $(PAGE_SOURCE)
 	@echo "Building the page"
-	@scripts/npm --prefix web run build
+	@scripts/npm --prefix web run --silent build -- --logLevel warn
 	@touch $@
