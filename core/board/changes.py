@@ -17,7 +17,7 @@ from core.errors import InputError, from_validation, unknown
 if TYPE_CHECKING:
     from core.board.board import Board
 
-LIVE_SECTIONS = ("plant", "reference", "model", "drive", "guard", "sensor")
+LIVE_SECTIONS = ("plant", "reference", "model", "drive", "guard")
 
 
 def describe(command: Command) -> str:
@@ -180,8 +180,10 @@ def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], 
         raise _not_live("device")
     for key in LIVE_SECTIONS:
         _check_section(key, getattr(spec, key), getattr(new, key))
-    for name, section in new.controllers.items():
-        _check_section(f"controllers.{name}", spec.controllers[name], section)
+    for key in ("controllers", "sensors"):
+        before = getattr(spec, key)
+        for name, section in getattr(new, key).items():
+            _check_section(f"{key}.{name}", before[name], section)
     if list(new.diagnosers) != list(spec.diagnosers):
         raise _not_live("diagnosers")
     for name, section in new.diagnosers.items():
@@ -211,12 +213,14 @@ def _not_live(path: str) -> InputError:
 def _get(spec: Spec, path: str) -> Any:
     """Return the value a path has now, defaults included."""
     head, _, leaf = path.rpartition(".")
-    if path == "controller.kind":
-        return spec.active
+    in_use = {"controller.kind": spec.active, "sensor.kind": spec.measuring}
+    if path in in_use:
+        return in_use[path]
     sections: dict[str, Section] = {key: getattr(spec, key) for key in LIVE_SECTIONS}
-    sections |= {f"controllers.{name}": section for name, section in spec.controllers.items()}
-    sections |= {f"diagnosers.{name}": section for name, section in spec.diagnosers.items()}
+    for key in ("controllers", "sensors", "diagnosers"):
+        sections |= {f"{key}.{name}": section for name, section in getattr(spec, key).items()}
     sections["controller"] = spec.controllers[spec.active]
+    sections["sensor"] = spec.sensors[spec.measuring]
     section = sections.get(head)
     if section is None:
         return None

@@ -21,6 +21,9 @@ from core.errors import InputError, from_validation, short
 Document = dict[str, Any]
 IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
 
+PARKED = {"controller": ("controllers", "control", "open_loop"), "sensor": ("sensors", "sense", "ideal")}
+"""Of these all run, one is in use: table of the one, table of all, family, and the usual one."""
+
 DEFAULTS: Document = {
     "device": {"id": "ch3"},
     "plant": {"model": "linear"},
@@ -56,6 +59,7 @@ SECTIONS = (
     "controller",
     "controllers",
     "sensor",
+    "sensors",
     "drive",
     "guard",
     "diagnosers",
@@ -67,8 +71,8 @@ FIELDS = (*Frame.model_fields, *SECTIONS)
 class Spec:
     """A bench, ready to be wired.
 
-    ``document`` is what it was made from, in normal form: parameters of the controller that drives stand under
-    ``controllers``.
+    ``document`` is what it was made from, in normal form: the parameters of the controller and the sensor in use
+    stand under ``controllers`` and ``sensors``.
     """
 
     document: Document
@@ -79,7 +83,8 @@ class Spec:
     model: Section
     drive: Section
     guard: Section
-    sensor: Section
+    measuring: str
+    sensors: dict[str, Section]
     active: str
     controllers: dict[str, Section]
     diagnosers: dict[str, Section]
@@ -106,7 +111,7 @@ class Spec:
             temperature_k=self.device.temperature_k,
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
-            sensor_noise_um=float(getattr(self.sensor.params, "noise_um", 0.0)),
+            sensor_noise_um=float(getattr(self.sensors[self.measuring].params, "noise_um", 0.0)),
             analogue=getattr(self.drive.params, "kind", "held") == "analogue",
             limit_v=float(getattr(self.drive.params, "limit_v", 30.0)),
         )
@@ -121,16 +126,19 @@ def parse(document: Document) -> Spec:
         For the first thing that is not allowed, with the dotted path of its field.
     """
     doc = normal_form(document)
+    try:
+        return _parse(doc)
+    except InputError as error:
+        raise _as_written(error, document) from None
+
+
+def _parse(doc: Document) -> Spec:
     frame = _frame({key: doc[key] for key in doc if key not in SECTIONS})
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
     if "drive" in plant:
         drive["kind"] = plant.pop("drive")
     plant_kind = plant.pop("model", "linear")
-    controllers = doc.get("controllers", {})
-    for name in controllers:
-        registry.block("control", name, "controllers")
-    known = registry.blocks("control")
     return Spec(
         document=doc,
         frame=frame,
@@ -140,40 +148,52 @@ def parse(document: Document) -> Spec:
         model=Section(Model, _params(Model, doc.get("model", {}), "model")),
         drive=Section(Drive, _params(Drive, drive, "drive" if "drive" in doc else "plant")),
         guard=Section(Guard, _params(Guard, doc.get("guard", {}), "guard")),
-        sensor=_chosen("sense", doc["sensor"], "sensor"),
+        measuring=_measuring(doc["sensor"]["kind"]),
+        sensors=_shadowed("sense", "sensors", doc),
         active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
-        controllers={
-            name: _section("control", name, controllers.get(name, {}), f"controllers.{name}") for name in known
-        },
+        controllers=_shadowed("control", "controllers", doc),
         diagnosers={name: _diagnoser(name, table) for name, table in doc.get("diagnosers", {}).items()},
     )
 
 
+def _as_written(error: InputError, document: Document) -> InputError:
+    """Name a field by the table it was written in, not by the one it was parked in."""
+    for one, (all_of_them, _, usual) in PARKED.items():
+        table = document.get(one, {})
+        prefix = f"{all_of_them}.{table.get('kind', usual)}."
+        rest = error.field.removeprefix(prefix)
+        if rest != error.field and rest.split(".")[0] in table:
+            return InputError(error.message, f"{one}.{rest}", error.hint, error.code)
+    return error
+
+
 def normal_form(document: Document) -> Document:
-    """Return a copy with defaults in place and the driving controller's parameters under ``controllers``."""
+    """Return a copy with defaults in place and the parameters of controller and sensor parked."""
     doc = copy.deepcopy(document)
     for key, value in DEFAULTS.items():
         doc.setdefault(key, copy.deepcopy(value))
     for key in SECTIONS:
         if key in doc and not isinstance(doc[key], dict):
             raise InputError(f"must be a table, got {short(doc[key])}", key)
-    for key in ("controllers", "diagnosers"):
+    for key in ("controllers", "sensors", "diagnosers"):
         for name, table in doc.get(key, {}).items():
             if not isinstance(table, dict):
                 raise InputError(f"must be a table, got {short(table)}", f"{key}.{name}")
-    registry.block("control", doc["controller"].get("kind", "open_loop"), "controller.kind")
+    for one, (_, family, usual) in PARKED.items():
+        registry.block(family, doc[one].get("kind", usual), f"{one}.kind")
     _park(doc)
     return doc
 
 
 def _park(doc: Document) -> None:
-    """Move the parameters of the controller that drives to where those of all controllers are."""
-    controller = doc.get("controller")
-    if isinstance(controller, dict):
-        kind = controller.pop("kind", "open_loop")
-        if controller and isinstance(kind, str):
-            doc.setdefault("controllers", {}).setdefault(kind, {}).update(controller)
-        doc["controller"] = {"kind": kind}
+    """Move the parameters of the controller and the sensor in use to where those of all are."""
+    for one, (all_of_them, _, usual) in PARKED.items():
+        table = doc.get(one)
+        if isinstance(table, dict):
+            kind = table.pop("kind", usual)
+            if table and isinstance(kind, str):
+                doc.setdefault(all_of_them, {}).setdefault(kind, {}).update(table)
+            doc[one] = {"kind": kind}
 
 
 def with_values(document: Document, values: dict[str, Any]) -> Document:
@@ -229,6 +249,21 @@ def _section(family: str, kind: object, table: Document, field: str, key: str = 
     if not isinstance(every, int) or isinstance(every, bool) or not 1 <= every <= 10000:
         raise InputError(f"must be a whole number from 1 to 10000, got {short(every)}", f"{field}.every")
     return Section(block, _params(block, rest, field), every)
+
+
+def _shadowed(family: str, key: str, doc: Document) -> dict[str, Section]:
+    """Return every block of a family with its parameters: all of them run."""
+    tables = doc.get(key, {})
+    for name in tables:
+        registry.block(family, name, key)
+    return {name: _section(family, name, tables.get(name, {}), f"{key}.{name}") for name in registry.blocks(family)}
+
+
+def _measuring(kind: object) -> str:
+    block = registry.block("sense", kind, "sensor.kind")
+    if all(port.name != "displacement" for port in block.outputs):
+        raise InputError(f"{block.name} puts out no displacement; choose a unit that recovers one", "sensor.kind")
+    return block.name
 
 
 def _diagnoser(name: str, table: Document) -> Section:

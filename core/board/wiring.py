@@ -11,6 +11,7 @@ from core import registry
 from core.block import RESERVED, Block, BlockParams, FloatArray, IntArray, Port
 from core.board import program
 from core.board.effects import Effects
+from core.board.measurement import Measurement
 from core.board.score import Score
 from core.board.spec import Spec
 from core.faults.fault import Fault
@@ -68,7 +69,8 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     order = [own("plant", spec.plant), Instance("effects", "effects", Effects, Effects.Params())]
     for name, block in registry.blocks("faults").items():
         order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
-    order.append(own("sensor", spec.sensor))
+    order += [own(name, section) for name, section in spec.sensors.items()]
+    order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
     for name, section in spec.diagnosers.items():
         order.append(own(name, section))
         order.append(Instance(f"{name}.score", name, Score, _scored(section.params), section.every))
@@ -155,6 +157,8 @@ def signal_name(instance: Instance, port: str) -> str:
 def _source(spec: Spec, instance: Instance, port: Port) -> str:
     if port.source == "@engaged":
         return f"{instance.prefix}.engaged"
+    if port.source == "@measuring":
+        return f"{spec.measuring}.displacement"
     if port.source == "@active":
         return f"{spec.active}.voltage"
     if port.source in ("@active_middle", "@active_end"):

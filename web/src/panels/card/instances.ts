@@ -26,6 +26,7 @@ export function valueAt(document: Document, path: string): unknown {
 export function instances(bench: Pick<Bench, "parameters" | "controllers" | "controller" | "diagnosers">): Instance[] {
   const { parameters } = bench;
   const text = (path: string, key: string, otherwise: string) => String(section(parameters, path)[key] ?? otherwise);
+  const sensor = text("sensor", "kind", "ideal");
   const controllers = [bench.controller, ...bench.controllers.filter((name) => name !== bench.controller)];
   return [
     {
@@ -44,7 +45,7 @@ export function instances(bench: Pick<Bench, "parameters" | "controllers" | "con
     })),
     { id: "drive", title: "Drive", family: "board", name: "drive", path: "drive" },
     { id: "plant", title: "Device", family: "plant", name: text("plant", "model", "linear"), path: "plant" },
-    { id: "sensor", title: "Sensor", family: "sense", name: text("sensor", "kind", "ideal"), path: "sensor" },
+    { id: "sensor", title: "Sensor", family: "sense", name: sensor, path: `sensors.${sensor}` },
     ...Object.keys(bench.diagnosers).map((id) => ({
       id: `diagnosers.${id}`,
       title: "Diagnosis",
