@@ -16,7 +16,6 @@ export function Banner() {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
-  const notice = useBench((s) => s.notice);
   const [hint, setHint] = useState(() => localStorage.getItem(HINT_KEY) === null);
 
   if (connection.phase === "closed" && connection.reason)
@@ -57,18 +56,12 @@ export function Banner() {
         <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
           Reset the trip
         </Button>
-        <Button size="compact-sm" variant="default" onClick={actions.fork}>
-          Fork
+        <Button size="compact-sm" variant="default" onClick={actions.forkBeforeTrip}>
+          Fork from before
         </Button>
         <Button size="compact-sm" variant="default" onClick={actions.reset}>
           Start over
         </Button>
-      </Line>
-    );
-  if (notice)
-    return (
-      <Line tone="warn" title={notice} text="">
-        <CloseButton size="sm" aria-label="Dismiss" onClick={() => useBench.setState({ notice: undefined })} />
       </Line>
     );
   if (hint)

@@ -2,7 +2,7 @@ import { api } from "../api/api";
 import { benchInAddress, openBench } from "./open-bench";
 
 /** Worth seeing at first sight: the first of these that the library has. */
-const SHOWPIECES = ["live", "ch5-seven-step"];
+const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
 
 /** Open the bench of the address, else one that is running, else start the showpiece. */
 export async function openFirstBench(): Promise<void> {
