@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
-
 from hypothesis import HealthCheck, settings
+
+import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 
 # the same examples every time: what fails once fails again
 settings.register_profile(

@@ -6,10 +6,9 @@ import copy
 import hashlib
 from typing import Any
 
-import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
-
 import numpy as np
 
+import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.board.board import Board
 from core.board.commands import parse_command
 from core.board.spec import with_values
