@@ -37,6 +37,9 @@ from server.stream.wire import (
 router = APIRouter(tags=["stream"])
 
 CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
+LAST_WORDS_S = 0.2
+"""For what waits to be sent before a close; a line that is stuck takes none of it."""
+
 FLOOD_RATE, FLOOD_BURST = 500.0, 2000
 """Messages of any kind; sixty frames a second need sixty acknowledgements."""
 
@@ -61,13 +64,16 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         await socket.close(*(refusal or (CLOSE_NO_BENCH, "")))
         return
     await socket.accept(subprotocol=SUBPROTOCOL)
-    client = Client(socket, session, service.metrics, service.hub.describe)
+    bench = service.view(session)
+    client = Client(socket, session, service.metrics, service.hub.describe, bench.last_event)
     service.hub.add(client)
-    hello = Hello(server=service.id, bench=service.view(session), last_event=session.events.last)
-    client.post(hello)
-    tasks = [asyncio.create_task(client.run()), asyncio.create_task(Conversation(client, service).run())]
+    client.post(Hello(server=service.id, bench=bench, last_event=bench.last_event))
+    sender, listener = client.run(), Conversation(client, service).run()
+    tasks = [asyncio.create_task(part) for part in (sender, listener, client.closed.wait())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        if client.closing is not None:
+            await asyncio.wait(tasks[:1], timeout=LAST_WORDS_S)
     finally:
         service.hub.remove(client)
         for task in tasks:

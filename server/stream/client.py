@@ -42,6 +42,8 @@ class Client:
         Where frames are counted.
     describe : callable
         Returns the status message of a bench: session, whether with its parameters, frames dropped.
+    last_event : int
+        Number of the last event it is taken to know.
     """
 
     def __init__(
@@ -50,14 +52,16 @@ class Client:
         session: Session,
         metrics: Metrics,
         describe: Callable[[Session, bool, int], str],
+        last_event: int,
     ) -> None:
         self.socket, self.session, self._metrics, self._describe = socket, session, metrics, describe
         self.name = "page"
         self.panels: dict[int, Panel] = {}
         self.dropped = 0
         self.closing: tuple[int, str] | None = None
+        self.closed = asyncio.Event()
         self._wake = asyncio.Event()
-        self._cursor = session.events.last
+        self._cursor = last_event
         self._outbox: deque[BaseModel] = deque()
         self._frame = 0
         self._acked = 0
@@ -111,8 +115,9 @@ class Client:
         return waiting and now - self._taken_at > STALL_S
 
     def close(self, code: int, reason: str) -> None:
-        """Close the stream; the sender does it."""
+        """Close the stream, behind what can still be sent at once."""
         self.closing = self.closing or (code, reason)
+        self.closed.set()
         self._wake.set()
 
     # What it does.
