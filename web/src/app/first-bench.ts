@@ -11,6 +11,12 @@ export async function openFirstBench(): Promise<void> {
   await openAnyBench();
 }
 
+/** Start a bench of a library scenario in place of the one shown. */
+export async function startAgain(scenario: string): Promise<void> {
+  openBench((await api.createBench({ scenario, paused: false })).id, true);
+}
+
+/** Open a bench that runs, or start the showpiece. */
 export async function openAnyBench(): Promise<void> {
   const benches = await api.benches();
   const running = benches.find((b) => b.state === "running") ?? benches[0];
