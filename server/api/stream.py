@@ -65,7 +65,8 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         return
     await socket.accept(subprotocol=SUBPROTOCOL)
     bench = service.view(session)
-    client = Client(socket, session, service.metrics, service.hub.describe, bench.last_event)
+    hub = service.hub
+    client = Client(socket, session, service.metrics, hub.describe, hub.cuts(session), bench.last_event)
     service.hub.add(client)
     client.post(Hello(server=service.id, bench=bench, last_event=bench.last_event))
     sender, listener = client.run(), Conversation(client, service).run()
@@ -155,7 +156,7 @@ class Conversation:
             if panel is None:
                 raise InputError(f"panel {message.panel} is not subscribed", "panel")
             panel.rearm(client.session.history.end_tick)
-            client.offer_frame()
+            self._show()
         elif isinstance(message, Resume):
             client.resume(message.after)
 
@@ -183,7 +184,12 @@ class Conversation:
         client.panels[message.panel] = Panel(
             message, indices, trigger, revision, session.dt_ms, session.history.end_tick
         )
-        client.offer_frame()
+        self._show()
+
+    def _show(self) -> None:
+        """Show a panel that has changed, on a paused bench as well."""
+        self._service.hub.cuts(self._client.session).refresh()
+        self._client.offer_frame()
 
     def _refuse(self, document: Any, error: ErrorBody) -> None:
         """Answer a command by its id, anything else by an error."""

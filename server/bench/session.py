@@ -341,7 +341,7 @@ class Session:
         document = command.model_dump()
         if isinstance(command, TimeScale):
             old = self.pacer.scale
-            self.pacer.rescale(command.value, self.board.tick, self._clock())
+            self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
             text = "time runs as fast as possible"
             if command.value is not None:
                 text = f"time scale set to {command.value * 1e3:g} ms/s"
