@@ -1,7 +1,13 @@
 import "dockview-react/dist/styles/dockview.css";
 import { Menu } from "@mantine/core";
 import { IconMaximize, IconMinimize, IconPlus } from "@tabler/icons-react";
-import { DockviewReact, type IDockviewHeaderActionsProps, type IDockviewPanelProps } from "dockview-react";
+import {
+  DockviewDefaultTab,
+  DockviewReact,
+  type IDockviewHeaderActionsProps,
+  type IDockviewPanelHeaderProps,
+  type IDockviewPanelProps,
+} from "dockview-react";
 import { type FunctionComponent, useEffect, useState } from "react";
 import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible } from "../ui/panel-visible";
@@ -20,6 +26,7 @@ export function Workspace() {
     <main className="workspace">
       <DockviewReact
         components={components}
+        defaultTabComponent={Tab}
         rightHeaderActionsComponent={GroupActions}
         theme={THEME}
         disableFloatingGroups
@@ -48,6 +55,11 @@ function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
   };
 }
 
+/** A tab is one control; closing a panel is in the menu beside it. */
+function Tab(props: IDockviewPanelHeaderProps) {
+  return <DockviewDefaultTab hideClose {...props} />;
+}
+
 function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActionsProps) {
   const [maximised, setMaximised] = useState(false);
   useEffect(() => {
@@ -60,8 +72,8 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
         <Menu.Target>
           <button
             type="button"
-            aria-label="Add a panel here"
-            title="Add a panel here"
+            aria-label="Add or close panels"
+            title="Add or close panels"
             onPointerDown={() => group.api.setActive()}
           >
             <IconPlus size={14} />
@@ -73,6 +85,12 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
               {title}
             </Menu.Item>
           ))}
+          {activePanel && (
+            <>
+              <Menu.Divider />
+              <Menu.Item onClick={() => activePanel.api.close()}>Close {activePanel.title}</Menu.Item>
+            </>
+          )}
         </Menu.Dropdown>
       </Menu>
       <button
