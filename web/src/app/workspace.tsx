@@ -9,12 +9,14 @@ import {
   type IDockviewPanelProps,
 } from "dockview-react";
 import { type FunctionComponent, useEffect, useState } from "react";
+import { useBench } from "../stream/bench-store";
 import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible } from "../ui/panel-visible";
 import { usePageVisible } from "../ui/use-page-visible";
 import "./dock.css";
-import { addPanel, attachDock } from "./layouts";
+import { addPanel, addScope, attachDock } from "./layouts";
 import { PANELS, type PanelKind } from "./panels";
+import { SCOPE_PRESETS } from "./scope-presets";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: 6 };
 
@@ -66,6 +68,11 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
     const subscription = containerApi.onDidMaximizedGroupChange(() => setMaximised(containerApi.hasMaximizedGroup()));
     return () => subscription.dispose();
   }, [containerApi]);
+  const signals = useBench((s) => s.bench?.signals);
+  const scopes = SCOPE_PRESETS.map(({ title, pick }) => ({
+    title,
+    signals: (signals ?? []).map((s) => s.name).filter((name) => pick.test(name)),
+  })).filter((preset) => preset.signals.length > 0);
   return (
     <div className="dock-actions">
       <Menu position="bottom-end" shadow="md">
@@ -80,11 +87,21 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
           </button>
         </Menu.Target>
         <Menu.Dropdown>
-          {Object.entries(PANELS).map(([kind, { title }]) => (
-            <Menu.Item key={kind} onClick={() => addPanel(kind)}>
+          <Menu.Label>Scopes</Menu.Label>
+          {scopes.map(({ title, signals }) => (
+            <Menu.Item key={title} onClick={() => addScope(title, signals)}>
               {title}
             </Menu.Item>
           ))}
+          <Menu.Item onClick={() => addScope("Scope", [])}>Empty scope</Menu.Item>
+          <Menu.Divider />
+          {Object.entries(PANELS)
+            .filter(([kind]) => kind !== "scope")
+            .map(([kind, { title }]) => (
+              <Menu.Item key={kind} onClick={() => addPanel(kind)}>
+                {title}
+              </Menu.Item>
+            ))}
           {activePanel && (
             <>
               <Menu.Divider />
