@@ -73,7 +73,7 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
           side: i === 0 ? 3 : 1,
           size: fontSize * 4,
           gap: 6,
-          space: fontSize * 1.2,
+          space: (_u, _axis, _min, _max, height) => Math.max(fontSize * 1.2, height / 9),
           grid: { show: i === 0, stroke: colours.grid, width: 1 },
           values: (_u, splits) => valueLabels(splits, model.scale(i)),
         }),

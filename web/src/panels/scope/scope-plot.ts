@@ -18,6 +18,8 @@ const MOST_AXES = 3;
 
 export interface ScopePlotOptions extends Pick<ScopeModel, "host" | "traces" | "scheme" | "lineWidth" | "fontSize"> {
   marks: () => Marks;
+  /** Whether thin lines must do: they are drawn many times faster. */
+  strained: () => boolean;
   gestures: ScopeGestures;
 }
 
@@ -76,6 +78,8 @@ export class ScopePlot {
       low: data.subarray(i * 2 * columns, (i * 2 + 1) * columns),
       high: data.subarray((i * 2 + 1) * columns, (i * 2 + 2) * columns),
     }));
+    const width = this.options.strained() ? 1 : this.options.lineWidth;
+    for (const series of this.plot.series.slice(1)) series.width = width;
     const times = columnTimes(frame, this.origin);
     this.plot.setData([times, ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
     if (this.hovered) hover.set(this.tickAt(this.plot.cursor.left ?? -1), this);
