@@ -1,5 +1,6 @@
 import type { PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
+import { inkOn } from "../../ui/contrast";
 import { formatNumber } from "../../ui/format";
 import { hatch } from "../../ui/hatch";
 import { CANVAS, type Scheme } from "../../ui/palette";
@@ -154,7 +155,7 @@ function paintBand(
       ctx.fillStyle = colours.panel;
       ctx.fillRect(at - 4, top + 2, needed + 8, height - 4);
     }
-    ctx.fillStyle = solid && run.value >= 0 ? "#0d1115" : colours.text;
+    ctx.fillStyle = solid && run.value >= 0 ? inkOn(String(fill(run.value))) : colours.text;
     ctx.fillText(label, at, top + height / 2 + 0.5);
   }
 }
