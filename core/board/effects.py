@@ -23,6 +23,7 @@ class Effects(Block):
         Port("mass_scale", "1", "true mass over nominal"),
         Port("stiffness_scale", "1", "true stiffness over nominal"),
         Port("damping_scale", "1", "true damping over nominal"),
+        Port("vacuum", "1", "share of the vacuum that is left", hidden=True),
     )
 
     class Params(BlockParams):

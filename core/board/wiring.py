@@ -69,6 +69,7 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     order = [own("plant", spec.plant), Instance("effects", "effects", Effects, Effects.Params())]
     for name, block in registry.blocks("faults").items():
         order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
+    order.append(own("environment", spec.environment))
     order += [own(name, section) for name, section in spec.sensors.items()]
     order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
     for name, section in spec.diagnosers.items():

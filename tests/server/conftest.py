@@ -59,9 +59,11 @@ class Stream:
 
     def until_type(self, kind: str, timeout: float = 10.0, **fields: Any) -> dict[str, Any]:
         found: dict[str, Any] = self.until(
-            lambda m: isinstance(m, dict)
-            and m["type"] == kind
-            and all(m.get(name) == value for name, value in fields.items()),
+            lambda m: (
+                isinstance(m, dict)
+                and m["type"] == kind
+                and all(m.get(name) == value for name, value in fields.items())
+            ),
             timeout,
         )
         return found
