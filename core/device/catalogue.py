@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from core.block import BlockParams
 from core.device.device import Device, Printed
 from core.device.geometry import Geometry
 from core.errors import from_validation, unknown
@@ -40,7 +41,7 @@ def device(overrides: dict[str, Any]) -> Device:
     try:
         return Device.model_validate(merged)
     except ValidationError as error:
-        tables = {"": Device, "geometry": Geometry, "printed": Printed}
+        tables: dict[str, type[BlockParams]] = {"": Device, "geometry": Geometry, "printed": Printed}
         fields = {name: list(table.model_fields) for name, table in tables.items()}
         raise from_validation(error, fields).under("device") from None
 

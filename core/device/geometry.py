@@ -101,8 +101,8 @@ class Geometry(BlockParams):
             +\tfrac{A_c}{g}\right],\quad \delta=\sqrt{2\mu/(\rho_{gas}\omega_0)}
         """
         plan, film, combs, gap = self.film
-        omega = (self.stiffness_n_m() / self.mass_kg()) ** 0.5
-        delta = penetration_depth_um(ATMOSPHERE_PA, ROOM_K, 1.0) / omega**0.5
+        root: float = (self.stiffness_n_m() / self.mass_kg()) ** 0.25  # of the angular frequency
+        delta = penetration_depth_um(ATMOSPHERE_PA, ROOM_K, 1.0) / root
         per_um = plan * (1.0 / film + 1.0 / delta) + combs / gap
         return viscosity(ROOM_K) * 1e-6 * per_um
 
