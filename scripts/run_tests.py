@@ -15,8 +15,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = ".venv/bin/"
-NPM = ["scripts/npm", "--prefix", "web"]
+NPM = ["scripts/npm", "--silent", "--prefix", "web"]
 COUNT = re.compile(r"(\d+) (passed|failed|errors?|skipped|xfailed|flaky)")
+COLOUR = re.compile(r"\x1b\[[\d;]*m")
 CLOSING = re.compile(r"^(=+ .*\bin [\d.]+s.*=+|\s*Tests\s+.*\(\d+\)|\s+\d+ (passed|failed|flaky|skipped)\b.*)$")
 
 
@@ -47,8 +48,9 @@ class Step:
             assert process.stdout is not None
             for line in process.stdout:
                 print(line, end="", flush=True)
-                if self.tests and CLOSING.match(line):
-                    self.closing.append(line.strip())
+                plain = COLOUR.sub("", line).rstrip()
+                if self.tests and CLOSING.match(plain):
+                    self.closing.append(plain.strip())
         self.code = process.returncode
         self.seconds = time.monotonic() - start
         if self.tests and self.code == 0 and not self.count()["passed"]:

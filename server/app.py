@@ -82,5 +82,6 @@ def create_app(settings: Settings) -> FastAPI:
         origin=OriginPolicy(settings.host, settings.allowed_hosts),
         open_paths=open_paths,
     )
+    app.add_middleware(errors.CatchAll)
     app.add_middleware(SecurityHeaders)
     return app

@@ -12,10 +12,14 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from core.errors import InputError
 
 log = logging.getLogger(__name__)
+
+LONGEST = 300
+"""Characters of a message: one line a person reads."""
 
 
 class ErrorBody(BaseModel):
@@ -73,7 +77,10 @@ def body_of(error: Exception) -> ErrorBody:
     if isinstance(error, ApiError):
         return error.body
     if isinstance(error, InputError):
-        return ErrorBody(**error.as_dict())
+        body = ErrorBody(**error.as_dict())
+        if len(body.message) > LONGEST:  # a list of all that is allowed can be very long
+            body.message = body.message[: LONGEST - 1] + "…"
+        return body
     raise TypeError(f"not a refusal: {error!r}")
 
 
@@ -150,8 +157,33 @@ def install(app: FastAPI) -> None:
         message = f"{phrase.lower()}: {request.method} {request.url.path}"
         return reply(error.status_code, ErrorBody(code=code, message=message), error.headers)
 
-    @app.exception_handler(Exception)
-    async def _(request: Request, error: Exception) -> JSONResponse:
-        log.error("unhandled error in %s %s", request.method, request.url.path, exc_info=error)
-        body = ErrorBody(code="internal", message="the server failed on this request; its log says why")
-        return reply(500, body)
+
+class CatchAll:
+    """Answers an error nobody expected in the one shape; the log says what it was.
+
+    Parameters
+    ----------
+    app : ASGIApp
+        What to wrap.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the call on; answer 500 if nothing has been answered yet."""
+        started = False
+
+        async def watched(message: Message) -> None:
+            nonlocal started
+            started = True
+            await send(message)
+
+        try:
+            await self._app(scope, receive, watched)
+        except Exception:
+            log.exception("unexpected error in %s %s", scope["type"], scope.get("path", ""))
+            if started or scope["type"] != "http":
+                raise
+            body = ErrorBody(code="internal", message="the server failed on this request; its log says why")
+            await reply(500, body)(scope, receive, send)

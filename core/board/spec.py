@@ -218,9 +218,9 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
             if not isinstance(table, dict | list):
                 raise InputError(f"{part} is not a table", path)
         if isinstance(table, list):
-            table[_position(parts[-1], table, path)] = value
+            table[_position(parts[-1], table, path)] = copy.deepcopy(value)
             continue
-        table[parts[-1]] = value
+        table[parts[-1]] = copy.deepcopy(value)
         if path == "reference.kind":
             # a new kind of reference keeps what it shares with the old one
             fields = registry.block("reference", value, path).Params.model_fields

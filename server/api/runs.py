@@ -9,11 +9,10 @@ from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from core.errors import InputError
-from scenarios.edit import with_values
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import FORMAT_RESPONSES, stored_trace
-from server.bench.benches import read_scenario
+from server.bench.benches import prepare
 from server.runs.jobs import Run
 from server.store.traces import Format
 
@@ -40,7 +39,7 @@ class RunList(BaseModel):
 @router.post("", status_code=202, dependencies=[RateLimited])
 async def start_run(body: NewRun, service: ServiceDep) -> Run:
     """Queue a headless run; it never disturbs the live benches."""
-    scenario = await asyncio.to_thread(lambda: with_values(read_scenario(body.scenario), body.set))
+    scenario, _ = await asyncio.to_thread(prepare, body.scenario, body.set, body.seed)
     seeds = [scenario.spec.seed if body.seed is None else body.seed]
     if body.seeds is not None:
         first, end = body.seeds

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from scenarios.library import get, library
 from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
-from server.bench.benches import read_scenario
+from server.bench.benches import prepare
 from server.errors import ApiError, not_found
 
 router = APIRouter(prefix="/scenarios", tags=["scenarios"], route_class=StrictRoute)
@@ -79,7 +79,7 @@ def get_scenario(scenario_id: str) -> ScenarioText:
 @router.post("/check")
 def check_scenario(body: ScenarioSource) -> ScenarioText:
     """Check a scenario without running it; 422 says what is wrong with it."""
-    scenario = read_scenario(body.scenario)
+    scenario, _ = prepare(body.scenario, {}, None)
     try:
         return ScenarioText(document=scenario.document, toml=scenario.toml())
     except (TypeError, ValueError) as error:

@@ -206,8 +206,8 @@ class Session:
             self.history.end_tick = kept.snapshot.tick
         else:
             self.history = History(len(self._index), self._history_ticks)
-        if self._ends_at is not None and self.board.tick >= self._ends_at:
-            self._ends_at = None
+        samples = self.scenario.samples
+        self._ends_at = samples if samples is not None and self.board.tick < samples else None
         return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
 
     def forget_snapshot(self, snapshot_id: str) -> None:
@@ -298,13 +298,18 @@ class Session:
             "title": f"{title}, as run live"[:200],
             "source": self.scenario.head.source,
         }
-        return {**head, **self.board.save()}
+        document = {**head, **self.board.save()}
+        if self.board.tick == 0:  # nothing has happened yet: what is saved is what would
+            del document["samples"]
+            if self.scenario.samples is not None:
+                document["samples"] = self.scenario.samples
+        return document
 
     def view(self, watchers: int, loop_lag_ms: float, view3d: str | None) -> Bench:
         """Describe the bench in full."""
-        spec = self.board.spec
+        spec, last = self.board.spec, self.events.last
         return Bench(
-            **{**dict(self.status), "watchers": watchers, "loop_lag_ms": loop_lag_ms},
+            **{**dict(self.status), "watchers": watchers, "loop_lag_ms": loop_lag_ms, "last_event": last},
             id=self.id,
             title=self.scenario.head.title or self.scenario.id,
             scenario_id=self.scenario.id,
@@ -336,7 +341,7 @@ class Session:
         document = command.model_dump()
         if isinstance(command, TimeScale):
             old = self.pacer.scale
-            self.pacer.rescale(command.value, self.board.tick, self._clock())
+            self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
             text = "time runs as fast as possible"
             if command.value is not None:
                 text = f"time scale set to {command.value * 1e3:g} ms/s"

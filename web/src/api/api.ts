@@ -1,26 +1,22 @@
-import { request } from "./request";
-import type { Bench, BlockCard, Device, Document, ScenarioSummary } from "./types";
+import { client, data } from "./client";
+import type { NewBench } from "./types";
 
-interface NewBench {
-  scenario: string | Document;
-  set?: Record<string, unknown>;
-  seed?: number;
-  paused?: boolean;
-  time_scale?: number | null;
-}
-
-const json = async <T>(response: Promise<Response>): Promise<T> => (await response).json() as Promise<T>;
-const bench = (id: string) => `/benches/${encodeURIComponent(id)}`;
+const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
 
 /** The REST calls of the page. */
 export const api = {
-  catalog: async () => (await json<{ blocks: BlockCard[] }>(request("/catalog"))).blocks,
-  devices: async () => (await json<{ devices: Device[] }>(request("/devices"))).devices,
-  scenarios: async () => (await json<{ scenarios: ScenarioSummary[] }>(request("/scenarios"))).scenarios,
-  benches: async () => (await json<{ benches: Bench[] }>(request("/benches"))).benches,
-  createBench: (body: NewBench) => json<Bench>(request("/benches", { method: "POST", json: body })),
-  removeBench: async (id: string) => void (await request(bench(id), { method: "DELETE" })),
+  catalog: async () => (await data(client.GET("/api/v1/catalog"))).blocks,
+  devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
+  scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
+  benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
+  bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
+  createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
+  removeBench: (id: string) => data(client.DELETE("/api/v1/benches/{bench_id}", bench(id))),
   fork: (id: string, snapshot: string | null = null) =>
-    json<Bench>(request(`${bench(id)}/fork`, { method: "POST", json: { snapshot } })),
-  scenarioToml: async (id: string) => (await request(`${bench(id)}/scenario`)).text(),
+    data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body: { snapshot } })),
+  snapshots: async (id: string) =>
+    (await data(client.GET("/api/v1/benches/{bench_id}/snapshots", bench(id)))).snapshots,
+  keep: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/snapshots", { ...bench(id), body: {} })),
+  scenarioToml: (id: string): Promise<string> =>
+    data(client.GET("/api/v1/benches/{bench_id}/scenario", { ...bench(id), parseAs: "text" })) as Promise<string>,
 };

@@ -1,10 +1,10 @@
+import { api } from "./api";
 import { ApiError } from "./api-error";
-import { request } from "./request";
 
 /** Why a stream would not open: the close code that fits, or undefined when the server does not answer. */
 export async function benchExists(id: string): Promise<number | undefined> {
   try {
-    await request(`/benches/${encodeURIComponent(id)}`);
+    await api.bench(id);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (error.status === 401) return 4401;

@@ -35,6 +35,8 @@ export const actions = {
   keys: () => useView.setState({ dialog: "keys" }),
   newBench: () => useView.setState({ dialog: "bench" }),
   fork: () => void fork(),
+  forkBeforeTrip: () => void forkBeforeTrip(),
+  keep: () => void keep(),
   saveScenario: () => void saveScenario(),
 };
 
@@ -42,15 +44,40 @@ function scale(factor: number): void {
   void send({ kind: "time_scale", value: stepTimeScale(bench()?.time_scale ?? null, factor) });
 }
 
-async function fork(): Promise<void> {
+async function fork(snapshot: string | null = null): Promise<void> {
   const from = bench();
   if (!from) return;
   try {
-    const made = await api.fork(from.id);
+    const made = await api.fork(from.id, snapshot);
     openBench(made.id);
+    notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
+  } catch (error) {
+    showError(error);
+  }
+}
+
+/** Keep this moment, to come back to or to branch from. */
+async function keep(): Promise<void> {
+  const from = bench();
+  if (!from) return;
+  try {
+    const kept = await api.keep(from.id);
+    notifications.show({ title: "Moment kept", message: `Tick ${kept.tick} can be forked from if the board trips.` });
+  } catch (error) {
+    showError(error);
+  }
+}
+
+async function forkBeforeTrip(): Promise<void> {
+  const from = bench();
+  if (!from?.trip) return;
+  const { tick } = from.trip;
+  try {
+    const before = (await api.snapshots(from.id)).filter((s) => s.tick < tick).at(-1);
+    if (before) return await fork(before.id);
     notifications.show({
-      title: "Forked",
-      message: `This is a copy of ${from.title} as it was; the original goes on by itself.`,
+      title: "No moment was kept before the trip",
+      message: "Press K while a bench runs to keep one.",
     });
   } catch (error) {
     showError(error);

@@ -1,3 +1,4 @@
+import { notifications } from "@mantine/notifications";
 import { useEffect } from "react";
 import { eventTone } from "../panels/events/event-tone";
 import { useBench } from "../stream/bench-store";
@@ -7,6 +8,7 @@ import { alarm, announce, useAnnouncements } from "./announce";
 export function Announcer() {
   const { polite, alarm: loud } = useAnnouncements();
   const event = useBench((s) => s.events.at(-1));
+  const notice = useBench((s) => s.notice);
   const phase = useBench((s) => s.connection.phase);
 
   useEffect(() => {
@@ -20,6 +22,11 @@ export function Announcer() {
     if (phase === "waiting") alarm("Connection lost, trying again.");
     if (phase === "open") announce("Connected.");
   }, [phase]);
+
+  useEffect(() => {
+    if (!notice) return;
+    notifications.show({ id: `notice-${notice.code}`, message: notice.message, autoClose: 5000 });
+  }, [notice]);
 
   return (
     <>

@@ -84,9 +84,9 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     size(api, width, height, {
       schematic: { w: 0.225, h: 0.32 },
       view3d: { w: 0.25, h: 0.4 },
-      motion: { h: 0.34 },
-      voltage: { h: 0.22 },
-      lanes: { h: 0.44 },
+      motion: { h: 0.33 },
+      voltage: { h: 0.25 },
+      lanes: { h: 0.42 },
     });
   },
 };

@@ -2,7 +2,7 @@ import { api } from "../api/api";
 import { benchInAddress, openBench } from "./open-bench";
 
 /** Worth seeing at first sight: the first of these that the library has. */
-const SHOWPIECES = ["live", "ch5-seven-step"];
+const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
 
 /** Open the bench of the address, else one that is running, else start the showpiece. */
 export async function openFirstBench(): Promise<void> {
@@ -11,6 +11,12 @@ export async function openFirstBench(): Promise<void> {
   await openAnyBench();
 }
 
+/** Start a bench of a library scenario in place of the one shown. */
+export async function startAgain(scenario: string): Promise<void> {
+  openBench((await api.createBench({ scenario, paused: false })).id, true);
+}
+
+/** Open a bench that runs, or start the showpiece. */
 export async function openAnyBench(): Promise<void> {
   const benches = await api.benches();
   const running = benches.find((b) => b.state === "running") ?? benches[0];

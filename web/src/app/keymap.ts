@@ -22,6 +22,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
   { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
   { key: "f", shown: "F", does: "fork", group: "Bench", run: actions.fork },
+  { key: "k", shown: "K", does: "keep this moment", group: "Bench", run: actions.keep },
   { key: "n", shown: "N", does: "new bench", group: "Bench", run: actions.newBench },
   { key: "l", shown: "L", does: "all panels live", group: "Look", run: actions.live },
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },

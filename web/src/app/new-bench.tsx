@@ -71,7 +71,7 @@ function Gallery() {
           <li key={s.id}>
             <div>
               <h3>{s.title}</h3>
-              <p>{s.summary}</p>
+              <p>{s.summary || s.claim}</p>
               <small>
                 {s.id}
                 {s.source && ` · ${s.source}`}

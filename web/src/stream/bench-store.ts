@@ -19,7 +19,8 @@ export interface BenchStore {
   scores: Record<string, Score>;
   events: LogEntry[];
   droppedFrames: number;
-  notice: string | undefined;
+  /** The latest word of the server about this connection. */
+  notice: { code: string; message: string } | undefined;
 }
 
 /** What the page knows of the bench it shows. Written only by the stream; frames never pass through here. */

@@ -6,6 +6,8 @@ export class DrawLoop {
   private request = 0;
   /** Frames drawn in the last full second, for the status strip. */
   framesPerSecond = 0;
+  /** When the last frame was drawn, on `performance.now()`'s clock. */
+  lastFrame = performance.now();
   private counted = 0;
   private since = 0;
 
@@ -18,6 +20,7 @@ export class DrawLoop {
   }
 
   private readonly frame = (now: number): void => {
+    this.lastFrame = performance.now();
     this.counted += 1;
     if (now - this.since >= 1000) {
       this.framesPerSecond = Math.round((this.counted * 1000) / (now - this.since));

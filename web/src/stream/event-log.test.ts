@@ -1,17 +1,9 @@
 import { expect, it } from "vitest";
 import type { LogEntry } from "../api/types";
 import { appendEvent } from "./event-log";
+import { logEntry } from "./log-entry.fixture";
 
-const entry = (seq: number): LogEntry => ({
-  seq,
-  tick: seq * 10,
-  actor: "you",
-  kind: "inject",
-  text: "",
-  command: null,
-  old: null,
-  new: null,
-});
+const entry = (seq: number) => logEntry({ seq, tick: seq * 10 });
 
 it("appends in order and ignores what a replay repeats", () => {
   let log: LogEntry[] = [];

@@ -10,6 +10,8 @@ export class Feed {
   revision = 0;
   frame: PanelFrame | undefined;
   dirty = false;
+  /** The server refused something, so its count of our subscriptions may lag behind ours. */
+  uncertain = false;
 
   constructor(panel: number, subscription: Subscription, draw: (frame: PanelFrame) => void) {
     this.panel = panel;
@@ -19,8 +21,12 @@ export class Feed {
 
   /** Take a picture from the wire, unless it answers an older subscription. */
   store(frame: PanelFrame): void {
-    if (frame.revision !== this.revision) return;
+    if (this.uncertain ? !this.fits(frame) : frame.revision !== this.revision) return;
     this.frame = frame;
     this.dirty = true;
+  }
+
+  private fits(frame: PanelFrame): boolean {
+    return frame.signals === this.subscription.signals.length && frame.frozen === (this.subscription.mode === "frozen");
   }
 }

@@ -89,6 +89,16 @@ describe("Feeds", () => {
     expect(feeds.size).toBe(2);
   });
 
+  it("still draws after a refused subscription that the server has not counted", () => {
+    const draw = vi.fn();
+    const feed = feeds.open(roll, draw);
+    feeds.change(feed, roll);
+    feeds.refused();
+    feeds.receive(frame(1, picture(feed.panel, 1)));
+    feeds.draw();
+    expect(draw).toHaveBeenCalledOnce();
+  });
+
   it("goes on when one panel cannot draw", () => {
     const error = vi.spyOn(console, "error").mockImplementation(() => undefined);
     const bad = feeds.open(roll, () => {

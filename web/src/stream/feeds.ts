@@ -53,8 +53,14 @@ export class Feeds {
     this.acknowledged = 0;
     for (const feed of this.feeds.values()) {
       feed.revision = 0;
+      feed.uncertain = false;
       this.subscribe(feed);
     }
+  }
+
+  /** A message was refused; it may have been a subscription, which the server then has not counted. */
+  refused(): void {
+    for (const feed of this.feeds.values()) feed.uncertain = true;
   }
 
   receive(frame: Frame): void {

@@ -1,4 +1,5 @@
 import { ApiError } from "../api/api-error";
+import type { components } from "../api/schema";
 import type { Command } from "../api/types";
 import { type CloseReason, closeReason } from "./close-reason";
 import { decodeFrame } from "./decode-frame";
@@ -136,13 +137,13 @@ export class StreamClient {
     this.feeds.receive(frame);
   }
 
-  private reply(message: Extract<ServerMessage, { type: "reply" }>): void {
+  private reply(message: components["schemas"]["Reply"]): void {
     const pending = this.replies.get(message.id);
     if (!pending) return;
     this.replies.delete(message.id);
     clearTimeout(pending.timer);
-    if (message.ok) pending.resolve(message.tick);
-    else pending.reject(new ApiError(422, message.error));
+    if (message.ok) pending.resolve(message.tick ?? 0);
+    else if (message.error) pending.reject(new ApiError(422, message.error));
   }
 
   private failReplies(why: string): void {

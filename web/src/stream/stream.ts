@@ -67,11 +67,12 @@ function receive(message: ServerMessage): void {
       pendingEvents.push(message.event);
       return;
     case "notice":
-      useBench.setState({ notice: message.message });
+      useBench.setState({ notice: { code: message.code, message: message.message } });
       return;
     case "error":
+      client.feeds.refused();
       console.error("the server refused a message", message.error);
-      useBench.setState({ notice: message.error.message });
+      useBench.setState({ notice: { code: message.error.code, message: message.error.message } });
       return;
     case "reply":
       return;
@@ -85,6 +86,8 @@ function flushEvents(): void {
 }
 
 setInterval(() => {
+  // A covered window gets no animation frames; taking pictures undrawn keeps the server from giving us up.
+  if (performance.now() - loop.lastFrame > STALE_MS) client.feeds.draw();
   const { connection } = useBench.getState();
   if (connection.phase !== "open") return;
   const silent = performance.now() - client.lastHeard;

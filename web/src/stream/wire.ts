@@ -1,17 +1,13 @@
-import type { ApiErrorBody, Bench, Command, LogEntry, Score } from "../api/types";
+import type { components } from "../api/schema";
+import type { Bench, Command } from "../api/types";
+
+type Schemas = components["schemas"];
 
 /** Version of the wire format; also the subprotocol offered to the server. */
 export const WIRE_VERSION = 1;
 export const SUBPROTOCOL = `combbench.v${WIRE_VERSION}`;
 
-export interface Trigger {
-  signal: string;
-  edge: "rising" | "falling";
-  level: number;
-  hysteresis: number;
-  position: number;
-  sweep: "auto" | "normal" | "single";
-}
+export type Trigger = Required<Schemas["TriggerSpec"]>;
 
 export type Subscription =
   | { mode: "roll"; signals: string[]; window_ms: number; width: number }
@@ -20,16 +16,19 @@ export type Subscription =
 
 export type ClientMessage =
   | ({ type: "subscribe"; panel: number } & Subscription)
-  | { type: "unsubscribe" | "rearm"; panel: number }
-  | { type: "ack"; frame: number }
-  | { type: "resume"; after: number }
+  | Schemas["Unsubscribe"]
+  | Schemas["Rearm"]
+  | Schemas["Ack"]
+  | Schemas["Resume"]
   | { type: "command"; id: string; command: Command };
 
+/** A status leaves the parameters out while they are as before. */
+export type Status = Omit<Schemas["Status"], "parameters"> & { parameters: Bench["parameters"] | null };
+
 export type ServerMessage =
-  | { type: "hello"; wire: number; server: string; bench: Bench; last_event: number }
-  | ({ type: "status"; scores?: Record<string, Score>; dropped_frames?: number } & Partial<Bench>)
-  | { type: "event"; event: LogEntry }
-  | { type: "reply"; id: string; ok: true; tick: number }
-  | { type: "reply"; id: string; ok: false; error: ApiErrorBody }
-  | { type: "error"; error: ApiErrorBody }
-  | { type: "notice"; code: string; message: string };
+  | Schemas["Hello"]
+  | Status
+  | Schemas["EventMessage"]
+  | Schemas["Reply"]
+  | Schemas["ErrorMessage"]
+  | Schemas["Notice"];

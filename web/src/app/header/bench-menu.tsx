@@ -63,7 +63,8 @@ function Remove({ bench, onDone }: { bench: Bench; onDone(): void }) {
       title={`Stop and remove ${bench.title}`}
       onClick={(event) => {
         event.stopPropagation();
-        if (bench.watchers > 0 && !window.confirm(`${bench.watchers} people watch ${bench.title}. Remove it?`)) return;
+        if ((bench.watchers ?? 0) > 0 && !window.confirm(`${bench.watchers} people watch ${bench.title}. Remove it?`))
+          return;
         api.removeBench(bench.id).then(onDone, showError);
       }}
       onKeyDown={() => undefined}

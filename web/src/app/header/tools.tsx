@@ -1,5 +1,6 @@
 import { ActionIcon, Menu, Tooltip, useMantineColorScheme } from "@mantine/core";
 import {
+  IconBookmark,
   IconDeviceFloppy,
   IconGitFork,
   IconKeyboard,
@@ -32,6 +33,7 @@ export function Tools() {
         icon={<IconDeviceFloppy size={19} />}
       />
       <Tool label="Fork: a copy of this bench from now on" onClick={actions.fork} icon={<IconGitFork size={19} />} />
+      <Tool label="Keep this moment, to fork from later (K)" onClick={actions.keep} icon={<IconBookmark size={19} />} />
       <Menu width={300} position="bottom-end" shadow="md">
         <Menu.Target>
           <ActionIcon size={34} variant="subtle" aria-label="Layout" title="Layout">

@@ -12,7 +12,7 @@ it("names each block on the bench and where its values are", () => {
     parameters,
     controller: "mrac",
     controllers: ["open_loop", "mrac"],
-    diagnosers: { kalman: { names: [] } },
+    diagnosers: { kalman: { kind: "mmae", names: [] } },
   });
   expect(list.find((i) => i.id === "plant")).toMatchObject({ family: "plant", name: "nonlinear", path: "plant" });
   expect(list.find((i) => i.id === "diagnosers.kalman")).toMatchObject({ family: "diagnose", name: "mmae" });

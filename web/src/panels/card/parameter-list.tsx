@@ -22,12 +22,16 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
   const current = (name: string) => valueAt(document, `${instance.path}.${name}`);
   const shown = parameters.filter((p) => p.type !== "list" && p.type !== "table");
 
+  const defaultOf = (path: string) => parameters.find((p) => `${instance.path}.${p.name}` === path)?.default;
+
   const apply = async (values: Values) => {
-    const before = Object.fromEntries(Object.keys(values).map((path) => [path, valueAt(document, path)]));
+    const before = Object.fromEntries(
+      Object.keys(values).map((path) => [path, valueAt(document, path) ?? defaultOf(path)]),
+    );
     const names = Object.keys(values).map((path) => path.split(".").at(-1)?.replaceAll("_", " "));
     if (!(await send({ kind: "set", values }, `Set ${names.join(", ")}`))) return;
     setStaged({});
-    setUndo(Object.values(before).includes(undefined) ? undefined : before);
+    setUndo(before);
   };
 
   const change = (parameter: Parameter, value: unknown) => {

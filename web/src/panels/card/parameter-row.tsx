@@ -4,6 +4,7 @@ import type { Parameter } from "../../api/types";
 import { NumberField } from "../../ui/number-field";
 import { unitText } from "../../ui/unit-scale";
 import styles from "./card.module.css";
+import { parameterTitle } from "./parameter-title";
 
 interface ParameterRowProps {
   parameter: Parameter;
@@ -14,7 +15,8 @@ interface ParameterRowProps {
 
 /** One parameter: what it means, its value with unit, its default and limits, and whether it may change now. */
 export function ParameterRow({ parameter, value, staged, onChange }: ParameterRowProps) {
-  const { label, meaning, live, type } = parameter;
+  const { meaning, live, type } = parameter;
+  const label = parameterTitle(parameter);
   const isDefault = JSON.stringify(value) === JSON.stringify(parameter.default);
   const range = limits(parameter);
   return (

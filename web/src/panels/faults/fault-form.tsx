@@ -40,10 +40,12 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             value={draft.severity * factor}
             label={null}
             thumbLabel={`Severity of ${fault.title}`}
-            marks={[
-              { value: 0, label: "0" },
-              { value: suggested * factor, label: severityText(suggested, scale, unit) },
-            ]}
+            marks={[scale.low, 0, suggested, scale.high]
+              .filter((v, i, all) => all.indexOf(v) === i)
+              .map((v) => ({
+                value: v * factor,
+                label: v === scale.low || v === scale.high ? severityText(v, scale, unit) : undefined,
+              }))}
             onChange={(value) => set({ severity: value / factor })}
             mb={18}
           />

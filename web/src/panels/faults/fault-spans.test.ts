@@ -1,12 +1,11 @@
 import { expect, it } from "vitest";
 import type { LogEntry } from "../../api/types";
+import { logEntry } from "../../stream/log-entry.fixture";
 import { faultSpans } from "./fault-spans";
 
 let seq = 0;
-const entry = (tick: number, kind: string, command: LogEntry["command"]): LogEntry => {
-  seq += 1;
-  return { seq, tick, actor: "you", kind, text: "", command, old: null, new: null };
-};
+const entry = (tick: number, kind: string, command: LogEntry["command"]) =>
+  logEntry({ seq: ++seq, tick, kind, command });
 const inject = (tick: number, fault: string, severity = 0.05) =>
   entry(tick, "inject", { kind: "inject", fault, severity });
 

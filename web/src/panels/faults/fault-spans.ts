@@ -1,4 +1,4 @@
-import type { LogEntry } from "../../api/types";
+import type { ActiveFault, LogEntry } from "../../api/types";
 
 export interface FaultSpan {
   name: string;
@@ -8,8 +8,8 @@ export interface FaultSpan {
   end: number | undefined;
 }
 
-/** When each fault acted, from the log of commands. */
-export function faultSpans(events: readonly LogEntry[]): FaultSpan[] {
+/** When each fault acted, from the log of commands; what acts now may have begun before the log (on a fork). */
+export function faultSpans(events: readonly LogEntry[], acting: readonly ActiveFault[] = []): FaultSpan[] {
   const spans: FaultSpan[] = [];
   const open = new Map<string, FaultSpan>();
   const close = (name: string, tick: number) => {
@@ -18,7 +18,6 @@ export function faultSpans(events: readonly LogEntry[]): FaultSpan[] {
     open.delete(name);
   };
   for (const { kind, command, tick } of events) {
-    if (kind === "reset") for (const name of [...open.keys()]) close(name, tick);
     if (kind === "inject" && command) {
       const name = String(command.fault);
       close(name, tick);
@@ -31,5 +30,7 @@ export function faultSpans(events: readonly LogEntry[]): FaultSpan[] {
       for (const name of healed) close(name, tick);
     }
   }
+  for (const { name, severity, since_tick } of acting)
+    if (severity !== 0 && !open.has(name)) spans.push({ name, severity, start: since_tick, end: undefined });
   return spans;
 }

@@ -4,13 +4,16 @@ import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../app/actions";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { formatNumber } from "../../ui/format";
 import { FaultRow } from "./fault-row";
 import styles from "./faults.module.css";
 
 /** Every fault of the catalogue: what it changes, how much, how and when; several at once. */
 export function FaultsPanel() {
   const { blocks, failed, retry } = useCatalog();
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const active = useBench((s) => s.bench?.faults);
+  const pending = useBench((s) => s.bench?.pending);
   const [open, setOpen] = useState<string | undefined>(undefined);
   const faults = blocks.filter((b) => b.family === "faults");
   if (faults.length === 0)
@@ -41,6 +44,14 @@ export function FaultsPanel() {
           Heal all
         </Button>
       </div>
+      {pending?.map((waiting) => (
+        <p key={`${waiting.text} ${waiting.tick} ${waiting.when}`} className={styles.pending}>
+          Waiting: {waiting.text}{" "}
+          {waiting.when
+            ? `when ${waiting.when}`
+            : waiting.tick !== null && `at ${formatNumber(waiting.tick * dtMs, 2)} ms`}
+        </p>
+      ))}
       <ul className={styles.list}>
         {faults.map((fault) => (
           <FaultRow

@@ -1,17 +1,9 @@
 import { expect, it } from "vitest";
-import type { LogEntry } from "../../api/types";
+import { logEntry } from "../../stream/log-entry.fixture";
 import { truthSwitches } from "./delays";
 
-const entry = (tick: number, kind: string, text: string, old: unknown, fresh: unknown): LogEntry => ({
-  seq: tick,
-  tick,
-  actor: "board",
-  kind,
-  text,
-  command: null,
-  old,
-  new: fresh,
-});
+const entry = (tick: number, kind: string, text: string, old: unknown, fresh: unknown) =>
+  logEntry({ seq: tick, tick, kind, text, old, new: fresh, actor: "board" });
 
 it("pairs each change of the truth with the delay of its recognition, per diagnoser", () => {
   const log = [
@@ -21,8 +13,15 @@ it("pairs each change of the truth with the delay of its recognition, per diagno
     entry(300, "truth_changed", "kalman: the truth is healthy", null, "healthy"),
   ];
   expect(truthSwitches(log, "kalman")).toEqual([
-    { tick: 100, label: "m+5", delay: 37 },
-    { tick: 300, label: "healthy", delay: undefined },
+    { tick: 100, label: "m+5", delay: 37, findable: true },
+    { tick: 300, label: "healthy", delay: undefined, findable: true },
   ]);
   expect(truthSwitches(log, "imm")[0].delay).toBeUndefined();
+});
+
+it("does not wait for a truth that is none of the hypotheses", () => {
+  const log = [
+    entry(10, "truth_changed", "kalman: the truth is none of the hypotheses", null, "none of the hypotheses"),
+  ];
+  expect(truthSwitches(log, "kalman")[0].findable).toBe(false);
 });

@@ -3,6 +3,7 @@ import { useEffect, useMemo, useRef, useState } from "react";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
+import { currentEvents } from "../../stream/current-events";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
@@ -40,7 +41,7 @@ export function DiagnoserLanes({ id, names }: { id: string; names: string[] }) {
     () => lanesLayout(size.width, size.height, names.length, fontSize),
     [size, names.length, fontSize],
   );
-  const switches = useMemo(() => truthSwitches(events, id), [events, id]);
+  const switches = useMemo(() => truthSwitches(currentEvents(events), id), [events, id]);
   const { view, span, look, goLive } = useTimeView(windowMs, dtMs, (start, end) => {
     shown.current = { start, end };
     dirty.current = true;

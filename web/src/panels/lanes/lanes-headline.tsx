@@ -25,13 +25,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       </div>
       <div>
         <dt>delay</dt>
-        <dd>
-          {last?.delay === undefined
-            ? last
-              ? "not found yet"
-              : "–"
-            : `${last.delay} samples · ${formatNumber(last.delay * dtMs, 2)} ms`}
-        </dd>
+        <dd>{delayText(last, dtMs)}</dd>
       </div>
       <div>
         <dt>correct</dt>
@@ -43,4 +37,11 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       </div>
     </dl>
   );
+}
+
+function delayText(last: TruthSwitch | undefined, dtMs: number): string {
+  if (!last) return "–";
+  if (!last.findable) return "nothing to find";
+  if (last.delay === undefined) return "not found yet";
+  return `${last.delay} samples · ${formatNumber(last.delay * dtMs, 2)} ms`;
 }

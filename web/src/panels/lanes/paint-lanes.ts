@@ -177,8 +177,13 @@ function paintDelays(
     const left = x(change.tick);
     ctx.fillStyle = colours.event;
     for (let y = 0; y < layout.axis; y += 6) ctx.fillRect(Math.round(left), y, 1, 3);
-    const found = change.delay === undefined ? next : change.tick + change.delay;
     const middle = layout.delay + layout.band / 2;
+    if (!change.findable) {
+      ctx.fillStyle = colours.muted;
+      ctx.fillText("not among the hypotheses", Math.max(left, layout.left) + 6, middle + 0.5);
+      return;
+    }
+    const found = change.delay === undefined ? next : change.tick + change.delay;
     ctx.fillStyle = change.delay === undefined ? colours.alarm : colours.accent;
     ctx.fillRect(left, middle - 3, Math.max(2, x(found) - left), 6);
     const text =
@@ -213,5 +218,5 @@ function paintTime(
   });
   ctx.textAlign = "right";
   ctx.font = fontFor(fontSize, 1, 600);
-  ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - 10, y);
+  ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - fontSize * 2.4, y);
 }

@@ -143,4 +143,7 @@ export function SchematicPanel() {
   );
 }
 
-const shorten = (text: string) => (text.length > 14 ? `${text.slice(0, 13).trimEnd()}…` : text);
+const shorten = (title: string) => {
+  const text = title.replace(/\s*\(.*\)$/, "");
+  return text.length > 14 ? `${text.slice(0, 13).trimEnd()}…` : text;
+};

@@ -31,8 +31,6 @@ export function drawMarks(
     if (fault.start > span.end || (fault.end ?? span.end) < span.start) continue;
     const from = Math.max(bbox.left, x(fault.start));
     const to = Math.min(bbox.left + bbox.width, x(fault.end ?? span.end));
-    ctx.fillStyle = `${colours.alarm}14`;
-    ctx.fillRect(from, bbox.top, to - from, bbox.height);
     ctx.fillStyle = colours.alarm;
     ctx.fillRect(from, bbox.top - 3 * ratio, to - from, 3 * ratio);
   }

@@ -6,7 +6,7 @@ import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { EmptyState } from "../../ui/empty-state";
-import { faultSpans } from "../faults/fault-spans";
+import { marksNow } from "./marks-now";
 import { RearmContext } from "./rearm-context";
 import styles from "./scope.module.css";
 import type { ScopeConfig } from "./scope-config";
@@ -109,18 +109,4 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
       )}
     </section>
   );
-}
-
-let marked: { events: unknown; marks: ReturnType<typeof marksOf> } | undefined;
-
-function marksOf() {
-  const { events } = useBench.getState();
-  return { events, faults: faultSpans(events) };
-}
-
-/** Events and fault spans, worked out once per change of the log. */
-function marksNow() {
-  const { events } = useBench.getState();
-  if (marked?.events !== events) marked = { events, marks: marksOf() };
-  return marked.marks;
 }

@@ -199,7 +199,7 @@ export class ScopePlot {
             side: i === 0 ? 3 : 1,
             size: fontSize * 4,
             gap: 6,
-            space: fontSize * 1.8,
+            space: fontSize * 1.2,
             grid: { show: i === 0, stroke: colours.grid, width: 1 },
             values: (_u, splits) => axisLabels(splits, this.scales[i]),
           }),
@@ -255,7 +255,7 @@ export class ScopePlot {
     const spanMs = (this.span.end - this.span.start) * (this.frame?.dtMs ?? 1);
     ctx.fillText(
       timeUnit(spanMs).unit,
-      bbox.left - 6 * ratio,
+      bbox.left - this.options.fontSize * 2.2 * ratio,
       bbox.top + bbox.height + (this.options.fontSize + 5) * ratio,
     );
     ctx.restore();

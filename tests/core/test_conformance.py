@@ -1,0 +1,270 @@
+"""What every block of every family must keep to; a new block is covered by being there."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core import registry
+from core.block import Block
+from core.board.board import Board
+from core.errors import InputError
+from tests.lab import RICH, STORY, do, document, inner_digest, make, play, run_digest
+
+ROOT = Path(__file__).resolve().parents[2]
+TICKS = 120
+SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
+KIND = {"plant": "model"}
+ALL = [entry for family in registry.FAMILIES for entry in registry.blocks(family).values()]
+
+
+def name_of(entry: type[Block]) -> str:
+    return f"{entry.family}/{entry.name}"
+
+
+def path_of(entry: type[Block]) -> str:
+    """Return the table of the document in which a block's parameters stand."""
+    if entry.family == "diagnose":
+        return "diagnosers.kalman"
+    if entry.family == "board":
+        return entry.name
+    return SECTION[entry.family]
+
+
+def chosen(entry: type[Block]) -> dict[str, Any]:
+    """Return the values that put a block on the rich bench."""
+    if entry.family in SECTION:
+        table = {KIND.get(entry.family, "kind"): entry.name}
+        if entry.family == "reference":
+            table["amplitude_v"] = 8.0
+        return {SECTION[entry.family]: table}
+    if entry.family == "diagnose":
+        return {"diagnosers.kalman.kind": entry.name, "diagnosers.slow.kind": entry.name}
+    return {}
+
+
+def variants(entry: type[Block]) -> dict[str, dict[str, Any]]:
+    """Return benches with the block as it comes, with each of its choices, with each of its switches turned."""
+    found = {name_of(entry): chosen(entry)}
+    for parameter in registry.card(entry).parameters:
+        path = f"{path_of(entry)}.{parameter.name}" if entry.family != "faults" else ""
+        for choice in parameter.choices if path else []:
+            found[f"{name_of(entry)} {parameter.name}={choice}"] = {**chosen(entry), path: choice}
+        if parameter.type == "boolean" and path:
+            found[f"{name_of(entry)} {parameter.name}={not parameter.default}"] = {
+                **chosen(entry),
+                path: not parameter.default,
+            }
+    if entry.family == "plant":
+        found[f"{name_of(entry)} analogue"] = {**chosen(entry), "drive": {"kind": "analogue"}}
+    return found
+
+
+def profiles(entry: type[Block]) -> list[dict[str, Any]]:
+    return [
+        {"kind": "step"},
+        {"kind": "ramp", "duration_ms": 0.7},
+        {"kind": "intermittent", "period_ms": 0.13, "duty": 0.4},
+    ]
+
+
+def cases() -> dict[str, dict[str, Any]]:
+    found = {}
+    for entry in ALL:
+        for name, values in variants(entry).items():
+            found[name] = {"document": document(values, RICH), "commands": STORY, "faults": []}
+        if entry.family == "faults":
+            for profile in profiles(entry):
+                severity = entry.suggested
+                command = {"kind": "inject", "fault": entry.name, "severity": severity, "profile": profile}
+                found[f"{name_of(entry)} {profile['kind']}"] = {
+                    "document": document({}, RICH),
+                    "commands": [{**command, "at_sample": 37}],
+                    "faults": [(entry.name, severity, profile)],
+                }
+    return found
+
+
+CASES = cases()
+every_case = pytest.mark.parametrize("case", [pytest.param(case, id=name) for name, case in CASES.items()])
+every_block = pytest.mark.parametrize("entry", [pytest.param(entry, id=name_of(entry)) for entry in ALL])
+
+
+def board_of(case: dict[str, Any], *, compiled: bool = True) -> Board:
+    return make(base=case["document"], commands=case["commands"], compiled=compiled)
+
+
+# -- the same bits, however it is run
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # plain numbers warn where compiled ones quietly overflow
+@every_case
+def test_compiled_step_gives_the_bits_of_the_same_function_uncompiled(case):
+    fast, slow = board_of(case), board_of(case, compiled=False)
+    assert run_digest(fast, TICKS) == run_digest(slow, TICKS)
+    assert inner_digest(fast) == inner_digest(slow)
+    assert fast.trip == slow.trip
+
+
+@every_case
+def test_deterministic_and_finite(case):
+    board = board_of(case)
+    trace = play(board, 8 * TICKS)
+    # a law with its safety switched off may run away, but then the board says so
+    assert board.trip is None or (board.trip.value is None and "not a finite number" in board.trip.reason)
+    for name, values in trace.items():
+        assert board.trip is not None or np.all(np.isfinite(values)), name
+    again = board_of(case)
+    play(again, 8 * TICKS)
+    assert again.digest() == board.digest() and inner_digest(again) == inner_digest(board)
+
+
+def plain(cases: list[dict[str, Any]], ticks: int, *, fence: bool) -> list[str]:
+    """Ask the oracle that runs without any compiled code."""
+    answer = subprocess.run(
+        [sys.executable, "-m", "tests.core.plain"],
+        input=json.dumps({"cases": cases, "ticks": ticks, "fence": fence}),
+        cwd=ROOT,
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert answer.returncode == 0, answer.stderr[-2000:]
+    return json.loads(answer.stdout)
+
+
+def test_everything_as_plain_python_gives_the_same_digests():
+    found = plain(list(CASES.values()), TICKS, fence=False)
+    expected = [run_digest(board_of(case), TICKS) for case in CASES.values()]
+    assert dict(zip(CASES, found, strict=True)) == dict(zip(CASES, expected, strict=True))
+
+
+def test_steps_touch_only_their_own_parameters_state_and_ports():
+    assert plain(list(CASES.values()), 42, fence=True) == []
+
+
+# -- snapshots
+
+
+@settings(max_examples=12)
+@given(
+    name=st.sampled_from(sorted(CASES)),
+    chunks=st.lists(st.integers(1, 90), min_size=1, max_size=12),
+    again=st.lists(st.integers(1, 40), min_size=1, max_size=12),
+)
+def test_snapshot_is_exact_for_any_chunks(name, chunks, again):
+    total = sum(chunks) + sum(again)
+    straight = board_of(CASES[name])
+    play(straight, total)
+
+    board = board_of(CASES[name])
+    for n in chunks:
+        board.advance(n)
+    kept = board.checkpoint()
+    board.advance(17)  # what is done after the snapshot must not reach it
+    board.wiring.s += 1.0
+    forks = [Board.restore(kept), Board.restore(kept)]
+    for fork in forks:
+        assert fork.tick == kept.tick
+        for n in again:
+            fork.advance(n)
+        assert fork.digest() == straight.digest()
+        assert inner_digest(fork) == inner_digest(straight)
+        assert said(fork) == said(straight)
+
+
+def said(board: Board) -> list[Any]:
+    return sorted((entry.tick, entry.actor, entry.kind, entry.text, str(entry.command)) for entry in board.log)
+
+
+def test_forks_do_not_disturb_each_other():
+    board = make({}, STORY[:3], base=RICH)
+    board.advance(100)
+    kept = board.checkpoint()
+    left, right = Board.restore(kept), Board.restore(kept)
+    do(left, {"kind": "switch", "controller": "pid"})
+    play(left, 200)
+    play(right, 200)
+    play(board, 200)
+    assert right.digest() == board.digest() != left.digest()
+    assert len(right.log) == len(board.log) < len(left.log)
+
+
+# -- documentation
+
+
+@every_block
+def test_documented(entry):
+    card = registry.card(entry)
+    assert card.title and len(card.summary) > 15 and card.summary.rstrip().endswith((".", "`"))
+    for kind, ports in (("input", card.inputs), ("output", card.outputs), ("tap", card.taps)):
+        for port in ports:
+            assert port.unit, f"{kind} {port.name} has no unit"
+            assert port.meaning, f"{kind} {port.name} has no meaning"
+    for parameter in card.parameters:
+        assert parameter.meaning, f"{parameter.name} has no meaning"
+        if parameter.minimum is not None and isinstance(parameter.default, int | float):
+            assert parameter.default >= parameter.minimum
+        if parameter.maximum is not None and isinstance(parameter.default, int | float):
+            assert parameter.default <= parameter.maximum
+    for equation in card.equations:
+        assert equation.label and equation.latex
+        assert bool(equation.printed) == bool(equation.why), "an erratum says what was printed and why it is wrong"
+    assert entry.equations or not registry.card(entry).parameters or entry.family == "board"
+    assert json.loads(card.model_dump_json())["name"] == entry.name
+
+
+def test_units_are_written_in_the_names_of_parameters_or_beside_them():
+    suffixes = {"um": "_um", "V": "_v", "ms": "_ms", "Hz": "_hz", "K": "_k", "nN": "_nn", "deg": "_deg"}
+    for entry in ALL:
+        for parameter in registry.card(entry).parameters:
+            suffix = suffixes.get(parameter.unit)
+            assert suffix is None or parameter.name.endswith(suffix), f"{name_of(entry)}.{parameter.name}"
+
+
+# -- limits
+
+
+def limits() -> list[Any]:
+    found = []
+    for entry in ALL:
+        if entry.family == "faults":
+            continue
+        for parameter in registry.card(entry).parameters:
+            for bound in (parameter.minimum, parameter.maximum):
+                if bound is not None:
+                    value = int(bound) if parameter.type == "integer" else bound
+                    found.append(
+                        pytest.param(entry, parameter.name, value, id=f"{name_of(entry)}.{parameter.name}={value:g}")
+                    )
+    return found
+
+
+@pytest.mark.parametrize(("entry", "name", "value"), limits())
+def test_a_parameter_at_its_limit_is_refused_or_runs(entry, name, value):
+    values = {**chosen(entry), f"{path_of(entry)}.{name}": value}
+    try:
+        board = make(values, base=RICH)
+    except InputError as error:
+        assert error.field == f"{path_of(entry)}.{name}".replace("controller", "controllers.") or name in error.field
+        return
+    trace = play(board, 300)
+    # a shadow may go where it wants; what drives, and the shuttle, stay finite or stop the board
+    if board.trip is None:
+        for signal in ("plant.displacement", "plant.velocity", "drive.voltage", f"{board.spec.active}.voltage"):
+            assert np.all(np.isfinite(trace[signal])), signal
+    if entry.family == "diagnose":
+        n = len(board.spec.diagnosers["kalman"].params.hypotheses)
+        bank = np.array([trace[s] for s in trace if s.startswith("kalman.probability.")])
+        assert bank.shape[0] == n
+        np.testing.assert_allclose(bank.sum(axis=0), 1.0, atol=1e-9)

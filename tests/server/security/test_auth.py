@@ -1,0 +1,126 @@
+"""Every route needs the token, but those listed with a reason."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
+
+OPEN = {
+    "/health/live": "a container's health check has no token, and it tells nothing",
+    "/health/ready": "the same",
+}
+
+
+def routes(app: Any) -> list[Any]:
+    """All routes with their full paths, those of included routers too."""
+    flat: list[Any] = []
+    for route in app.routes:
+        contexts = getattr(route, "effective_route_contexts", None)
+        flat += list(contexts()) if contexts else [route]
+    return flat
+
+
+def test_every_route_refuses_a_stranger(live: Any) -> None:
+    checked = set()
+    with live.anonymous() as stranger:
+        for route in routes(live.app):
+            if not getattr(route, "methods", None):
+                continue  # a WebSocket: below
+            path = route.path.replace("{", "").replace("}", "")
+            for method in route.methods:
+                headers = {"Origin": live.address}
+                answer = stranger.request(method, path, headers=headers)
+                checked.add((method, path))
+                if path in OPEN:
+                    assert answer.status_code == 200, path
+                    continue
+                assert answer.status_code == 401, (method, path)
+                if method != "HEAD":
+                    error = answer.json()["error"]
+                    assert error["code"] == "unauthorised" and "token" in error["message"]
+    assert len(checked) > 30
+    assert set(OPEN) <= {path for _, path in checked}
+
+
+@pytest.mark.parametrize("path", ["/", "/some/page", "/api/v1/nothing", "/assets/x.js", "/metrics"])
+def test_paths_that_are_no_route_refuse_a_stranger_too(live: Any, path: str) -> None:
+    with live.anonymous() as stranger:
+        assert stranger.get(path).status_code == 401
+
+
+def test_the_refusal_tells_a_person_how_to_get_in(live: Any) -> None:
+    with live.anonymous() as stranger:
+        answer = stranger.get("/", headers={"Accept": "text/html"})
+    assert answer.status_code == 401
+    assert "address with a token" in answer.text
+    assert answer.headers["content-type"].startswith("text/html")
+
+
+@pytest.mark.parametrize("path", ["/api/v1/benches/x/stream", "/benches/x/3d", "/nothing"])
+@pytest.mark.parametrize("headers", [{}, {"Authorization": "Bearer wrong"}, {"Cookie": "combbench=wrong"}])
+def test_every_socket_refuses_a_stranger(live: Any, path: str, headers: dict[str, str]) -> None:
+    url = live.address.replace("http", "ws") + path
+    with (
+        connect(
+            url,
+            origin=live.address,
+            additional_headers=headers,
+            subprotocols=["combbench.v1"],  # type: ignore[list-item]
+            proxy=None,
+        ) as socket,
+        pytest.raises(ConnectionClosed) as caught,
+    ):
+        socket.recv(timeout=5)
+    assert caught.value.rcvd is not None and caught.value.rcvd.code == 4401
+
+
+def test_the_token_in_the_address_is_exchanged_for_a_cookie(live: Any) -> None:
+    token = live.app.state.identity.token
+    with live.anonymous() as browser:
+        answer = browser.get(f"/some/page?a=1&token={token}&b=2")
+        assert answer.status_code == 303
+        assert answer.headers["location"] == "/some/page?a=1&b=2"
+        cookie = answer.headers["set-cookie"]
+        assert "HttpOnly" in cookie and "SameSite=strict" in cookie and token not in cookie
+        assert browser.get("/api/v1/benches").status_code == 200
+        # With the cookie alone nothing can be changed from elsewhere.
+        assert browser.post("/api/v1/benches", json={"scenario": "x"}).status_code == 403
+        same = {"Origin": live.address}
+        assert browser.post("/api/v1/benches", json={"scenario": "x"}, headers=same).status_code == 422
+
+
+def test_a_link_on_another_site_gets_in_by_a_page_of_ours(live: Any) -> None:
+    """A strict cookie is not sent along a redirect that began elsewhere."""
+    token = live.app.state.identity.token
+    with live.anonymous() as browser:
+        answer = browser.get(f"/?token={token}", headers={"Sec-Fetch-Site": "cross-site"})
+        assert answer.status_code == 200 and "url=/" in answer.text and token not in answer.text
+
+
+@pytest.mark.parametrize("path", ["//evil.example", "/\\evil.example", "/%5Cevil.example", "///evil.example/a"])
+def test_the_exchange_never_leads_elsewhere(live: Any, path: str) -> None:
+    with live.anonymous() as browser:
+        answer = browser.get(f"{live.address}{path}?token={live.app.state.identity.token}")
+        target = answer.headers.get("location", "/")
+        assert target.startswith("/") and not target.startswith(("//", "/\\"))
+
+
+@pytest.mark.parametrize("token", ["wrong", "a-token-for-the-tests-onl", "ä", "a-token-for-the-tests-only2"])
+def test_a_wrong_token_gets_nothing(live: Any, token: str) -> None:
+    with live.anonymous() as stranger:
+        assert stranger.get("/", params={"token": token}).status_code == 401
+        header = {"Authorization": f"Bearer {token}".encode()}
+        assert stranger.get("/api/v1/benches", headers=header).status_code == 401
+
+
+def test_the_3d_page_is_behind_the_gate(live: Any) -> None:
+    bench = live.bench()
+    url = live.address.replace("http", "ws") + f"/benches/{bench['id']}/3d"
+    with live.anonymous() as stranger:
+        assert stranger.get(f"/benches/{bench['id']}/3d/").status_code == 401
+    with pytest.raises(InvalidStatus) as caught, connect(url, origin="http://evil.example", proxy=None):
+        pass
+    assert caught.value.response.status_code == 403

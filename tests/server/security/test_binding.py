@@ -1,0 +1,67 @@
+"""Other machines are let in only with a token somebody chose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from core.errors import InputError
+from server.security.identity import Identity, token_of
+from server.serve import bind, check_binding
+from server.settings import Settings
+
+TOKEN = "sixteen-characters-or-more"
+
+
+@pytest.mark.parametrize(
+    ("host", "token", "allowed"),
+    [
+        ("127.0.0.1", None, True),
+        ("127.0.0.7", None, True),
+        ("localhost", None, True),
+        ("::1", None, True),
+        ("127.0.0.1", TOKEN, True),
+        ("0.0.0.0", TOKEN, True),
+        ("192.168.1.5", TOKEN, True),
+        ("0.0.0.0", None, False),
+        ("::", None, False),
+        ("192.168.1.5", None, False),
+        ("bench.example", None, False),
+        ("0.0.0.0", "", False),
+        ("0.0.0.0", "short", False),
+        ("127.0.0.1", "short", False),
+    ],
+)
+def test_where_it_may_listen(host: str, token: str | None, allowed: bool) -> None:
+    settings = Settings(host=host, token=token)  # type: ignore[arg-type]
+    if allowed:
+        check_binding(settings)
+        return
+    with pytest.raises(InputError) as caught:
+        check_binding(settings)
+    assert "\n" not in str(caught.value)
+    assert caught.value.field in ("host", "token")
+
+
+def test_a_port_that_is_taken_is_named(tmp_path: Path) -> None:
+    first = bind(Settings(port=0, data=tmp_path))
+    try:
+        with pytest.raises(InputError, match="cannot listen on 127.0.0.1"):
+            bind(Settings(port=first.getsockname()[1], data=tmp_path))
+    finally:
+        first.close()
+
+
+def test_the_token_is_made_once_and_only_the_owner_reads_it(tmp_path: Path) -> None:
+    token = token_of(tmp_path / "data")
+    assert len(token) >= 43
+    assert token_of(tmp_path / "data") == token
+    assert (tmp_path / "data" / "token").stat().st_mode & 0o777 == 0o600
+    assert token_of(tmp_path / "other") != token
+
+
+def test_a_cookie_belongs_to_its_token() -> None:
+    one, other = Identity("a" * 20), Identity("b" * 20)
+    assert one.cookie == Identity("a" * 20).cookie != other.cookie
+    assert one.is_token("a" * 20) and not one.is_token("b" * 20) and not one.is_token("")

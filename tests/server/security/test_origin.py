@@ -1,0 +1,126 @@
+"""Host and Origin, for HTTP and for WebSockets."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from websockets.exceptions import InvalidStatus
+
+HOSTS = [
+    ("127.0.0.1:{port}", True),
+    ("localhost:{port}", True),
+    ("LOCALHOST:{port}", True),
+    ("[::1]:{port}", True),
+    ("localhost", True),
+    ("evil.example", False),
+    ("evil.example:{port}", False),
+    ("127.0.0.1.evil.example:{port}", False),
+    ("localhost.evil.example", False),
+    ("127.0.0.1@evil.example", False),
+    ("evil.example#127.0.0.1", False),
+    ("127.0.0.1:{port}/evil", False),
+    ("127.0.0.1:port", False),
+    ("", False),
+]
+
+ORIGINS = [
+    ("http://127.0.0.1:{port}", True),
+    ("https://127.0.0.1:{port}", False),
+    ("http://127.0.0.1:1", False),
+    ("http://127.0.0.1", False),
+    ("http://localhost:{port}", False),  # ours, but not the one this page was opened under
+    ("http://evil.example", False),
+    ("http://127.0.0.1:{port}.evil.example", False),
+    ("http://evil.example/127.0.0.1:{port}", False),
+    ("HTTP://127.0.0.1:{port}", False),
+    ("null", False),
+    ("", False),
+    ("file://", False),
+]
+
+
+@pytest.mark.parametrize(("host", "welcome"), HOSTS)
+def test_only_our_own_names_are_answered(live: Any, host: str, welcome: bool) -> None:
+    port = live.http.base_url.port
+    answer = live.http.get("/api/v1/benches", headers={"Host": host.format(port=port)})
+    if welcome:
+        assert answer.status_code == 200
+    else:
+        assert answer.status_code in (400, 403), answer.text
+        assert answer.status_code == 400 or answer.json()["error"]["code"] == "forbidden_origin"
+
+
+@pytest.mark.parametrize(("origin", "welcome"), ORIGINS)
+@pytest.mark.parametrize("method", ["GET", "POST", "DELETE"])
+def test_only_our_own_page_may_ask(live: Any, origin: str, welcome: bool, method: str) -> None:
+    given = origin.format(port=live.http.base_url.port)
+    answer = live.http.request(method, "/api/v1/benches/none", headers={"Origin": given})
+    if welcome:
+        assert answer.status_code in (404, 405)
+    else:
+        assert answer.status_code == 403
+        assert answer.json()["error"]["code"] == "forbidden_origin"
+
+
+@pytest.mark.parametrize(("origin", "welcome"), ORIGINS)
+def test_only_our_own_page_may_open_a_stream(live: Any, origin: str, welcome: bool) -> None:
+    bench = live.bench(paused=True)
+    given = origin.format(port=live.http.base_url.port)
+    if welcome:
+        with live.stream(bench["id"], origin=given) as stream:
+            assert stream.step()["type"] == "hello"
+        return
+    with pytest.raises(InvalidStatus) as caught, live.stream(bench["id"], origin=given):
+        pass
+    assert caught.value.response.status_code == 403
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example"])
+def test_a_name_that_was_rebound_opens_no_stream(live: Any, host: str) -> None:
+    bench = live.bench(paused=True)
+    headers = {"Authorization": live.http.headers["authorization"], "Host": host}
+    with (
+        pytest.raises(InvalidStatus) as caught,
+        live.stream(bench["id"], origin=f"http://{host}", additional_headers=headers),
+    ):
+        pass
+    assert caught.value.response.status_code in (400, 403)
+
+
+def test_a_program_with_the_token_needs_no_origin_and_a_cookie_does(live: Any) -> None:
+    bench = live.bench(paused=True)
+    with live.stream(bench["id"], origin=None) as stream:
+        assert stream.step()["type"] == "hello"
+    cookie = {"Cookie": f"combbench={live.app.state.identity.cookie}"}
+    with pytest.raises(InvalidStatus), live.stream(bench["id"], origin=None, additional_headers=cookie):
+        pass
+    with live.stream(bench["id"], origin=live.address, additional_headers=cookie) as stream:
+        assert stream.step()["type"] == "hello"
+
+
+def test_a_name_given_in_the_settings_is_ours(serve: Any) -> None:
+    with serve(allowed_hosts=["bench.example"]) as live:
+        headers = {"Host": "bench.example", "Origin": "http://bench.example"}
+        assert live.http.post("/api/v1/benches/x/fork", json={}, headers=headers).status_code == 404
+
+
+def test_every_response_carries_the_security_headers(live: Any) -> None:
+    bench = live.bench(paused=True)
+    with live.anonymous() as stranger:
+        answers = [
+            live.http.get("/api/v1/benches"),
+            live.http.get("/api/v1/nothing"),
+            live.http.get("/"),
+            live.http.post("/api/v1/benches", content=b"x" * (2 << 20)),
+            stranger.get("/"),
+            stranger.get("/", headers={"Host": "evil.example"}),
+        ]
+    for answer in answers:
+        policy = answer.headers["content-security-policy"]
+        assert "script-src 'self';" in policy and "frame-ancestors 'none'" in policy
+        assert "unsafe-eval" not in policy
+        assert answer.headers["x-content-type-options"] == "nosniff"
+        assert answer.headers["referrer-policy"] == "no-referrer"
+    page = live.http.get(f"/benches/{bench['id']}/3d/")
+    assert "frame-ancestors 'self'" in page.headers["content-security-policy"]

@@ -1,0 +1,30 @@
+import createClient from "openapi-fetch";
+import { ApiError } from "./api-error";
+import type { paths } from "./schema";
+import type { ApiErrorBody } from "./types";
+
+const OFFLINE: ApiErrorBody = { code: "offline", message: "The server does not answer.", field: "", hint: "" };
+
+/** The server, typed by its own OpenAPI document. */
+export const client = createClient<paths>({ baseUrl: "", fetch: reach });
+
+async function reach(request: Request): Promise<Response> {
+  try {
+    return await fetch(request);
+  } catch {
+    throw new ApiError(0, OFFLINE);
+  }
+}
+
+/** What an answer carries; a refusal becomes an `ApiError` that says what happened and what to do. */
+export async function data<T>(answer: Promise<{ data?: T; error?: unknown; response: Response }>): Promise<T> {
+  const { data, error, response } = await answer;
+  if (!response.ok) throw new ApiError(response.status, errorBody(error, response.status));
+  return data as T;
+}
+
+/** A proxy or a crash may answer in another shape; then the status is all there is. */
+function errorBody(error: unknown, status: number): ApiErrorBody {
+  const body = (error as { error?: ApiErrorBody } | undefined)?.error;
+  return body?.message ? body : { code: "unexpected", message: `The server answered ${status}.`, field: "", hint: "" };
+}

@@ -1,0 +1,17 @@
+import type { LogEntry } from "../api/types";
+
+/** An event with what matters to a test; for tests only. */
+export function logEntry(part: Partial<LogEntry>): LogEntry {
+  return {
+    seq: 1,
+    tick: 0,
+    actor: "page 1",
+    kind: "set",
+    text: "",
+    command: null,
+    old: null,
+    new: null,
+    at: "2026-01-01T00:00:00Z",
+    ...part,
+  };
+}
