@@ -18,23 +18,20 @@ from core.device.environment import (
 
 PRESSURE_AT, TEMPERATURE_AT, HUMID, FILM = range(4)
 """Packed parameters; from ``FILM`` on areas and gaps, angular frequency and structural share."""
-LAST_PRESSURE, LAST_TEMPERATURE, LAST_DAMPING = range(3)
+LAST_PRESSURE, LAST_TEMPERATURE, LAST_STIFFNESS, LAST_DAMPING = range(4)
 VACUUM, STIFFNESS, DAMPING, PRESSURE, ADHESION = range(5)
 
 
 def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Multiply the effect channels by what pressure and temperature do to the device."""
+    """Say what pressure and temperature make of the device; a leak of the tick before counts."""
     pressure = p[PRESSURE_AT]
     if w[io[VACUUM]] != 1.0:
         pressure = ATMOSPHERE_PA - w[io[VACUUM]] * (ATMOSPHERE_PA - pressure)
     temperature = p[TEMPERATURE_AT]
-    w[io[PRESSURE]] = pressure
-    w[io[ADHESION]] = p[HUMID]
-    if pressure == ATMOSPHERE_PA and temperature == ROOM_K:
-        return
     if pressure != s[LAST_PRESSURE] or temperature != s[LAST_TEMPERATURE]:
         s[LAST_PRESSURE] = pressure
         s[LAST_TEMPERATURE] = temperature
+        s[LAST_STIFFNESS] = stiffness_scale(temperature)
         s[LAST_DAMPING] = damping_scale(
             pressure,
             temperature,
@@ -45,8 +42,10 @@ def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
             p[FILM + 4],
             p[FILM + 5],
         )
-    w[io[STIFFNESS]] *= stiffness_scale(temperature)
-    w[io[DAMPING]] *= s[LAST_DAMPING]
+    w[io[STIFFNESS]] = s[LAST_STIFFNESS]
+    w[io[DAMPING]] = s[LAST_DAMPING]
+    w[io[PRESSURE]] = pressure
+    w[io[ADHESION]] = p[HUMID]
 
 
 class Environment(Block):
@@ -59,12 +58,10 @@ class Environment(Block):
     """
 
     title = "Environment"
-    inputs = (
-        Port("vacuum", "1", "share of the vacuum that is left", source="effects.vacuum"),
-        Port("stiffness_scale", "1", "effect channel stiffness_scale", source="effects.stiffness_scale"),
-        Port("damping_scale", "1", "effect channel damping_scale", source="effects.damping_scale"),
-    )
+    inputs = (Port("vacuum", "1", "share of the vacuum that is left", source="effects.vacuum"),)
     taps = (
+        Port("stiffness_scale", "1", "stiffness over nominal"),
+        Port("damping_scale", "1", "damping over nominal"),
         Port("pressure", "Pa", "pressure at the device"),
         Port("adhesion", "mJ/m^2", "adhesion energy of surfaces that touch"),
     )
@@ -107,8 +104,8 @@ class Environment(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
-        """Pressure and temperature of the factor kept, and the factor."""
-        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0])
+        """Pressure and temperature of the factors kept, and the factors."""
+        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0, 1.0])
 
     @classmethod
     def scales(cls, params: Any, context: Context) -> tuple[float, float]:

@@ -94,17 +94,17 @@ class Geometry(BlockParams):
         shuttle, beams, trusses, combs = self.areas_um2
         return shuttle + trusses / 2.0 + beams / 2.0, self.film_gap_um, combs, self.gap_um
 
-    def damping_ns_m(self) -> float:
-        r"""Couette and Stokes damping at 300 K and 1 atm (1.3.7; not squeeze film, as the text has it).
+    def damping_ns_m(self, temperature_k: float = ROOM_K) -> float:
+        r"""Couette and Stokes damping at 1 atm (1.3.7; not squeeze film, as the text has it).
 
         .. math:: \beta=\mu\left[(A_s+\tfrac12A_t+\tfrac12A_b)\left(\tfrac1d+\tfrac1\delta\right)
             +\tfrac{A_c}{g}\right],\quad \delta=\sqrt{2\mu/(\rho_{gas}\omega_0)}
         """
         plan, film, combs, gap = self.film
         root: float = (self.stiffness_n_m() / self.mass_kg()) ** 0.25  # of the angular frequency
-        delta = penetration_depth_um(ATMOSPHERE_PA, ROOM_K, 1.0) / root
+        delta = penetration_depth_um(ATMOSPHERE_PA, temperature_k, 1.0) / root
         per_um = plan * (1.0 / film + 1.0 / delta) + combs / gap
-        return viscosity(ROOM_K) * 1e-6 * per_um
+        return viscosity(temperature_k) * 1e-6 * per_um
 
     def capacitance_gradient(self) -> float:
         r"""dC/dx of one comb, F/m: :math:`2n\varepsilon_0t/g` (n rotor fingers, two gaps each)."""
