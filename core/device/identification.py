@@ -184,7 +184,7 @@ def _read(omega: FloatArray, measured: ComplexArray) -> dict[str, float | None]:
             low = _crossing(square, 1.0 / power, int(below[-1]), level)
             high = _crossing(square, 1.0 / power, top + int(above[0]) - 1, level)
             # (w2^2 - w1^2) / (w2^2 + w1^2) = tan 2 asin zeta, exact for any damping
-            half = 0.5 / math.sin(0.5 * math.atan2(high - low, high + low))
+            half = 0.5 / math.sin(0.5 * math.atan2(high - low, high + low)) if low < high else None
     if len(quarter):
         at = int(quarter[0])
         zero = math.sqrt(_crossing(square, (1.0 / measured).real, at, 0.0)) / (2.0 * math.pi)
@@ -208,7 +208,6 @@ def _crossing(where: FloatArray, values: FloatArray, left: int, level: float) ->
     near = slice(first, first + 4)
     size = where[left + 1] - where[left]
     a, b, c = np.polyfit((where[near] - where[left]) / size, values[near] - level, 2)
-    root = math.sqrt(max(b * b - 4.0 * a * c, 0.0))
-    shares = [2.0 * c / (-b - root), 2.0 * c / (-b + root)] if b != 0.0 else [0.5]
-    share = min(shares, key=lambda value: abs(value - 0.5))
-    return float(where[left] + min(max(share, 0.0), 1.0) * size)
+    shares = [float(root.real) for root in np.roots([a, b, c]) if abs(root.imag) == 0.0 and 0.0 <= root.real <= 1.0]
+    straight = (level - values[left]) / (values[left + 1] - values[left])
+    return float(where[left] + (shares[0] if len(shares) == 1 else straight) * size)
