@@ -201,7 +201,7 @@ class Session:
         """Go back to a moment."""
         kept = self.snapshot(snapshot_id)
         self.board = Board.restore(kept.checkpoint)
-        self._logged = len(self.board.log)
+        self._logged = self.board.log.last
         if self.history.first_tick <= kept.snapshot.tick <= self.history.end_tick:
             self.history.end_tick = kept.snapshot.tick
         else:
@@ -219,7 +219,7 @@ class Session:
         checkpoint = self.snapshot(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
         board = Board.restore(checkpoint)
         twin = Session(self.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
-        twin._logged = len(board.log)
+        twin._logged = board.log.last
         twin._ends_at = self._ends_at if self._ends_at is not None and board.tick < self._ends_at else None
         first = max(self.history.first_tick, board.tick - FORK_TICKS)
         if first < board.tick <= self.history.end_tick:
@@ -382,7 +382,7 @@ class Session:
             self._metrics.ticks.inc(rows.count)
             if self.recorders:
                 self._record(rows)
-        if len(self.board.log) > self._logged:
+        if self.board.log.last > self._logged:
             self._sync_log()
         if self.board.trip is not None and self._running and not self._has_due():
             self._running = False
@@ -433,12 +433,12 @@ class Session:
     def _sync_log(self) -> list[Event]:
         """Take over what the board has logged since the last time."""
         added = []
-        for entry in self.board.log[self._logged :]:
+        for entry in self.board.log.after(self._logged):
             self._metrics.events.labels(entry.kind).inc()
             added.append(
                 self.events.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
             )
-        self._logged = len(self.board.log)
+        self._logged = self.board.log.last
         return added
 
     def _look(self) -> BenchStatus:

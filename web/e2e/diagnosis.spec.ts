@@ -4,7 +4,7 @@ test("an injected fault is found, the delay is printed, and healing clears it", 
   await openBench();
   const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
   await expect(lanes.getByText("healthy", { exact: true })).toBeVisible();
-  await page.getByRole("button", { name: /^Inject Added mass \+5/ }).click();
+  await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
   await expect(page.getByText("1 fault acts")).toBeVisible();
   await expect(lanes.getByText("m+5", { exact: true })).toBeVisible();
   await expect(lanes.getByText(/^\d+ samples · 0\.\d\d ms$/)).toBeVisible();

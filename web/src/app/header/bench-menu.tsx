@@ -21,7 +21,7 @@ export function BenchMenu() {
   return (
     <Menu width={340} position="bottom-start" shadow="md" onOpen={load}>
       <Menu.Target>
-        <UnstyledButton className={styles.bench} aria-label={`Bench: ${title ?? "none"}. Change bench`}>
+        <UnstyledButton className={styles.bench} title={`${title ?? "No bench"}: change bench`}>
           <span>{title ?? "No bench"} </span>
           <small>
             {rate ? `${rate} kHz board · ${watchers} watching` : "connecting"}

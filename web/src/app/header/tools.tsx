@@ -1,4 +1,4 @@
-import { ActionIcon, Menu, Tooltip, useMantineColorScheme } from "@mantine/core";
+import { ActionIcon, Menu, Tooltip } from "@mantine/core";
 import {
   IconBookmark,
   IconDeviceFloppy,
@@ -10,6 +10,7 @@ import {
 } from "@tabler/icons-react";
 import { actions } from "../actions";
 import { setLayout } from "../layouts";
+import { themeSwitch } from "../theme-switch";
 import { useScheme } from "../use-scheme";
 import { type LayoutName, useView } from "../view-store";
 import styles from "./header.module.css";
@@ -23,7 +24,6 @@ const LAYOUTS: [LayoutName, string][] = [
 /** Keep, branch, arrange: what is not about running. */
 export function Tools() {
   const scheme = useScheme();
-  const { setColorScheme } = useMantineColorScheme();
   const layout = useView((s) => s.layout);
   return (
     <div className={styles.tools}>
@@ -56,7 +56,7 @@ export function Tools() {
       </Menu>
       <Tool
         label={scheme === "dark" ? "Light theme (D)" : "Dark theme (D)"}
-        onClick={() => setColorScheme(scheme === "dark" ? "light" : "dark")}
+        onClick={() => themeSwitch.flip()}
         icon={scheme === "dark" ? <IconSun size={19} /> : <IconMoon size={19} />}
       />
       <Tool label="Keyboard ( ? )" onClick={actions.keys} icon={<IconKeyboard size={19} />} />
