@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 
 import pytest
 
+from core.device.identification import tone
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -13,7 +15,7 @@ from scenarios.run import run
 from scenarios.schema import Scenario
 from scenarios.studies import studies
 from scenarios.sweep_sine import sweep_sine
-from tests.lab import do, make, play
+from tests.lab import QUIET, do, make, play
 
 CHAPTER_1 = ["ch1-table-1-1", "ch1-bode-tolerances", "ch1-beam-width", "ch1-process-spread"]
 
@@ -104,3 +106,32 @@ def test_a_sweep_that_cannot_be_is_refused():
         sweep_sine(board, start_hz=3000, stop_hz=2000)
     with pytest.raises(InputError, match="sample rate"):
         sweep_sine(board, stop_hz=60_000)
+
+
+@pytest.mark.parametrize(("omega", "effort"), [(1000.0, 1.751), (2900.0, 1.772)])
+def test_adaptive_control_of_an_aged_device_with_more_mass_takes_the_effort_of_the_closed_form(omega, effort):
+    """Case 1 of 3.1.3.2, the text's almost 80 %."""
+    reference = {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": omega / (2 * math.pi)}
+    document = {
+        **QUIET,
+        "schema": 1,
+        "duration_ms": 60,
+        "reference": reference,
+        "controller": {"kind": "mrac", "adaptation_gain": 1.0},
+        "events": [
+            {"at_sample": 0, "fault": "ageing", "severity": 4.0},
+            {"at_sample": 0, "fault": "added_mass", "severity": 0.05},
+        ],
+    }
+    found = run(Scenario.load(document)).metrics
+    assert found["control.effort_ratio"] == pytest.approx(effort, rel=2e-3)
+    assert found["control.displacement_ratio"] == pytest.approx(1.0, rel=1e-3)
+
+
+def test_a_tone_far_above_the_resonance_on_the_board():
+    board = make({"sample_rate_khz": 2000, "reference.frequency_hz": 25_000.0, "reference.amplitude_v": 10.0})
+    play(board, 20_000)  # 10 ms: the transient is over
+    seen = play(board, 8_000)
+    found = tone(25_000.0, board.dt_ms, seen["drive.voltage"], seen["plant.displacement"], held=True)
+    static = board.spec.device.metrics()["static_gain_um_per_v"]
+    assert 20 * math.log10(abs(found.response / static)) == pytest.approx(-40.03, abs=0.05)
