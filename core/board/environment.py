@@ -59,9 +59,11 @@ class Environment(Block):
 
     title = "Environment"
     inputs = (Port("vacuum", "1", "share of the vacuum that is left", source="effects.vacuum"),)
+    outputs = (
+        Port("stiffness_scale", "1", "stiffness over nominal", hidden=True),
+        Port("damping_scale", "1", "damping over nominal", hidden=True),
+    )
     taps = (
-        Port("stiffness_scale", "1", "stiffness over nominal"),
-        Port("damping_scale", "1", "damping over nominal"),
         Port("pressure", "Pa", "pressure at the device"),
         Port("adhesion", "mJ/m^2", "adhesion energy of surfaces that touch"),
     )
