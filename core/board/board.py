@@ -325,4 +325,5 @@ class Board:
             for entry in self.log
             if entry.command is not None and entry.kind not in ("scheduled", "refused")
         ]
-        return {**copy.deepcopy(self.base), "samples": self.tick, "events": done + [w.event() for w in self.pending]}
+        length = {"samples": self.tick} if self.tick else {}
+        return {**copy.deepcopy(self.base), **length, "events": done + [w.event() for w in self.pending]}

@@ -78,7 +78,8 @@ export class ScopePlot {
       low: data.subarray(i * 2 * columns, (i * 2 + 1) * columns),
       high: data.subarray((i * 2 + 1) * columns, (i * 2 + 2) * columns),
     }));
-    const width = this.options.strained() ? 1 : this.options.lineWidth;
+    const { strained, lineWidth } = this.options;
+    const width = strained() ? Math.floor(lineWidth) : lineWidth;
     for (const series of this.plot.series.slice(1)) series.width = width;
     const times = columnTimes(frame, this.origin);
     this.plot.setData([times, ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
