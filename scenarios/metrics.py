@@ -9,6 +9,7 @@ import numpy as np
 
 from core.block import FloatArray
 from core.board.board import Board
+from core.board.environment import Environment
 from core.board.score import Scores
 from core.errors import unknown
 
@@ -28,8 +29,13 @@ def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tic
 
 
 def device_metrics(board: Board) -> dict[str, float]:
-    """Return the figures of the device."""
-    return {f"device.{name}": value for name, value in board.spec.device.metrics().items()}
+    """Return the figures of the device in its environment, before any fault."""
+    spec = board.spec
+    params = spec.environment.params
+    stiffness, damping = Environment.scales(params, spec.context())
+    temperature = spec.context().temperature_k
+    found = {f"device.{name}": value for name, value in spec.device.metrics(stiffness, damping, temperature).items()}
+    return {**found, "environment.stiffness_scale": stiffness, "environment.damping_scale": damping}
 
 
 def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:
@@ -37,7 +43,7 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[st
 
     The settling time is the last moment the error left the band of 2 % of the model's amplitude, counted from
     ``metrics.since_ms`` (the last event unless given); effort is the ratio of the fundamental of the applied
-    voltage to that of the reference in the tail.
+    voltage to that of the reference in the tail, the displacement ratio the same of shuttle and model.
     """
     dt = board.dt_ms
     x, model = trace["plant.displacement"], trace["model.displacement"]
@@ -66,6 +72,9 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[st
         if asked > 0.0:
             found["control.effort_ratio"] = abs(fundamental(u[tail], frequency, dt, first)) / asked
         phasor = fundamental(x[tail], frequency, dt, first)
+        wanted = abs(fundamental(model[tail], frequency, dt, first))
+        if wanted > 0.0:
+            found["control.displacement_ratio"] = abs(phasor) / wanted
         found["control.amplitude_um"] = abs(phasor)
         found["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
     return {name: value for name, value in found.items() if math.isfinite(value)}

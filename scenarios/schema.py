@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from core.board.commands import Command, Timed, parse_command
 from core.board.spec import FIELDS, Document, parse
 from core.errors import InputError, from_validation, unknown_field
+from scenarios.studies import parse_study
 
 Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
 MAX_SAMPLES = 200_000_000
@@ -119,6 +120,7 @@ class Head(BaseModel):
     events: list[Event] = Field([], max_length=100_000)
     expect: list[Expectation] = Field([], max_length=1000)
     metrics: dict[str, Any] = {}
+    study: dict[str, Any] | None = None
 
 
 HEAD = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
@@ -135,6 +137,8 @@ class Scenario:
         Title, length, events, expectations.
     bench : dict
         The part that describes the bench.
+    study : tuple, optional
+        The study to make of it instead of running it, and its parameters.
     """
 
     def __init__(self, document: Document) -> None:
@@ -153,6 +157,7 @@ class Scenario:
         if unknown:
             raise unknown_field(unknown[0], (*HEAD, *FIELDS), unknown[0])
         self.spec = parse(self.bench)
+        self.study = parse_study(self.head.study) if self.head.study is not None else None
         self.commands: list[Command] = []
         for position, event in enumerate(self.head.events):
             try:

@@ -17,7 +17,7 @@ from core.errors import InputError, from_validation, unknown
 if TYPE_CHECKING:
     from core.board.board import Board
 
-LIVE_SECTIONS = ("plant", "reference", "model", "drive", "guard")
+LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "guard")
 
 
 def describe(command: Command) -> str:

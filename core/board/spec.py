@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from core import registry
 from core.block import Block, BlockParams, Context
 from core.board.drive import Drive
+from core.board.environment import Environment
 from core.board.guard import Guard
 from core.board.model import Model
 from core.device.catalogue import device as build_device
@@ -53,6 +54,7 @@ class Frame(BaseModel):
 
 SECTIONS = (
     "device",
+    "environment",
     "plant",
     "reference",
     "model",
@@ -78,6 +80,7 @@ class Spec:
     document: Document
     frame: Frame
     device: Device
+    environment: Section
     plant: Section
     reference: Section
     model: Section
@@ -108,7 +111,8 @@ class Spec:
             seed=self.seed,
             device=nominal,
             model=Model.oscillator(self.model.params, nominal),
-            temperature_k=self.device.temperature_k,
+            film=self.device.film,
+            temperature_k=float(getattr(self.environment.params, "temperature_k", 300.0)),
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             sensor_noise_um=float(getattr(self.sensors[self.measuring].params, "noise_um", 0.0)),
@@ -143,6 +147,7 @@ def _parse(doc: Document) -> Spec:
         document=doc,
         frame=frame,
         device=build_device(doc["device"]),
+        environment=Section(Environment, _params(Environment, doc.get("environment", {}), "environment")),
         plant=_section("plant", plant_kind, plant, "plant", "model"),
         reference=_chosen("reference", doc["reference"], "reference"),
         model=Section(Model, _params(Model, doc.get("model", {}), "model")),

@@ -60,13 +60,15 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     """Return the blocks of a bench in the order of a tick.
 
     The plant comes first: it integrates the sample that ends now, under the voltage and the effects that were held
-    over it. Then the faults of this moment, what is measured and concluded, and the voltage to hold next.
+    over it. Then the environment and the faults of this moment, what is measured and concluded, and the voltage to hold
+    next.
     """
 
     def own(key: str, section: Any) -> Instance:
         return Instance(key, key, section.block, section.params, section.every)
 
-    order = [own("plant", spec.plant), Instance("effects", "effects", Effects, Effects.Params())]
+    order = [own("plant", spec.plant), own("environment", spec.environment)]
+    order.append(Instance("effects", "effects", Effects, Effects.Params()))
     for name, block in registry.blocks("faults").items():
         order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
     order += [own(name, section) for name, section in spec.sensors.items()]

@@ -9,7 +9,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from core.device.device import Device
+from core.block import BlockParams
+from core.device.device import Device, Printed
 from core.device.geometry import Geometry
 from core.errors import from_validation, unknown
 
@@ -40,7 +41,8 @@ def device(overrides: dict[str, Any]) -> Device:
     try:
         return Device.model_validate(merged)
     except ValidationError as error:
-        fields = {"": list(Device.model_fields), "geometry": list(Geometry.model_fields)}
+        tables: dict[str, type[BlockParams]] = {"": Device, "geometry": Geometry, "printed": Printed}
+        fields = {name: list(table.model_fields) for name, table in tables.items()}
         raise from_validation(error, fields).under("device") from None
 
 

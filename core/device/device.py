@@ -8,8 +8,27 @@ from typing import Any, Self
 from pydantic import model_validator
 
 from core.block import BlockParams, Oscillator, parameter
+from core.device.environment import ROOM_K
+from core.device.frequency import figures
 from core.device.geometry import Geometry
-from core.units import EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
+from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
+
+
+class Printed(BlockParams):
+    """Figures as the dissertation prints them, where they differ from those the device is made of."""
+
+    mass_kg: float | None = parameter(None, "mass", "kg", gt=0, live=False)
+    one_side_stiffness_n_m: float | None = parameter(None, "spring constant of one side", "N/m", gt=0, live=False)
+    f0_hz: float | None = parameter(None, "resonant frequency", "Hz", gt=0, live=False)
+
+    def metrics(self) -> dict[str, float]:
+        """Return them under names that say so."""
+        names = {
+            "mass_kg": "mass_printed_kg",
+            "one_side_stiffness_n_m": "one_side_stiffness_printed_n_m",
+            "f0_hz": "f0_printed_hz",
+        }
+        return {names[name]: value for name, value in self.model_dump(exclude_none=True).items()}
 
 
 class Device(BlockParams):
@@ -45,7 +64,7 @@ class Device(BlockParams):
     fingers: int | None = parameter(None, "rotor fingers per side", ge=1, live=False)
     thickness_um: float | None = parameter(None, "structural thickness", "um", gt=0, live=False)
     finger_gap_um: float | None = parameter(None, "gap between fingers as etched", "um", gt=0, live=False)
-    temperature_k: float = parameter(300.0, "temperature", "K", gt=0, le=1000, live=False)
+    printed: Printed | None = parameter(None, "what the dissertation prints of it", live=False)
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -70,7 +89,7 @@ class Device(BlockParams):
         if self.geometry is not None:
             drawn = {
                 "mass_kg": self.geometry.mass_kg(),
-                "damping_ns_m": self.geometry.damping_ns_m(self.temperature_k),
+                "damping_ns_m": self.geometry.damping_ns_m(),
                 "stiffness_n_m": self.geometry.stiffness_n_m(),
             }
         for name in ("mass_kg", "damping_ns_m", "stiffness_n_m"):
@@ -78,6 +97,11 @@ class Device(BlockParams):
             if given is not None:
                 drawn[name] = float(given)
         return drawn
+
+    @property
+    def film(self) -> tuple[float, float, float, float]:
+        """Areas and gaps the air shears in; those of the default drawing when the device has none."""
+        return (self.geometry or Geometry()).film
 
     @property
     def stators_v(self) -> tuple[float, float]:
@@ -111,17 +135,30 @@ class Device(BlockParams):
             force=force_un_per_v(self.signed_force_n_per_v),
         )
 
-    def metrics(self) -> dict[str, float]:
-        r"""Return the figures people quote; :math:`f_0=\sqrt{k/m}/2\pi` with k of the whole suspension (1.3.5)."""
+    def metrics(
+        self, stiffness_scale: float = 1.0, damping_scale: float = 1.0, temperature_k: float = ROOM_K
+    ) -> dict[str, float]:
+        r"""Return the figures people quote; :math:`f_0=\sqrt{k/m}/2\pi` with k of the whole suspension (1.3.5).
+
+        Parameters
+        ----------
+        stiffness_scale, damping_scale : float
+            What the environment makes of stiffness and damping.
+        temperature_k : float
+            Temperature of the thermomechanical noise, :math:`x_{rms}=\sqrt{k_BT/k}`.
+        """
         si = self.resolved
-        omega = math.sqrt(si["stiffness_n_m"] / si["mass_kg"])
-        force = self.signed_force_n_per_v
-        return {
-            "f0_hz": omega / (2.0 * math.pi),
-            "quality_factor": omega * si["mass_kg"] / si["damping_ns_m"],
-            "mass_kg": si["mass_kg"],
-            "stiffness_n_m": si["stiffness_n_m"],
-            "damping_ns_m": si["damping_ns_m"],
+        mass, force = si["mass_kg"], self.signed_force_n_per_v
+        stiffness, damping = si["stiffness_n_m"] * stiffness_scale, si["damping_ns_m"] * damping_scale
+        found = {
+            "mass_kg": mass,
+            "stiffness_n_m": stiffness,
+            "damping_ns_m": damping,
             "force_n_per_v": abs(force),
-            "static_gain_um_per_v": force / si["stiffness_n_m"] * 1e6,
+            "static_gain_um_per_v": force / stiffness * 1e6,
+            "thermal_rms_nm": math.sqrt(BOLTZMANN * temperature_k / stiffness) * 1e9,
+            **figures(mass, damping, stiffness),
         }
+        if self.printed is not None:
+            found |= self.printed.metrics()
+        return found

@@ -7,22 +7,16 @@ structural thickness share one printed symbol and are two numbers here (``film_g
 
 from __future__ import annotations
 
-import math
-
 from core.block import BlockParams, parameter
+from core.device.environment import ATMOSPHERE_PA, ROOM_K, penetration_depth_um, viscosity
 from core.units import EPSILON_0
-
-GAS_CONSTANT_AIR = 287.05
-ATMOSPHERE_PA = 101325.0
-
-
-def viscosity(temperature_k: float) -> float:
-    r"""Viscosity of air, Pa s (Sutherland), :math:`1.716\cdot10^{-5}(T/273.15)^{3/2}\,383.55/(T+110.4)`."""
-    return 1.716e-5 * math.pow(temperature_k / 273.15, 1.5) * 383.55 / (temperature_k + 110.4)
 
 
 class Geometry(BlockParams):
-    """A drawing: lengths in um, widths as drawn with the etch bias per edge beside them."""
+    """A drawing: lengths in um, widths as drawn with the etch bias per edge beside them.
+
+    The formulas hold for arrays too: ``core.device.spread`` puts whole wafers through them.
+    """
 
     thickness_um: float = parameter(2.0, "structural thickness", "um", gt=0, live=False)
     film_gap_um: float = parameter(1.9987, "gas film under the plate", "um", gt=0, live=False)
@@ -94,18 +88,23 @@ class Geometry(BlockParams):
         base = 2.0 * self.youngs_modulus_gpa * 1e9 * self.thickness_um * 1e-6 * (self.beam_um / length) ** 3
         return base * fraction
 
-    def damping_ns_m(self, temperature_k: float = 300.0) -> float:
-        r"""Couette and Stokes damping (1.3.7; not squeeze film, as the text has it).
+    @property
+    def film(self) -> tuple[float, float, float, float]:
+        """Plan area over the film as weighted by 1.3.7 and its thickness, facing area of the combs and their gap."""
+        shuttle, beams, trusses, combs = self.areas_um2
+        return shuttle + trusses / 2.0 + beams / 2.0, self.film_gap_um, combs, self.gap_um
+
+    def damping_ns_m(self, temperature_k: float = ROOM_K) -> float:
+        r"""Couette and Stokes damping at 1 atm (1.3.7; not squeeze film, as the text has it).
 
         .. math:: \beta=\mu\left[(A_s+\tfrac12A_t+\tfrac12A_b)\left(\tfrac1d+\tfrac1\delta\right)
             +\tfrac{A_c}{g}\right],\quad \delta=\sqrt{2\mu/(\rho_{gas}\omega_0)}
         """
-        shuttle, beams, trusses, combs = self.areas_um2
-        mu = viscosity(temperature_k)
-        omega = math.sqrt(self.stiffness_n_m() / self.mass_kg())
-        delta = math.sqrt(2.0 * mu * GAS_CONSTANT_AIR * temperature_k / (ATMOSPHERE_PA * omega))
-        plan = (shuttle + trusses / 2.0 + beams / 2.0) * 1e-12
-        return mu * (plan * (1e6 / self.film_gap_um + 1.0 / delta) + combs * 1e-6 / self.gap_um)
+        plan, film, combs, gap = self.film
+        root: float = (self.stiffness_n_m() / self.mass_kg()) ** 0.25  # of the angular frequency
+        delta = penetration_depth_um(ATMOSPHERE_PA, temperature_k, 1.0) / root
+        per_um = plan * (1.0 / film + 1.0 / delta) + combs / gap
+        return viscosity(temperature_k) * 1e-6 * per_um
 
     def capacitance_gradient(self) -> float:
         r"""dC/dx of one comb, F/m: :math:`2n\varepsilon_0t/g` (n rotor fingers, two gaps each)."""

@@ -1,0 +1,119 @@
+"""Environment: what the air around the device makes of its stiffness and damping."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, parameter
+from core.device.environment import (
+    ATMOSPHERE_PA,
+    ROOM_K,
+    adhesion_j_m2,
+    damping_scale,
+    stiffness_scale,
+    structural_share,
+)
+
+PRESSURE_AT, TEMPERATURE_AT, HUMID, FILM = range(4)
+"""Packed parameters; from ``FILM`` on areas and gaps, angular frequency and structural share."""
+LAST_PRESSURE, LAST_TEMPERATURE, LAST_STIFFNESS, LAST_DAMPING = range(4)
+VACUUM, STIFFNESS, DAMPING, PRESSURE, ADHESION = range(5)
+
+
+def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Say what pressure and temperature make of the device; a leak of the tick before counts."""
+    pressure = p[PRESSURE_AT]
+    if w[io[VACUUM]] != 1.0:
+        pressure = ATMOSPHERE_PA - w[io[VACUUM]] * (ATMOSPHERE_PA - pressure)
+    temperature = p[TEMPERATURE_AT]
+    if pressure != s[LAST_PRESSURE] or temperature != s[LAST_TEMPERATURE]:
+        s[LAST_PRESSURE] = pressure
+        s[LAST_TEMPERATURE] = temperature
+        s[LAST_STIFFNESS] = stiffness_scale(temperature)
+        s[LAST_DAMPING] = damping_scale(
+            pressure,
+            temperature,
+            p[FILM],
+            p[FILM + 1],
+            p[FILM + 2],
+            p[FILM + 3],
+            p[FILM + 4],
+            p[FILM + 5],
+        )
+    w[io[STIFFNESS]] = s[LAST_STIFFNESS]
+    w[io[DAMPING]] = s[LAST_DAMPING]
+    w[io[PRESSURE]] = pressure
+    w[io[ADHESION]] = p[HUMID]
+
+
+class Environment(Block):
+    r"""Temperature, pressure and humidity around the device.
+
+    They change the true device, never the nominal one the controllers believe in, whose figures hold at 300 K and
+    1 atm; there every factor is exactly 1. A device without a drawing is given the film of the drawn LCR-350.
+    Temperature is also that of the thermomechanical noise. Humidity sets the adhesion energy, which matters only
+    once surfaces touch; its effect on viscosity is below 1 %.
+    """
+
+    title = "Environment"
+    inputs = (Port("vacuum", "1", "share of the vacuum that is left", source="effects.vacuum"),)
+    outputs = (
+        Port("stiffness_scale", "1", "stiffness over nominal", hidden=True),
+        Port("damping_scale", "1", "damping over nominal", hidden=True),
+    )
+    taps = (
+        Port("pressure", "Pa", "pressure at the device"),
+        Port("adhesion", "mJ/m^2", "adhesion energy of surfaces that touch"),
+    )
+    equations = (
+        Equation(
+            "damping",
+            r"\frac{\beta}{\beta_0}=(1-\sigma)\frac{b(p,T)}{b(p_0,T_0)}+\sigma,\quad "
+            r"b=\mu\left[A\left(\tfrac1{d+2\lambda}+\tfrac1{\delta+2\lambda}\right)+\tfrac{A_c}{g+2\lambda}\right]",
+            "1.3.7 with slip",
+            printed=r"\beta_x=\mu\left[A\left(\tfrac1t+\tfrac1\delta\right)+\tfrac{A_c}{g}\right]",
+            why="no rarefaction in the text, so damping would hardly depend on pressure; its t is the film, not the "
+            "structural thickness; the flow along x is shear, not squeeze film",
+        ),
+        Equation("stiffness", r"\frac{k}{k_0}=1-63\cdot10^{-6}\,(T-300)", "recalled value"),
+        Equation("pressure", r"p=p_1-v\,(p_1-p_0),\quad p_1=1\ \text{atm}", "v: share of the vacuum left"),
+        Equation("adhesion", r"W=W_d(W_w/W_d)^{1/(1+e^{-(H-60)/8})}", "ends recalled, shape assumed; 1.4.4"),
+    )
+
+    class Params(BlockParams):
+        """State of the air."""
+
+        temperature_k: float = parameter(300.0, "temperature of device and air", "K", ge=150, le=600)
+        pressure_pa: float = parameter(101325.0, "pressure of the air", "Pa", ge=0.01, le=1e6, equation="1.3.7")
+        humidity_pct: float = parameter(40.0, "relative humidity", "%", ge=0, le=100, equation="1.4.4")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the state of the air and the film of the device."""
+        device = context.device
+        return np.array(
+            [
+                params.pressure_pa,
+                params.temperature_k,
+                1e3 * adhesion_j_m2(params.humidity_pct),
+                *context.film,
+                1e3 * device.natural_frequency,
+                structural_share(0.5 / device.damping_ratio),
+            ]
+        )
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> FloatArray:
+        """Pressure and temperature of the factors kept, and the factors."""
+        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0, 1.0])
+
+    @classmethod
+    def scales(cls, params: Any, context: Context) -> tuple[float, float]:
+        """Return the factors of stiffness and damping before any fault."""
+        packed = [float(value) for value in cls.pack(params, context)[FILM:]]
+        damping = damping_scale(params.pressure_pa, params.temperature_k, *packed)
+        return float(stiffness_scale(params.temperature_k)), float(damping)
+
+    step = environment_step

@@ -1,0 +1,103 @@
+r"""Frequency response of a device: figures of the resonance, and the band its tolerances leave.
+
+The phase does not count the 180 degrees of the negative force per volt (1.3.2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.block import FloatArray
+
+ComplexArray = NDArray[np.complex128]
+
+
+def response(mass_kg: float, damping_ns_m: float, stiffness_n_m: float, frequency_hz: FloatArray) -> ComplexArray:
+    r"""Return the compliance, m/N (the same number as nm/nN), :math:`H=1/(k-m\omega^2+j\beta\omega)` (1.3.1)."""
+    omega = 2.0 * np.pi * np.asarray(frequency_hz, dtype=np.float64)
+    return np.asarray(1.0 / (stiffness_n_m - mass_kg * omega**2 + 1j * damping_ns_m * omega), dtype=np.complex128)
+
+
+def figures(mass_kg: float, damping_ns_m: float, stiffness_n_m: float) -> dict[str, float]:
+    r"""Return the figures of the resonance.
+
+    .. math:: \omega_0=\sqrt{k/m},\; \zeta=\frac{\beta}{2\sqrt{km}},\; Q=\frac1{2\zeta},\;
+        \omega_p=\omega_0\sqrt{1-2\zeta^2},\; \frac{|H_p|}{|H_0|}=\frac1{2\zeta\sqrt{1-\zeta^2}},\;
+        \left(\frac{\omega_{3dB}}{\omega_0}\right)^2=1-2\zeta^2\pm2\zeta\sqrt{1-\zeta^2}
+
+    Without a peak (:math:`\zeta\ge1/\sqrt2`) its figures are those at rest, and half power is counted from there.
+    """
+    f0 = math.sqrt(stiffness_n_m / mass_kg) / (2.0 * math.pi)
+    zeta = damping_ns_m / (2.0 * math.sqrt(stiffness_n_m * mass_kg))
+    found = {"f0_hz": f0, "quality_factor": 0.5 / zeta, "damping_ratio": zeta}
+    centre = 1.0 - 2.0 * zeta * zeta
+    if centre > 0.0:
+        peak = 1.0 / (2.0 * zeta * math.sqrt(1.0 - zeta * zeta))
+        reach = 1.0 / peak
+    else:
+        peak = 1.0
+        reach = math.sqrt(centre * centre + 1.0)
+    return {
+        **found,
+        "f_peak_hz": f0 * math.sqrt(max(centre, 0.0)),
+        "f_damped_hz": f0 * math.sqrt(max(1.0 - zeta * zeta, 0.0)),
+        "peak_db": 20.0 * math.log10(peak),
+        "half_power_low_hz": f0 * math.sqrt(max(centre - reach, 0.0)),
+        "half_power_high_hz": f0 * math.sqrt(centre + reach),
+        "decay_ms": 2e3 * mass_kg / damping_ns_m,
+    }
+
+
+@dataclass(frozen=True)
+class Band:
+    """What magnitude (dB re the nominal displacement at rest) and phase (degrees) can be at each frequency."""
+
+    frequency_hz: FloatArray
+    low_db: FloatArray
+    nominal_db: FloatArray
+    high_db: FloatArray
+    low_deg: FloatArray
+    nominal_deg: FloatArray
+    high_deg: FloatArray
+
+
+def tolerance_band(
+    mass_kg: tuple[float, float, float],
+    damping_ns_m: tuple[float, float, float],
+    stiffness_n_m: tuple[float, float, float],
+    frequency_hz: FloatArray,
+) -> Band:
+    r"""Return the exact envelope over all devices whose parameters lie between their limits (figure 1.3.4).
+
+    With :math:`D=k-m\omega^2` in :math:`[k_1-m_2\omega^2,\,k_2-m_1\omega^2]` and :math:`B=\beta\omega`, the magnitude
+    is least at the largest :math:`D^2+B^2` and the phase :math:`-\mathrm{atan2}(B,D)` has its ends at the corners.
+
+    Parameters
+    ----------
+    mass_kg, damping_ns_m, stiffness_n_m : tuple of float
+        Lower limit, nominal value, upper limit.
+    frequency_hz : ndarray
+        Where.
+    """
+    omega = 2.0 * np.pi * np.asarray(frequency_hz, dtype=np.float64)
+    least = stiffness_n_m[0] - mass_kg[2] * omega**2
+    most = stiffness_n_m[2] - mass_kg[0] * omega**2
+    nearest = np.where(least * most <= 0.0, 0.0, np.minimum(np.abs(least), np.abs(most)))
+    farthest = np.maximum(np.abs(least), np.abs(most))
+    inner, outer = damping_ns_m[0] * omega, damping_ns_m[2] * omega
+    at_rest = stiffness_n_m[1]
+    corners = np.array([-np.arctan2(b, d) for b in (inner, outer) for d in (least, most)])
+    nominal = response(mass_kg[1], damping_ns_m[1], stiffness_n_m[1], frequency_hz) * at_rest
+    return Band(
+        frequency_hz=np.asarray(frequency_hz, dtype=np.float64),
+        low_db=20.0 * np.log10(at_rest / np.hypot(farthest, outer)),
+        nominal_db=20.0 * np.log10(np.abs(nominal)),
+        high_db=20.0 * np.log10(at_rest / np.hypot(nearest, inner)),
+        low_deg=np.degrees(corners.min(axis=0)),
+        nominal_deg=np.degrees(np.angle(nominal)),
+        high_deg=np.degrees(corners.max(axis=0)),
+    )

@@ -1,0 +1,48 @@
+"""Ageing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from core.block import TICK, Equation, Port, parameter
+from core.device.environment import ageing_ratio
+from core.faults.fault import Fault, FaultParams, channel, severity_at
+
+EFFECT, WEEKS = range(2)
+
+
+def ageing_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Stiffen the suspension by what age takes of the displacement."""
+    weeks = severity_at(p, w[TICK])
+    w[io[WEEKS]] = weeks
+    if weeks != 0.0:
+        w[io[EFFECT]] /= ageing_ratio(weeks)
+
+
+class Ageing(Fault):
+    r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less displacement at rest after four (3.1.3.2).
+
+    A ramp lets the weeks pass within the run. Only the end is the text's; the exponential and its time constant of
+    two weeks are assumed, and so is that wear and stiction act as a stiffness.
+    """
+
+    title = "Ageing"
+    shows = "beams"
+    changes = "displacement the suspension allows, taken as stiffness; 1.748 times as stiff after four weeks"
+    suggested = 4.0
+    inputs = channel("stiffness_scale")
+    outputs = (Port("severity", "week", "age"),)
+    equations = (
+        Equation(
+            "effect",
+            r"k\to k/r(t),\quad r=1-0.428\,\frac{1-e^{-t/2}}{1-e^{-2}}\ (t\ \text{in weeks})",
+            "3.1.3.2, figure 3.1.3.2.3; the law between is assumed",
+        ),
+    )
+
+    class Params(FaultParams):
+        """Severity is the age in weeks."""
+
+        severity: float = parameter(0.0, "age", "week", ge=0, le=52)
+
+    step = ageing_step

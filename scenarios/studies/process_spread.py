@@ -1,0 +1,77 @@
+"""Process spread of a drawn device."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from core.block import BlockParams, parameter
+from core.device.spread import CARRIERS, MISSING, PRINTED, Tolerances, draw, sensitivity
+from core.errors import InputError
+from scenarios.studies.study import Study
+
+if TYPE_CHECKING:
+    from core.board.board import Board
+
+STEPS = {
+    "beam_bias_um": 0.1,
+    "thickness_um": 0.1,
+    "film_gap_um": 0.1,
+    "youngs_modulus_gpa": 1.0,
+    "comb_bias_um": 0.1,
+}
+"""By how much each number is moved for the sensitivities."""
+SEEN_PCT = 0.01
+"""Least change that counts as a dependence."""
+NAMES = {"mass": "mass_kg", "stiffness": "stiffness_n_m", "damping": "damping_ns_m", "force": "force"}
+
+
+class ProcessSpread(Study):
+    """Draws devices from a process and says how far their parameters lie apart (Table 2.1 with numbers).
+
+    ``spread.<parameter>.cv_pct`` is the coefficient of variation, ``spread.sensitivity.<number>.<parameter>_pct`` the
+    change for one step of a number of the drawing. ``spread.dots_printed`` and ``spread.dots_missing`` count the
+    dependences of Table 2.1, and those the text's own equations demand beside them.
+    """
+
+    title = "Process spread"
+
+    class Params(BlockParams):
+        """Standard deviations; all are assumed, the text gives none."""
+
+        draws: int = parameter(20_000, "devices drawn", ge=10, le=2_000_000)
+        cut: float = parameter(3.0, "largest deviation, in standard deviations", ge=0.5, le=10)
+        beam_bias_um: float = parameter(0.05, "standard deviation of the etch bias of beams, per edge", "um", ge=0)
+        comb_bias_um: float = parameter(0.03, "standard deviation of the etch bias of fingers, per edge", "um", ge=0)
+        thickness_um: float = parameter(0.05, "standard deviation of the thickness", "um", ge=0)
+        film_gap_um: float = parameter(0.08, "standard deviation of the gas film", "um", ge=0)
+        youngs_modulus_gpa: float = parameter(5.0, "standard deviation of Young's modulus", "GPa", ge=0)
+
+    @classmethod
+    def figures(cls, board: Board, params: Any) -> dict[str, float]:
+        """Return spreads, percentiles, correlations and sensitivities."""
+        geometry = board.spec.device.geometry
+        if geometry is None:
+            raise InputError("has no drawing to vary; choose lcr-350", "device.id")
+        tolerances = Tolerances(**params.model_dump(exclude={"draws", "cut"}))
+        spread = draw(geometry, tolerances, params.draws, board.spec.seed, params.cut)
+        found: dict[str, float] = {}
+        for name in spread.found:
+            found[f"spread.{name}.cv_pct"] = spread.variation_pct(name)
+        for share in (1, 50, 99):
+            found[f"spread.f0_hz.p{share:02d}"] = spread.percentile("f0_hz", share)
+        found["spread.correlation.stiffness_f0"] = spread.correlation("stiffness_n_m", "f0_hz")
+        found["spread.correlation.mass_force"] = spread.correlation("mass_kg", "force")
+        moved = {name: sensitivity(geometry, name, step) for name, step in STEPS.items()}
+        for name, changes in moved.items():
+            found |= {f"spread.sensitivity.{name}.{key}_pct": value for key, value in changes.items()}
+        demanded = {
+            (quantity, step)
+            for step, numbers in CARRIERS.items()
+            for quantity, key in NAMES.items()
+            if any(abs(moved[number][key]) > SEEN_PCT for number in numbers)
+        }
+        printed = {(quantity, step) for quantity, steps in PRINTED.items() for step in steps}
+        found["spread.dots_printed"] = float(len(printed))
+        found["spread.dots_missing"] = float(len(demanded - printed))
+        found["spread.dots_named"] = float(sum(len(steps) for steps in MISSING.values()))
+        return found

@@ -1,0 +1,140 @@
+"""Laws of air, temperature, humidity and age against closed forms and limits."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from scipy.constants import R, k
+
+from core.board.environment import Environment
+from core.board.spec import parse
+from core.device import environment as law
+from core.device.catalogue import device
+
+MOLAR = 0.0289647  # kg/mol, dry air
+
+
+def scales(**air):
+    spec = parse({"device": {"id": air.pop("device", "ch3")}, "environment": air})
+    return Environment.scales(spec.environment.params, spec.context())
+
+
+def quality(**air):
+    spec = parse({"device": {"id": air.get("device", "ch3")}})
+    stiffness, damping = scales(**air)
+    return spec.device.metrics(stiffness, damping)["quality_factor"]
+
+
+def test_viscosity_by_sutherland():
+    assert law.viscosity(300.0) == pytest.approx(1.846e-5, rel=1e-3)
+    assert law.viscosity(273.15) == pytest.approx(1.716e-5, rel=1e-12)
+    # hot gases: the square root of the temperature
+    assert law.viscosity(4e8) / law.viscosity(1e8) == pytest.approx(2.0, rel=1e-5)
+
+
+def test_density_and_mean_free_path():
+    assert law.gas_density(101325, 300) == pytest.approx(101325 * MOLAR / (R * 300), rel=1e-3)
+    assert law.mean_free_path_um(101325, 300) == pytest.approx(0.0670, rel=1e-3)
+    molecule = MOLAR / (R / k)
+    expected = law.viscosity(300) / 2e3 * math.sqrt(math.pi * k * 300 / (2 * molecule)) * 1e6
+    assert law.mean_free_path_um(2e3, 300) == pytest.approx(expected, rel=1e-3)
+
+
+def test_thin_gas_ends_at_the_free_molecular_value():
+    pressure = 1e-3
+    path = law.mean_free_path_um(pressure, 300)
+    found = law.couette(law.viscosity(300), 1e6, 2.0, path)
+    assert found == pytest.approx(pressure * 1e-6 * math.sqrt(MOLAR / (2 * math.pi * R * 300)), rel=1e-3)
+    assert law.couette(law.viscosity(300), 1e6, 2.0, 0.0) == pytest.approx(law.viscosity(300) * 1e-6 / 2e-6)
+
+
+def test_penetration_depth():
+    assert law.penetration_depth_um(101325, 300, 2 * math.pi * 2484) == pytest.approx(44.84, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("pressure", "ratio", "q"),
+    [
+        (3e4, 0.862, 5.6),
+        (1e4, 0.630, 7.7),
+        (3e3, 0.326, 14.9),
+        (1e3, 0.138, 35.0),
+        (1e2, 0.0164, 297.0),
+        (10, None, 2400),
+    ],
+)
+def test_quality_factor_against_pressure(pressure, ratio, q):
+    assert quality(pressure_pa=pressure) == pytest.approx(q, rel=0.02)
+    if ratio is not None:
+        assert scales(pressure_pa=pressure)[1] == pytest.approx(ratio, rel=5e-3)
+
+
+def test_pressure_only_damps_and_the_suspension_has_the_last_word():
+    assert scales(pressure_pa=100)[0] == 1.0
+    assert quality(pressure_pa=0.01) == pytest.approx(law.STRUCTURAL_QUALITY, rel=0.02)
+    falling = [quality(pressure_pa=p) for p in (0.1, 1, 10, 100, 1e3, 1e4, 101325, 1e6)]
+    assert falling == sorted(falling, reverse=True)
+
+
+def test_exactly_nothing_at_300_k_and_1_atm():
+    for entry in ("ch3", "ch4", "lcr-350", "table-1-1-500-max"):
+        assert scales(device=entry) == (1.0, 1.0)
+        assert scales(device=entry, humidity_pct=95.0) == (1.0, 1.0)
+
+
+def test_temperature_coefficient_of_the_resonance():
+    def f0(kelvin):
+        stiffness, damping = scales(temperature_k=kelvin)
+        return parse({"device": {"id": "ch3"}}).device.metrics(stiffness, damping)["f0_hz"]
+
+    assert (f0(301) - f0(299)) / 2 / f0(300) * 1e6 == pytest.approx(-31.5, rel=0.05)
+    for celsius, hertz in ((-40, 2489.0), (27, 2483.8), (85, 2479.2), (125, 2476.1)):
+        assert f0(celsius + 273.15) == pytest.approx(hertz, abs=0.06)
+
+
+def test_warm_air_damps_more():
+    """Viscosity rises by Sutherland, the slip with the mean free path takes a little back."""
+    for kelvin in (233.15, 358.15, 398.15):
+        damping = scales(temperature_k=kelvin)[1]
+        stiffer = law.viscosity(kelvin) / law.viscosity(300)
+        assert abs(damping - 1) < abs(stiffer - 1)
+        assert damping == pytest.approx(stiffer, rel=0.05)
+
+
+def test_a_drawing_brings_its_own_film():
+    drawn = parse({"device": {"id": "lcr-350", "geometry": {"film_gap_um": 0.2}}, "environment": {"pressure_pa": 1e4}})
+    thin = Environment.scales(drawn.environment.params, drawn.context())[1]
+    assert thin < scales(device="lcr-350", pressure_pa=1e4)[1]  # a thinner film is rarefied sooner
+
+
+def test_stiction():
+    kz = law.vertical_stiffness_n_m(0.0538, 2.0, 1.5233)
+    assert kz == pytest.approx(0.0927, rel=2e-3)
+    assert law.critical_adhesion_j_m2(kz, 2.0, 45888) == pytest.approx(4.0e-6, rel=0.02)
+    assert law.critical_adhesion_j_m2(kz, 2.0, 100) == pytest.approx(1.85e-3, rel=0.01)
+    assert 0.01e-3 <= law.adhesion_j_m2(0) <= 0.05e-3
+    assert 10e-3 <= law.adhesion_j_m2(80) <= law.adhesion_j_m2(100) <= 100e-3
+    # the dimples hold in dry air and give way in moist air
+    assert law.adhesion_j_m2(20) < 1.85e-3 < law.adhesion_j_m2(80)
+
+
+def test_ageing_ends_where_the_text_says():
+    assert law.ageing_ratio(0.0) == 1.0
+    assert law.ageing_ratio(4.0) == pytest.approx(0.572, abs=1e-12)
+    assert 1 / law.ageing_ratio(4.0) == pytest.approx(1.748, rel=1e-3)
+    # exponential: what two weeks take the next two take e times less often
+    first, second = 1 - law.ageing_ratio(2.0), law.ageing_ratio(2.0) - law.ageing_ratio(4.0)
+    assert second / first == pytest.approx(math.exp(-1), rel=1e-9)
+
+
+@pytest.mark.parametrize(("omega", "effort"), [(1000.0, 1.751), (2900.0, 1.772)])
+def test_ageing_and_more_mass_explain_the_almost_80_percent_of_case_1(omega, effort):
+    si = device({"id": "ch3"}).resolved
+    m, b, k = si["mass_kg"], si["damping_ns_m"], si["stiffness_n_m"]
+
+    def stiff(mass, spring):
+        return abs(complex(spring - mass * omega**2, b * omega))
+
+    assert stiff(1.05 * m, k / law.ageing_ratio(4.0)) / stiff(m, k) == pytest.approx(effort, abs=1.5e-3)
+    assert stiff(1.05 * m, k) / stiff(m, k) == pytest.approx(0.998, abs=3e-3)  # the mass alone
