@@ -109,7 +109,9 @@ class Score(Block):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the factors of the hypotheses."""
-        factors = [value for item in params.hypotheses for value in (item.mass, item.stiffness, item.damping, item.gain)]
+        factors = [
+            value for item in params.hypotheses for value in (item.mass, item.stiffness, item.damping, item.gain)
+        ]
         return np.array([float(len(params.hypotheses)), *factors])
 
     @classmethod

@@ -52,7 +52,9 @@ class PointAdhesion(Fault):
 
         severity: float = parameter(0.0, "how firmly the point is held", "1", ge=0, le=1)
         beam: Literal["inner", "outer"] = parameter("inner", "which beam")
-        position: float = parameter(0.75, "place along the beam, from its root (0) to the truss (1)", "1", ge=0.1, le=0.95)
+        position: float = parameter(
+            0.75, "place along the beam, from its root (0) to the truss (1)", "1", ge=0.1, le=0.95
+        )
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

@@ -25,7 +25,9 @@ class Stiction(Fault):
 
     title = "Stiction"
     shows = "film"
-    changes = "friction along x in every plant: a dead band about rest, flattened peaks, no hypothesis of a bank is true"
+    changes = (
+        "friction along x in every plant: a dead band about rest, flattened peaks, no hypothesis of a bank is true"
+    )
     suggested = 20.0
     inputs = channels("friction", "other")
     outputs = (Port("severity", "nN", "friction"),)

@@ -7,8 +7,9 @@ from :math:`X_s` (stator tip) to :math:`X_r` (rotor tip), and with a rotation :m
 .. math:: C=n\varepsilon_0t\int_{X_s}^{X_r+x}\frac{2g\,d\xi}{g^2-\eta(\xi)^2},\quad
     \eta=y+\theta\xi,\quad W=\tfrac12V^2C
 
-by five Gauss points, or three where they do. All forces are the derivatives of this very sum, so energy is kept whatever its error. Beyond
-``reach`` times the gap the integrand goes on as a straight line: the true one has no bound where fingers touch.
+by five Gauss points, or three where they do. All forces are the derivatives of this very sum, so energy is kept
+whatever its error. Beyond a limit the integrand goes on as a straight line: the true one has no bound where fingers
+touch.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ TILT = 0.05
 
 @kernel
 def point(square: float, limit: float, eta: float) -> tuple[float, float]:
-    r"""Return :math:`r=1/(g^2-\eta^2)` and half its derivative, :math:`\eta r^2`, continued straight beyond the limit."""
+    r"""Return :math:`r=1/(g^2-\eta^2)` and half its derivative, continued straight beyond the limit."""
     inside = min(max(eta, -limit), limit)
     r = 1.0 / (square - inside * inside)
     q = inside * r * r
@@ -87,7 +88,7 @@ def sums(
 
 @kernel
 def co_energy(strength: float, square: float, limit: float, tips: Any, x: float, y: float, theta: float) -> float:
-    r"""Return the co-energy of both combs over :math:`V^2` each, uN um: for checks, the loop needs only its derivatives.
+    r"""Return the co-energy of both combs, uN um: for checks, the loop needs only its derivatives.
 
     Parameters
     ----------

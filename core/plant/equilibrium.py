@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.block import FloatArray
-from core.plant import planar, slaved_lateral
+from core.plant import plane, slaved_lateral
 from core.plant.electrostatics import comb
 from core.plant.shuttle import FIRST_V, SECOND_V
 from core.plant.suspension import elastic_force
@@ -28,12 +28,12 @@ class Fold:
 
 def planar_force(p: FloatArray, suspension: FloatArray) -> Force:
     """Return the static force of a planar plant."""
-    square, limit, stator, strength = p[planar.GAP_SQUARED], p[planar.LIMIT], p[planar.STATOR], p[planar.STRENGTH]
-    overlap = p[planar.ROTOR] - stator
+    square, limit, stator, strength = p[plane.GAP_SQUARED], p[plane.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
+    overlap = p[plane.ROTOR] - stator
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
         x, y, theta = float(q[0]), float(q[1]), float(q[2])
-        yy, tt = y + p[planar.Y_MISS], theta + p[planar.T_MISS]
+        yy, tt = y + p[plane.Y_MISS], theta + p[plane.T_MISS]
         first = comb(square, limit, stator, 0.5 * (overlap + x), 1.0, yy, tt)
         second = comb(square, limit, stator, 0.5 * (overlap - x), -1.0, yy, tt)
         pulled = strength * (right * np.array(first[:3]) + left * np.array(second[:3]))

@@ -61,7 +61,7 @@ class ShuttleParams(BlockParams):
 class Shuttle(Block):
     """A plant along x; its state is its own output signals, so one plant can replace another while running."""
 
-    inputs: ClassVar = (
+    inputs: ClassVar[tuple[Port, ...]] = (
         Port("voltage", "V", "applied voltage", source="drive.voltage"),
         Port("middle", "V", "applied voltage half a sample later", source="drive.middle"),
         Port("end", "V", "applied voltage one sample later", source="drive.end"),
@@ -74,11 +74,11 @@ class Shuttle(Block):
         Port("friction", "uN", "Coulomb friction", source="effects.friction"),
         Port("shorted", "1", "combs shorted from outside", source="effects.short"),
     )
-    outputs: ClassVar = (
+    outputs: ClassVar[tuple[Port, ...]] = (
         Port("displacement", "um", "true displacement of the shuttle"),
         Port("velocity", "um/ms", "true velocity of the shuttle (1 um/ms = 1 mm/s)"),
     )
-    taps: ClassVar = (
+    taps: ClassVar[tuple[Port, ...]] = (
         Port("lateral", "um", "sideways displacement of the fingers where it is largest"),
         Port("shift", "um", "sideways displacement of the centre"),
         Port("shift_velocity", "um/ms", "sideways velocity of the centre"),

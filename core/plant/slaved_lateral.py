@@ -81,9 +81,8 @@ def slaved_force(p: Any, x: float, right: float, left: float) -> float:
     whole = 2.0 * p[GAP] * r + slope * (eta - inside)
     tied = p[KAPPA] * slope
     strength = 0.25 * p[COMB] * p[GAP]
-    return strength * (
-        right * (whole + tied * max(p[OVERLAP] + x, 0.0)) + left * (tied * max(p[OVERLAP] - x, 0.0) - whole)
-    )
+    pulled = right * (whole + tied * max(p[OVERLAP] + x, 0.0)) + left * (tied * max(p[OVERLAP] - x, 0.0) - whole)
+    return float(strength * pulled)
 
 
 @kernel
