@@ -14,6 +14,7 @@ from core.board import changes, program, score
 from core.board.commands import Command, Heal, Inject, LogEntry, Set, Switch, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.guard import REASONS
+from core.board.log import Log
 from core.board.observer import Observer
 from core.board.spec import Document, Spec, parse
 from core.board.wiring import Wiring, wire
@@ -84,7 +85,7 @@ class Board:
         self.faults: dict[str, BlockParams] = {}
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
-        self.log: list[LogEntry] = []
+        self.log = Log()
         self.pending: list[Pending] = []
         self.trip: Trip | None = None
         self._sha = hashlib.sha256()
@@ -135,7 +136,7 @@ class Board:
                 break
             upcoming = [entry.tick for entry in self.pending if entry.tick is not None]
             stop = min([self.tick + n - done, *upcoming])
-            ran, why, which = self._run(stop - self.tick, done)
+            ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
             for finding in self._observer.look(self.tick, self._outputs[rows], self._taps[rows]):
                 self._note("board", **finding)
@@ -144,13 +145,17 @@ class Board:
             if why == program.TRIPPED:
                 self._trip()
             elif why == program.WATCHED:
-                watching = [entry for entry in self.pending if entry.condition is not None]
-                met = watching[which]
-                met.condition, met.tick = None, self.tick
+                self._meet()
         self._sha.update(self._outputs[:done].data)
         return Rows(first, done, self._outputs[:done], self._taps[:done])
 
-    def _run(self, n: int, at: int) -> tuple[int, int, int]:
+    def _meet(self) -> None:
+        """Let every command whose condition holds after this tick take effect at the next."""
+        for entry in self.pending:
+            if entry.condition is not None and entry.condition.holds(self.value(entry.condition.signal)):
+                entry.condition, entry.tick = None, self.tick
+
+    def _run(self, n: int, at: int) -> tuple[int, int]:
         wiring = self.wiring
         conditions = [entry.condition for entry in self.pending if entry.condition is not None]
         watches = np.array(
@@ -269,20 +274,7 @@ class Board:
         new: Any = None,
     ) -> LogEntry:
         at = self.tick if tick is None else tick
-        document = command.model_dump(exclude_none=True, mode="json") if command is not None else None
-        entry = LogEntry(
-            seq=len(self.log) + 1,
-            tick=at,
-            time_ms=at * self.dt_ms,
-            actor=actor,
-            kind=kind,
-            text=text,
-            command=document,
-            old=old,
-            new=new,
-        )
-        self.log.append(entry)
-        return entry
+        return self.log.add(at, at * self.dt_ms, actor, kind, text, command=command, old=old, new=new)
 
     def _trip(self) -> None:
         code = int(self.value("guard.trip"))
@@ -310,7 +302,7 @@ class Board:
         """Return everything the board is at this tick edge."""
         kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
         shared = {name: getattr(self, name) for name in SHARED}
-        return Checkpoint(self.tick, {**kept, **shared, "log": list(self.log), "_sha": self._sha.copy()})
+        return Checkpoint(self.tick, {**kept, **shared, "log": self.log.copy(), "_sha": self._sha.copy()})
 
     @classmethod
     def restore(cls, checkpoint: Checkpoint) -> Board:
@@ -318,7 +310,7 @@ class Board:
         board = cls.__new__(cls)
         for name, value in checkpoint.parts.items():
             setattr(board, name, copy.deepcopy(value) if name in COPIED else value)
-        board.log, board._sha = list(board.log), board._sha.copy()
+        board.log, board._sha = board.log.copy(), board._sha.copy()
         board._allocate()
         board._link()
         return board
@@ -333,4 +325,5 @@ class Board:
             for entry in self.log
             if entry.command is not None and entry.kind not in ("scheduled", "refused")
         ]
-        return {**copy.deepcopy(self.base), "samples": self.tick, "events": done + [w.event() for w in self.pending]}
+        length = {"samples": self.tick} if self.tick else {}
+        return {**copy.deepcopy(self.base), **length, "events": done + [w.event() for w in self.pending]}

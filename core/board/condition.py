@@ -18,6 +18,10 @@ class Condition:
     sign: float
     threshold: float
 
+    def holds(self, value: float) -> bool:
+        """Say whether a value of the signal meets it."""
+        return self.sign * (value - self.threshold) > 0.0
+
 
 def parse_condition(text: str, index: dict[str, int]) -> Condition:
     """Read a condition on one of the signals in ``index``.

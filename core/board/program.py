@@ -67,8 +67,8 @@ def run(
     taps: FloatArray,
     trip: int,
     watches: FloatArray,
-) -> tuple[int, int, int]:
-    """Run up to ``n`` ticks; return how many were run, why it stopped, and which watch was met.
+) -> tuple[int, int]:
+    """Run up to ``n`` ticks; return how many were run and why it stopped.
 
     A watch is a row (signal, +1 above or -1 below, threshold).
     """
@@ -94,11 +94,11 @@ def run(
         for c in range(tap_index.shape[0]):
             taps[i, c] = w[tap_index[c]]
         if w[trip] != 0.0:
-            return i + 1, TRIPPED, 0
+            return i + 1, TRIPPED
         for c in range(watches.shape[0]):
             if watches[c, 1] * (w[int(watches[c, 0])] - watches[c, 2]) > 0.0:
-                return i + 1, WATCHED, c
-    return n, DONE, 0
+                return i + 1, WATCHED
+    return n, DONE
 
 
 def run_uncompiled(
@@ -117,7 +117,7 @@ def run_uncompiled(
     taps: FloatArray,
     trip: int,
     watches: FloatArray,
-) -> tuple[int, int, int]:
+) -> tuple[int, int]:
     """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled."""
     for i in range(n):
         tick = first_tick + i
@@ -129,8 +129,8 @@ def run_uncompiled(
         outputs[i] = w[output_index]
         taps[i] = w[tap_index]
         if w[trip] != 0.0:
-            return i + 1, TRIPPED, 0
-        for c, (index, sign, threshold) in enumerate(watches):
+            return i + 1, TRIPPED
+        for index, sign, threshold in watches:
             if sign * (w[int(index)] - threshold) > 0.0:
-                return i + 1, WATCHED, c
-    return n, DONE, 0
+                return i + 1, WATCHED
+    return n, DONE

@@ -14,7 +14,7 @@ HELD = 20.0
 """Right verdicts in a row that count as recognised."""
 TOLERANCE = 1e-3
 STEPS = 64
-COUNT, FACTORS = range(2)
+COUNT, EVERY, FACTORS = range(3)
 PROBABILITY, NIS, MASS, STIFFNESS, DAMPING, GAIN, OTHER, WINNER, TRUTH, CORRECT, FALSE, DELAY = range(12)
 LAST_TRUTH, RUN, FOUND, SINCE, STEP, TOTAL, RIGHT, EXITS, NIS_SUM, NIS_COUNT, STARTED, WAS_RIGHT = range(12)
 DELAYS = 12
@@ -57,7 +57,7 @@ def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
         s[RUN] += 1.0
         if s[FOUND] == 0.0 and s[RUN] >= HELD:
             s[FOUND] = 1.0
-            delay = w[TICK] - (HELD - 1.0) - s[SINCE]
+            delay = w[TICK] - (HELD - 1.0) * p[EVERY] - s[SINCE]
             w[io[DELAY]] = delay
             if s[STEP] <= STEPS:
                 s[DELAYS + int(s[STEP]) - 1] = delay
@@ -108,11 +108,11 @@ class Score(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the factors of the hypotheses."""
+        """Pack the ticks between two verdicts and the factors of the hypotheses."""
         factors = [
             value for item in params.hypotheses for value in (item.mass, item.stiffness, item.damping, item.gain)
         ]
-        return np.array([float(len(params.hypotheses)), *factors])
+        return np.array([float(len(params.hypotheses)), context.every, *factors])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.block import Block, BlockParams, Context, FloatArray, Port, kernel, parameter
 
-KIND, SEVERITY, START, LENGTH, DUTY = range(5)
+KIND, SEVERITY, START, LENGTH, ON = range(5)
 STEP, RAMP, INTERMITTENT = 0.0, 1.0, 2.0
 KINDS = {"step": STEP, "ramp": RAMP, "intermittent": INTERMITTENT}
 
@@ -40,11 +40,12 @@ class Fault(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity and profile; the interval in ticks."""
+        """Pack severity and profile; the interval and its part that is on in whole ticks."""
         profile = params.profile
         length = profile.duration_ms if profile.kind == "ramp" else profile.period_ms
         ticks = max(1.0, round(length / context.dt_ms))
-        return np.array([KINDS[profile.kind], params.severity, float(params.start_tick), ticks, profile.duty])
+        on = max(1.0, round(profile.duty * ticks))
+        return np.array([KINDS[profile.kind], params.severity, float(params.start_tick), ticks, on])
 
 
 def channel(name: str) -> tuple[Port, ...]:
@@ -66,8 +67,7 @@ def severity_at(p: Any, tick: float) -> float:
     if p[KIND] == RAMP:
         return float(p[SEVERITY] * min(1.0, since / p[LENGTH]))
     if p[KIND] == INTERMITTENT:
-        phase = since / p[LENGTH]
-        return float(p[SEVERITY]) if phase - math.floor(phase) < p[DUTY] else 0.0
+        return float(p[SEVERITY]) if since - p[LENGTH] * math.floor(since / p[LENGTH]) < p[ON] else 0.0
     return float(p[SEVERITY])
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from core.block import TICK, Block, BlockParams, Context, FloatArray, Port, Step, parameter
+from core.errors import InputError
 
 DT, ANALOGUE, SCALE, OFFSET, FIRST = range(5)
 """Packed parameters of every reference; those of the waveform start at ``FIRST``."""
@@ -32,6 +33,8 @@ class ReferenceParams(BlockParams):
         if self.amplitude_v is not None:
             return self.amplitude_v
         assert self.amplitude_um is not None  # _one_amplitude has seen to it
+        if context.device.static_gain == 0.0:
+            raise InputError("needs a device that moves; these stators give no force", "reference.amplitude_um")
         return self.amplitude_um / context.device.static_gain
 
 

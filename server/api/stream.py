@@ -37,6 +37,9 @@ from server.stream.wire import (
 router = APIRouter(tags=["stream"])
 
 CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
+LAST_WORDS_S = 0.2
+"""For what waits to be sent before a close; a line that is stuck takes none of it."""
+
 FLOOD_RATE, FLOOD_BURST = 500.0, 2000
 """Messages of any kind; sixty frames a second need sixty acknowledgements."""
 
@@ -61,13 +64,17 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         await socket.close(*(refusal or (CLOSE_NO_BENCH, "")))
         return
     await socket.accept(subprotocol=SUBPROTOCOL)
-    client = Client(socket, session, service.metrics, service.hub.describe)
+    bench = service.view(session)
+    hub = service.hub
+    client = Client(socket, session, service.metrics, hub.describe, hub.cuts(session), bench.last_event)
     service.hub.add(client)
-    hello = Hello(server=service.id, bench=service.view(session), last_event=session.events.last)
-    client.post(hello)
-    tasks = [asyncio.create_task(client.run()), asyncio.create_task(Conversation(client, service).run())]
+    client.post(Hello(server=service.id, bench=bench, last_event=bench.last_event))
+    sender, listener = client.run(), Conversation(client, service).run()
+    tasks = [asyncio.create_task(part) for part in (sender, listener, client.closed.wait())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        if client.closing is not None:
+            await asyncio.wait(tasks[:1], timeout=LAST_WORDS_S)
     finally:
         service.hub.remove(client)
         for task in tasks:
@@ -149,7 +156,7 @@ class Conversation:
             if panel is None:
                 raise InputError(f"panel {message.panel} is not subscribed", "panel")
             panel.rearm(client.session.history.end_tick)
-            client.offer_frame()
+            self._show()
         elif isinstance(message, Resume):
             client.resume(message.after)
 
@@ -177,7 +184,12 @@ class Conversation:
         client.panels[message.panel] = Panel(
             message, indices, trigger, revision, session.dt_ms, session.history.end_tick
         )
-        client.offer_frame()
+        self._show()
+
+    def _show(self) -> None:
+        """Show a panel that has changed, on a paused bench as well."""
+        self._service.hub.cuts(self._client.session).refresh()
+        self._client.offer_frame()
 
     def _refuse(self, document: Any, error: ErrorBody) -> None:
         """Answer a command by its id, anything else by an error."""

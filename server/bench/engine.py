@@ -151,8 +151,10 @@ class Engine:
                 self._metrics.wake_lateness.observe(now - deadline)
                 if now - deadline > LATE_S:
                     log.warning("the engine woke %.0f ms late", 1e3 * (now - deadline))
-                self._round(now, deadline + PERIOD_S)
+                whole = self._round(now, deadline + PERIOD_S)
                 self._on_round()
+                if not whole:
+                    continue
                 deadline += PERIOD_S
                 if deadline < self.clock() - PERIOD_S:
                     deadline = self.clock()
@@ -174,25 +176,31 @@ class Engine:
             done = True
         return done
 
-    def _round(self, now: float, end: float) -> None:
-        """Bring every paced bench to its target, slice by slice in turn, then spend the rest on free ones."""
+    def _round(self, now: float, end: float) -> bool:
+        """Bring every paced bench to its target, slice by slice in turn, then spend the rest on free ones.
+
+        A job may change what a bench should do, so the round ends there (false) and another begins.
+        """
         targets = [(work, work.target(now)) for work in self._work.values() if work.is_running]
         paced = [pair for pair in targets if pair[1] is not None]
         free = [pair for pair in targets if pair[1] is None]
-        self._turns(paced, end)
-        self._turns(free, end - SPARE_S)
+        if not (self._turns(paced, end) and self._turns(free, end - SPARE_S)):
+            return False
         done = self.clock()
         for work, target in targets:
             work.finish_round(target, done)
         self._metrics.round_seconds.observe(done - now)
+        return True
 
-    def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> None:
-        """Give each bench one slice in turn until all are there or the round is over."""
+    def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> bool:
+        """Give each bench one slice in turn until all are there or the round is over; false after a job."""
         while pairs:
             pairs = [(work, target) for work, target in pairs if self._slice(work, target)]
-            self._run_jobs()
+            if self._run_jobs():
+                return False
             if self.clock() >= end:
-                return
+                break
+        return True
 
     def _slice(self, work: Workload, target: int | None) -> bool:
         """Advance one bench; an unexpected error stops that bench alone."""

@@ -48,10 +48,13 @@ class Pacer:
         self._seen.clear()
         self._seen.append((now, tick, tick))
 
-    def rescale(self, scale: float | None, tick: int, now: float) -> None:
-        """Change the time scale from here on."""
+    def rescale(self, scale: float | None, tick: int, now: float, is_running: bool) -> None:
+        """Change the time scale from now on; what is due at the old one stays due."""
+        if scale == self._scale:
+            return
+        due = self.target(tick, now) if is_running else None
         self._scale = scale
-        self.anchor(tick, now)
+        self.anchor(tick if due is None else max(due, tick), now)
 
     def target(self, tick: int, now: float) -> int | None:
         """Return the tick to reach by now, or none when there is no limit.

@@ -117,4 +117,4 @@ class Recorder:
             self._on_end(self._file.finish(), self.reason)
         except OSError as error:
             self.reason = f"the disk failed: {error.strerror or error}"
-            self._on_end(0, self.reason)
+            self._on_end(self._file.salvage(), self.reason)

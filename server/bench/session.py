@@ -201,13 +201,13 @@ class Session:
         """Go back to a moment."""
         kept = self.snapshot(snapshot_id)
         self.board = Board.restore(kept.checkpoint)
-        self._logged = len(self.board.log)
+        self._logged = self.board.log.last
         if self.history.first_tick <= kept.snapshot.tick <= self.history.end_tick:
             self.history.end_tick = kept.snapshot.tick
         else:
             self.history = History(len(self._index), self._history_ticks)
-        if self._ends_at is not None and self.board.tick >= self._ends_at:
-            self._ends_at = None
+        samples = self.scenario.samples
+        self._ends_at = samples if samples is not None and self.board.tick < samples else None
         return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
 
     def forget_snapshot(self, snapshot_id: str) -> None:
@@ -219,7 +219,7 @@ class Session:
         checkpoint = self.snapshot(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
         board = Board.restore(checkpoint)
         twin = Session(self.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
-        twin._logged = len(board.log)
+        twin._logged = board.log.last
         twin._ends_at = self._ends_at if self._ends_at is not None and board.tick < self._ends_at else None
         first = max(self.history.first_tick, board.tick - FORK_TICKS)
         if first < board.tick <= self.history.end_tick:
@@ -298,13 +298,18 @@ class Session:
             "title": f"{title}, as run live"[:200],
             "source": self.scenario.head.source,
         }
-        return {**head, **self.board.save()}
+        document = {**head, **self.board.save()}
+        if self.board.tick == 0:  # nothing has happened yet: what is saved is what would
+            del document["samples"]
+            if self.scenario.samples is not None:
+                document["samples"] = self.scenario.samples
+        return document
 
     def view(self, watchers: int, loop_lag_ms: float, view3d: str | None) -> Bench:
         """Describe the bench in full."""
-        spec = self.board.spec
+        spec, last = self.board.spec, self.events.last
         return Bench(
-            **{**dict(self.status), "watchers": watchers, "loop_lag_ms": loop_lag_ms},
+            **{**dict(self.status), "watchers": watchers, "loop_lag_ms": loop_lag_ms, "last_event": last},
             id=self.id,
             title=self.scenario.head.title or self.scenario.id,
             scenario_id=self.scenario.id,
@@ -336,7 +341,7 @@ class Session:
         document = command.model_dump()
         if isinstance(command, TimeScale):
             old = self.pacer.scale
-            self.pacer.rescale(command.value, self.board.tick, self._clock())
+            self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
             text = "time runs as fast as possible"
             if command.value is not None:
                 text = f"time scale set to {command.value * 1e3:g} ms/s"
@@ -377,7 +382,7 @@ class Session:
             self._metrics.ticks.inc(rows.count)
             if self.recorders:
                 self._record(rows)
-        if len(self.board.log) > self._logged:
+        if self.board.log.last > self._logged:
             self._sync_log()
         if self.board.trip is not None and self._running and not self._has_due():
             self._running = False
@@ -428,12 +433,12 @@ class Session:
     def _sync_log(self) -> list[Event]:
         """Take over what the board has logged since the last time."""
         added = []
-        for entry in self.board.log[self._logged :]:
+        for entry in self.board.log.after(self._logged):
             self._metrics.events.labels(entry.kind).inc()
             added.append(
                 self.events.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
             )
-        self._logged = len(self.board.log)
+        self._logged = self.board.log.last
         return added
 
     def _look(self) -> BenchStatus:

@@ -6,6 +6,7 @@ end it is rewritten as Parquet. What a crash left behind is recovered at the nex
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -43,6 +44,16 @@ class RecordingFile:
         self._stream.close()
         self._sink.close()
         return convert(self._path)
+
+
+    def salvage(self) -> int:
+        """Let go of a stream that cannot be written any more; keep what has reached the disk."""
+        with contextlib.suppress(OSError):
+            self._sink.close()
+        try:
+            return convert(self._path)
+        except (OSError, pa.ArrowException):
+            return 0
 
 
 def convert(path: Path) -> int:

@@ -17,6 +17,7 @@ from starlette.websockets import WebSocket
 from server.bench.session import Session
 from server.metrics import Metrics
 from server.stream.codec import encode
+from server.stream.cuts import SharedCuts
 from server.stream.panel import Panel
 from server.stream.wire import EventMessage, Notice, Reply
 
@@ -42,6 +43,10 @@ class Client:
         Where frames are counted.
     describe : callable
         Returns the status message of a bench: session, whether with its parameters, frames dropped.
+    cuts : SharedCuts
+        The history, as all pages of the bench see it.
+    last_event : int
+        Number of the last event it is taken to know.
     """
 
     def __init__(
@@ -50,14 +55,18 @@ class Client:
         session: Session,
         metrics: Metrics,
         describe: Callable[[Session, bool, int], str],
+        cuts: SharedCuts,
+        last_event: int,
     ) -> None:
         self.socket, self.session, self._metrics, self._describe = socket, session, metrics, describe
+        self._cuts = cuts
         self.name = "page"
         self.panels: dict[int, Panel] = {}
         self.dropped = 0
         self.closing: tuple[int, str] | None = None
+        self.closed = asyncio.Event()
         self._wake = asyncio.Event()
-        self._cursor = session.events.last
+        self._cursor = last_event
         self._outbox: deque[BaseModel] = deque()
         self._frame = 0
         self._acked = 0
@@ -98,6 +107,7 @@ class Client:
         self._acked = max(self._acked, min(frame, self._frame))
         self._taken_at = time.monotonic()
         if self._owes_frame and not self.session.is_running:
+            self._cuts.refresh()
             self.offer_frame()  # nothing else would: a paused bench has no next round
 
     def resume(self, after: int) -> None:
@@ -111,8 +121,9 @@ class Client:
         return waiting and now - self._taken_at > STALL_S
 
     def close(self, code: int, reason: str) -> None:
-        """Close the stream; the sender does it."""
+        """Close the stream, behind what can still be sent at once."""
         self.closing = self.closing or (code, reason)
+        self.closed.set()
         self._wake.set()
 
     # What it does.
@@ -155,14 +166,14 @@ class Client:
 
     async def _send_frame(self) -> None:
         """Cut the pictures that changed and send them as one frame."""
-        history = self.session.history
-        pictures = [picture for panel in self.panels.values() if (picture := panel.picture(history))]
+        cuts = self._cuts
+        pictures = [picture for panel in self.panels.values() if (picture := panel.picture(cuts))]
         if not pictures:
             return
         if self._frame == self._acked:
             self._taken_at = time.monotonic()
         self._frame += 1
-        data = encode(self._frame, self.session.is_running, history.end_tick, self.session.dt_ms, pictures)
+        data = encode(self._frame, self.session.is_running, cuts.end_tick, self.session.dt_ms, pictures)
         await self._send(data)
         self._metrics.frames.inc()
         self._metrics.frame_bytes.inc(len(data))

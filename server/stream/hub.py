@@ -14,6 +14,7 @@ from server.lag import LagProbe
 from server.metrics import Metrics
 from server.settings import Settings
 from server.stream.client import Client
+from server.stream.cuts import SharedCuts
 from server.stream.wire import Notice, Status
 
 STATUS_S = 0.2
@@ -39,6 +40,7 @@ class Hub:
         self._numbers = count(1)
         self._clients: dict[str, set[Client]] = defaultdict(set)
         self._heads: dict[str, tuple[int, int]] = {}
+        self._cuts: dict[str, SharedCuts] = {}
         self._next_frame = 0.0
 
     def __len__(self) -> int:
@@ -75,9 +77,14 @@ class Hub:
         if not clients:
             self._clients.pop(client.session.id, None)
             self._heads.pop(client.session.id, None)
+            self._cuts.pop(client.session.id, None)
             for with_parameters in (False, True):
                 self._texts.pop((client.session.id, with_parameters), None)
         self._metrics.clients.set(len(self))
+
+    def cuts(self, session: Session) -> SharedCuts:
+        """Return the history of a bench as all its pages see it."""
+        return self._cuts.setdefault(session.id, SharedCuts(session))
 
     def publish(self) -> None:
         """Wake who has something new to see; called on the loop after every round of the engine."""
@@ -89,14 +96,15 @@ class Hub:
         for bench_id, clients in self._clients.items():
             session = next(iter(clients)).session
             head, last = self._heads.get(bench_id, (-1, -1))
-            new_head, new_last = session.history.end_tick, session.events.last
+            new_head = self._cuts[bench_id].refresh() if frame_due else head
+            new_last = session.events.last
             for client in clients:
                 if new_last != last:
                     client.offer_events()
                     client.offer_status()
                 if frame_due and new_head != head:
                     client.offer_frame()
-            self._heads[bench_id] = (new_head if frame_due else head, new_last)
+            self._heads[bench_id] = (new_head, new_last)
 
     def close_bench(self, bench_id: str) -> None:
         """Close the streams of a bench that is gone."""

@@ -71,8 +71,9 @@ class Trigger:
         first_only : bool
             Stop behind the first crossing; the next scan goes on from there.
         """
-        if self.next_tick < history.first_tick:
-            self.restart(history.first_tick)
+        if not history.first_tick <= self.next_tick <= history.end_tick:
+            # Forgotten, or the bench went back in time.
+            self.restart(min(max(self.next_tick, history.first_tick), history.end_tick))
         found: list[int] = []
         while self.next_tick < history.end_tick:
             end = min(self.next_tick + BLOCK, history.end_tick)

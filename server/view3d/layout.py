@@ -130,6 +130,20 @@ class Layout:
         boxes += [Box((x, 0, self.z), (2, 12, t)) for x in np.arange(-30.0, 31.0, 4.0)]
         return merge(boxes)
 
+    def outline(self) -> FloatArray:
+        """Return the edges of plate and arms, ``(n, 2, 3)`` in scene units, just above them."""
+        g, top = self.geometry, self.z + self.geometry.thickness_um
+        edges = []
+        for side in (-1, 1):
+            for x, y in (
+                ((self.plate_um, self.arm_um), g.arm_length_um / 2),
+                ((NOTCH_UM, self.plate_um), g.plate_width_um / 2),
+            ):
+                corners = [(x[0], -y), (x[1], -y), (x[1], y), (x[0], y)]
+                points = [(side * a, b, top) for a, b in corners]
+                edges += [(points[k], points[(k + 1) % 4]) for k in range(4)]
+        return np.array(edges) / UM_PER_UNIT
+
     @property
     def comb_um(self) -> float:
         """Extent of the combs along y, between the outermost fingers."""

@@ -10,9 +10,9 @@ SEEN_HZ = 8.0
 STROBE_HZ = 0.8
 """What a strobed oscillation looks like."""
 
-EXAGGERATIONS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-WANTED_UM = 6.0
-"""Amplitude that is well seen at the size of the device."""
+EXAGGERATIONS = (1.0, 2.0, 3.0, 4.0, 5.0, 8.0, 10.0, 20.0, 50.0, 100.0)
+WANTED_UM = 16.0
+"""Amplitude that is well seen at the size of the device, and that its fingers have room for."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def exaggeration(amplitude_um: float, now: float) -> float:
     now : float
         The present factor.
     """
-    if amplitude_um <= 0.0 or 0.3 * WANTED_UM <= amplitude_um * now <= 2.0 * WANTED_UM:
+    if amplitude_um <= 0.0 or 0.4 * WANTED_UM <= amplitude_um * now <= 1.2 * WANTED_UM:
         return now
     fitting = [factor for factor in EXAGGERATIONS if amplitude_um * factor <= WANTED_UM]
     return fitting[-1] if fitting else 1.0

@@ -105,7 +105,7 @@ class Scene:
         scene.configure_default_lights(True, cast_shadow=False)
         scene.world_axes.visible = False
         span = layout.half_width_um / UM_PER_UNIT
-        self._server.initial_camera.position = (span * 0.55, -span * 1.25, span * 1.15)
+        self._server.initial_camera.position = (span * 0.3, -span * 0.9, span * 1.1)
         self._server.initial_camera.look_at = (0.0, 0.0, 0.0)
         self._mesh("/ground", layout.ground(), GROUND)
         self._mesh("/anchors", layout.anchors(), FIXED)
@@ -119,7 +119,8 @@ class Scene:
         self._mass = self._mesh("/shuttle/added-mass", box, FAULT, visible=False)
         self._mass.position = (-0.62, 0.0, top)
         self._ghost = scene.add_frame("/reference", show_axes=False)
-        self._mesh("/reference/plate", layout.shuttle(), GHOST, opacity=0.25)
+        outline = layout.outline()
+        scene.add_line_segments("/reference/outline", outline, GHOST, thickness=2.0, thickness_units="screen")
         suspension = layout.suspension()
         self._suspension = scene.add_mesh_skinned(
             "/suspension",

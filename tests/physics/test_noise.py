@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import special, stats
+from scipy.linalg import expm, solve_discrete_lyapunov
 
 from core.noise import key, normal, uniform
 from tests.lab import RICH, make, play
@@ -126,8 +127,6 @@ def test_drive_noise_is_white_voltage_on_the_drive():
     }
     x = np.concatenate([play(make({**values, "seed": seed}), 20_000)["plant.displacement"] for seed in range(1, 6)])
     # variance of a sampled oscillator under held white noise: the discrete Lyapunov equation
-    from scipy.linalg import expm, solve_discrete_lyapunov
-
     a = np.array([[0, 1], [-243.5491, -3.209597]])
     phi = expm(a * 0.02)
     gamma = (np.eye(2) - phi) @ np.array([0.30093, 0.0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import control
@@ -51,7 +52,7 @@ def test_free_decay(plant):
     zeros = t[rising] - x[rising] * 1e-3 / (x[rising + 1] - x[rising])
     assert np.diff(zeros) == pytest.approx(2e3 * math.pi / WD, rel=1e-3)
     assert np.diff(zeros).mean() == pytest.approx(0.40476, rel=1e-3)
-    tops = np.array([x[a:b].max() for a, b in zip(rising[:-1], rising[1:], strict=True)])
+    tops = np.array([x[a:b].max() for a, b in itertools.pairwise(rising)])
     decrement = np.log(tops[:-1] / tops[1:])
     assert decrement == pytest.approx(2 * math.pi * SIGMA / WD, rel=1e-3)
     assert decrement.mean() == pytest.approx(0.6496, rel=5e-3)

@@ -70,10 +70,24 @@ def test_a_change_of_scale_counts_from_there() -> None:
     pacer = Pacer(DT_S, 1e-3)
     pacer.anchor(0, 0.0)
     assert pacer.target(0, 0.01) == 1
-    pacer.rescale(0.1, 1, 0.01)
-    assert pacer.target(1, 0.02) == 101
-    pacer.rescale(None, 101, 0.02)
+    pacer.rescale(0.1, 1, 0.01, is_running=True)
+    assert pacer.target(1, 0.02) == pytest.approx(101, abs=1)
+    pacer.rescale(None, 101, 0.02, is_running=True)
     assert pacer.target(101, 0.03) is None
+    pacer.rescale(0.1, 101, 50.0, is_running=False)
+    assert pacer.target(101, 50.0) == 101 and pacer.given_up_s == 0.0
+
+
+def test_changes_of_scale_lose_no_time() -> None:
+    """Forty a second, each in the middle of a round: what was due before stays due."""
+    pacer, tick, now = Pacer(DT_S, 1.0), 0, 0.0
+    pacer.anchor(0, 0.0)
+    for number in range(400):
+        now += 0.025
+        pacer.rescale(1.0 if number % 2 else 0.5, tick, now - 0.004, is_running=True)
+        tick = pacer.target(tick, now) or tick
+        pacer.record(tick, tick, now)
+    assert tick * DT_S == pytest.approx(0.75 * now, rel=2e-3)
 
 
 def test_without_a_limit_the_rate_is_measured_on_the_clock() -> None:

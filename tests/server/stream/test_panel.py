@@ -99,6 +99,21 @@ def test_a_frozen_picture_follows_until_its_end_is_reached() -> None:
     assert frozen.picture(history) is None
 
 
+def test_a_bench_that_goes_back_in_time_is_shown_again() -> None:
+    history = History(2, 20_000)
+    fill(history, sine(1000))
+    auto, rolling = triggered("auto", head=1000), panel()
+    assert auto.picture(history) and rolling.picture(history)
+    history.end_tick = 300
+    fill(history, sine(310)[300:])
+    for one in (auto, rolling):
+        again = one.picture(history)
+        assert again is not None and again.end <= 310
+    fill(history, sine(500)[310:])
+    later = auto.picture(history)
+    assert later is not None and later.flags == TRIGGERED and 310 < later.trigger < 500
+
+
 def sine(ticks: int, period: float = 40.0) -> np.ndarray[Any, Any]:
     return np.sin(2 * np.pi * (np.arange(ticks) - 0.5) / period)
 

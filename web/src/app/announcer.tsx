@@ -24,7 +24,7 @@ export function Announcer() {
   }, [phase]);
 
   useEffect(() => {
-    if (!notice) return;
+    if (!notice || notice.code === "slow_client") return; // the header says that one, without covering anything
     notifications.show({ id: `notice-${notice.code}`, message: notice.message, autoClose: 5000 });
   }, [notice]);
 

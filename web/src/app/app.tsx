@@ -15,6 +15,7 @@ import { NewBench } from "./new-bench";
 import { benchInAddress } from "./open-bench";
 import { Phone } from "./phone";
 import { useKeys } from "./use-keys";
+import { useLasting } from "./use-lasting";
 import { Workspace } from "./workspace";
 
 interface Failure {
@@ -25,7 +26,8 @@ interface Failure {
 /** The page: a header, a line for what needs to be known, and the panels. */
 export function App() {
   const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
-  const stale = useBench((s) => s.connection.staleSince !== undefined);
+  const silent = useBench((s) => s.connection.staleSince !== undefined);
+  const stale = useLasting(silent, 700);
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
   useKeys();
 
@@ -47,7 +49,7 @@ export function App() {
   return (
     <div className="page" data-stale={stale}>
       {phone ? null : <Header />}
-      <Banner />
+      <Banner hints={!phone} />
       {failure ? (
         <EmptyState title={failure.title} action={<Button onClick={start}>Try again</Button>}>
           {failure.advice}

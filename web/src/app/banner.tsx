@@ -6,30 +6,34 @@ import { stream } from "../stream/stream";
 import { formatDeviceTime } from "../ui/time-axis";
 import { actions } from "./actions";
 import styles from "./banner.module.css";
-import { openAnyBench } from "./first-bench";
+import { openAnyBench, startAgain } from "./first-bench";
 import { showError } from "./send";
+import { useLasting } from "./use-lasting";
 
+/** A connection that is back this soon was not worth a word. */
+const BLINK_MS = 1000;
 const HINT_KEY = "combbench.hint.seen";
 
 /** One line under the header when something needs to be known: a trip, a lost connection, silence; else what to try. */
-export function Banner() {
+export function Banner({ hints = true }: { hints?: boolean }) {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const lost = useLasting(connection.phase === "waiting", BLINK_MS);
   const [hint, setHint] = useState(() => localStorage.getItem(HINT_KEY) === null);
 
   if (connection.phase === "closed" && connection.reason)
     return (
       <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
-        <Button size="compact-sm" onClick={() => openAnyBench().catch(showError)}>
-          Open a bench
-        </Button>
-        <Button size="compact-sm" variant="default" onClick={() => window.location.reload()}>
-          Reload
-        </Button>
+        {connection.reason.offer === "bench" && <NewStart />}
+        {connection.reason.offer === "reload" && (
+          <Button size="compact-sm" onClick={() => window.location.reload()}>
+            Reload
+          </Button>
+        )}
       </Line>
     );
-  if (connection.phase === "waiting" && connection.reason)
+  if (lost && connection.reason)
     return (
       <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
         <Countdown until={connection.retryAt} />
@@ -38,7 +42,7 @@ export function Banner() {
         </Button>
       </Line>
     );
-  if (connection.staleSince)
+  if (connection.staleSince && connection.phase === "open")
     return (
       <Line
         tone="warn"
@@ -64,7 +68,7 @@ export function Banner() {
         </Button>
       </Line>
     );
-  if (hint)
+  if (hint && hints)
     return (
       <Line
         tone="hint"
@@ -113,4 +117,25 @@ function Countdown({ until }: { until: number | undefined }) {
   if (until === undefined) return null;
   const left = Math.ceil((until - now) / 1000);
   return <span className={styles.countdown}>{left > 0 ? `again in ${left} s` : "trying"}</span>;
+}
+
+/** What to do when the bench on the page is no more. */
+function NewStart() {
+  const scenario = useBench((s) => s.bench?.scenario_id);
+  return (
+    <>
+      {scenario && (
+        <Button size="compact-sm" onClick={() => startAgain(scenario).catch(showError)}>
+          Start it again
+        </Button>
+      )}
+      <Button
+        size="compact-sm"
+        variant={scenario ? "default" : "filled"}
+        onClick={() => openAnyBench().catch(showError)}
+      >
+        Open another
+      </Button>
+    </>
+  );
 }

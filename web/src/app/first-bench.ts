@@ -1,5 +1,5 @@
 import { api } from "../api/api";
-import { benchInAddress, openBench } from "./open-bench";
+import { benchInAddress, lastBench, openBench } from "./open-bench";
 
 /** Worth seeing at first sight: the first of these that the library has. */
 const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
@@ -11,9 +11,16 @@ export async function openFirstBench(): Promise<void> {
   await openAnyBench();
 }
 
+/** Start a bench of a library scenario in place of the one shown. */
+export async function startAgain(scenario: string): Promise<void> {
+  openBench((await api.createBench({ scenario, paused: false })).id, true);
+}
+
+/** Open the bench this browser had last, else one that runs, or start the showpiece. */
 export async function openAnyBench(): Promise<void> {
   const benches = await api.benches();
-  const running = benches.find((b) => b.state === "running") ?? benches[0];
+  const mine = benches.find((b) => b.id === lastBench() && b.state !== "tripped");
+  const running = mine ?? benches.find((b) => b.state === "running");
   if (running) return openBench(running.id, true);
   const library = await api.scenarios();
   const id = SHOWPIECES.find((name) => library.some((s) => s.id === name)) ?? library[0]?.id;

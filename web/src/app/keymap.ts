@@ -1,5 +1,6 @@
 import { actions } from "./actions";
 import { focusNextGroup, setLayout } from "./layouts";
+import { themeSwitch } from "./theme-switch";
 
 export interface KeyBinding {
   /** `KeyboardEvent.key`, as typed. */
@@ -28,6 +29,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
   { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
+  { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },
 ];

@@ -27,15 +27,12 @@ export function setLayout(name: LayoutName): void {
 
 /** Open another panel of a kind beside the active one. */
 export function addPanel(kind: string): void {
-  if (!current) return;
-  const number = current.panels.filter((p) => p.view.contentComponent === kind).length + 1;
-  const title = kind === "scope" ? `Scope ${number}` : PANELS[kind].title;
-  current.addPanel({
-    id: `${kind}-${Date.now()}`,
-    component: kind,
-    title,
-    params: kind === "scope" ? { scope: scopeConfig(["plant.displacement"]) } : {},
-  });
+  current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, title: PANELS[kind].title, params: {} });
+}
+
+/** Open a scope on some signals beside the active panel. */
+export function addScope(title: string, signals: string[]): void {
+  current?.addPanel({ id: `scope-${Date.now()}`, component: "scope", title, params: { scope: scopeConfig(signals) } });
 }
 
 /** Move the keyboard to the next group of panels. */

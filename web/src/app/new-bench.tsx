@@ -79,6 +79,7 @@ function Gallery() {
               </small>
             </div>
             <Button
+              flex="none"
               size="xs"
               variant="light"
               loading={busy === s.id}

@@ -1,6 +1,7 @@
 import { stream } from "../stream/stream";
 
 const PARAMETER = "bench";
+const LAST = "combbench.bench";
 
 /** The bench named in the address, if any. */
 export function benchInAddress(): string | undefined {
@@ -9,6 +10,9 @@ export function benchInAddress(): string | undefined {
   return hash.get(PARAMETER) ?? query.get(PARAMETER) ?? undefined;
 }
 
+/** The bench this browser showed last. */
+export const lastBench = (): string | undefined => localStorage.getItem(LAST) ?? undefined;
+
 /** Show a bench and put it into the address, so that the link can be shared and back works. */
 export function openBench(id: string, replace = false): void {
   const url = new URL(window.location.href);
@@ -16,5 +20,6 @@ export function openBench(id: string, replace = false): void {
   url.hash = "";
   if (replace) window.history.replaceState(null, "", url);
   else window.history.pushState(null, "", url);
+  localStorage.setItem(LAST, id);
   stream.open(id);
 }

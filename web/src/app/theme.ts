@@ -71,6 +71,7 @@ export const theme = createTheme({
         c: "var(--text)",
       },
     },
+    Notification: { defaultProps: { closeButtonProps: { "aria-label": "Dismiss" } } },
     Popover: { defaultProps: { shadow: "md", withinPortal: true } },
   },
 });

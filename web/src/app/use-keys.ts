@@ -1,6 +1,7 @@
 import { useMantineColorScheme } from "@mantine/core";
 import { useEffect } from "react";
 import { KEYMAP } from "./keymap";
+import { themeSwitch } from "./theme-switch";
 import { useScheme } from "./use-scheme";
 
 const TYPING =
@@ -11,12 +12,15 @@ export function useKeys(): void {
   const scheme = useScheme();
   const { setColorScheme } = useMantineColorScheme();
   useEffect(() => {
+    themeSwitch.flip = () => setColorScheme(scheme === "dark" ? "light" : "dark");
+  }, [scheme, setColorScheme]);
+
+  useEffect(() => {
     const listen = (event: KeyboardEvent) => {
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       const target = event.target as HTMLElement;
       if (target.closest(TYPING)) return;
       if (event.key === " " && target.closest("button, a, summary, [role=button], [role=tab]")) return;
-      if (event.key === "d") return setColorScheme(scheme === "dark" ? "light" : "dark");
       const binding = KEYMAP.find((b) => b.key === event.key);
       if (!binding) return;
       event.preventDefault();
@@ -24,5 +28,5 @@ export function useKeys(): void {
     };
     window.addEventListener("keydown", listen);
     return () => window.removeEventListener("keydown", listen);
-  }, [scheme, setColorScheme]);
+  }, []);
 }

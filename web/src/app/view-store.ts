@@ -13,9 +13,12 @@ interface ViewStore {
   large: boolean;
 }
 
+/** Below this width three columns of panels are too narrow to read. */
+const WIDE = 1280;
+
 /** How this page looks at the bench; says nothing about the bench itself. */
 export const useView = create<ViewStore>(() => ({
-  layout: "research",
+  layout: window.innerWidth >= WIDE ? "research" : "lab",
   card: "diagnosers.kalman",
   dialog: "none",
   large: false,

@@ -1,14 +1,22 @@
 import "dockview-react/dist/styles/dockview.css";
 import { Menu } from "@mantine/core";
 import { IconMaximize, IconMinimize, IconPlus } from "@tabler/icons-react";
-import { DockviewReact, type IDockviewHeaderActionsProps, type IDockviewPanelProps } from "dockview-react";
+import {
+  DockviewDefaultTab,
+  DockviewReact,
+  type IDockviewHeaderActionsProps,
+  type IDockviewPanelHeaderProps,
+  type IDockviewPanelProps,
+} from "dockview-react";
 import { type FunctionComponent, useEffect, useState } from "react";
+import { useBench } from "../stream/bench-store";
 import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible } from "../ui/panel-visible";
 import { usePageVisible } from "../ui/use-page-visible";
 import "./dock.css";
-import { addPanel, attachDock } from "./layouts";
+import { addPanel, addScope, attachDock } from "./layouts";
 import { PANELS, type PanelKind } from "./panels";
+import { SCOPE_PRESETS } from "./scope-presets";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: 6 };
 
@@ -20,6 +28,7 @@ export function Workspace() {
     <main className="workspace">
       <DockviewReact
         components={components}
+        defaultTabComponent={Tab}
         rightHeaderActionsComponent={GroupActions}
         theme={THEME}
         disableFloatingGroups
@@ -48,31 +57,57 @@ function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
   };
 }
 
+/** A tab is one control; closing a panel is in the menu beside it. */
+function Tab(props: IDockviewPanelHeaderProps) {
+  return <DockviewDefaultTab hideClose {...props} />;
+}
+
 function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActionsProps) {
   const [maximised, setMaximised] = useState(false);
   useEffect(() => {
     const subscription = containerApi.onDidMaximizedGroupChange(() => setMaximised(containerApi.hasMaximizedGroup()));
     return () => subscription.dispose();
   }, [containerApi]);
+  const signals = useBench((s) => s.bench?.signals);
+  const scopes = SCOPE_PRESETS.map(({ title, pick }) => ({
+    title,
+    signals: (signals ?? []).map((s) => s.name).filter((name) => pick.test(name)),
+  })).filter((preset) => preset.signals.length > 0);
   return (
     <div className="dock-actions">
       <Menu position="bottom-end" shadow="md">
         <Menu.Target>
           <button
             type="button"
-            aria-label="Add a panel here"
-            title="Add a panel here"
+            aria-label="Add or close panels"
+            title="Add or close panels"
             onPointerDown={() => group.api.setActive()}
           >
             <IconPlus size={14} />
           </button>
         </Menu.Target>
         <Menu.Dropdown>
-          {Object.entries(PANELS).map(([kind, { title }]) => (
-            <Menu.Item key={kind} onClick={() => addPanel(kind)}>
+          <Menu.Label>Scopes</Menu.Label>
+          {scopes.map(({ title, signals }) => (
+            <Menu.Item key={title} onClick={() => addScope(title, signals)}>
               {title}
             </Menu.Item>
           ))}
+          <Menu.Item onClick={() => addScope("Scope", [])}>Empty scope</Menu.Item>
+          <Menu.Divider />
+          {Object.entries(PANELS)
+            .filter(([kind]) => kind !== "scope")
+            .map(([kind, { title }]) => (
+              <Menu.Item key={kind} onClick={() => addPanel(kind)}>
+                {title}
+              </Menu.Item>
+            ))}
+          {activePanel && (
+            <>
+              <Menu.Divider />
+              <Menu.Item onClick={() => activePanel.api.close()}>Close {activePanel.title}</Menu.Item>
+            </>
+          )}
         </Menu.Dropdown>
       </Menu>
       <button

@@ -1,6 +1,8 @@
 export interface CloseReason {
   /** Whether trying again by itself can help. */
   retry: boolean;
+  /** What the page can offer when it cannot help itself. */
+  offer?: "bench" | "reload";
   title: string;
   advice: string;
 }
@@ -8,6 +10,7 @@ export interface CloseReason {
 const REASONS: Record<number, CloseReason> = {
   4001: {
     retry: false,
+    offer: "reload",
     title: "The server speaks a newer version",
     advice: "Reload the page to get the matching one.",
   },
@@ -18,13 +21,15 @@ const REASONS: Record<number, CloseReason> = {
   },
   4401: {
     retry: false,
+    offer: "reload",
     title: "You are not logged in",
     advice: "Open the address with the token that the server printed when it started.",
   },
   4404: {
     retry: false,
+    offer: "bench",
     title: "This bench is gone",
-    advice: "Benches live as long as the server runs. Start a new one, or pick one that is running.",
+    advice: "It was closed, or the server was restarted: benches live as long as the server runs.",
   },
   4408: { retry: true, title: "This page fell too far behind", advice: "Close panels you do not need; reconnecting." },
   1008: { retry: true, title: "Too many messages from this page", advice: "Reconnecting." },
@@ -35,7 +40,7 @@ const REASONS: Record<number, CloseReason> = {
 const LOST: CloseReason = {
   retry: true,
   title: "Connection lost",
-  advice: "Trying again by itself; the board runs on.",
+  advice: "The page tries again by itself; the board does not wait for it.",
 };
 
 /** What a WebSocket close code means to the person at the page. */

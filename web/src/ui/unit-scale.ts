@@ -51,7 +51,7 @@ const PREFIXES: [number, string][] = [
  */
 export function unitScale(unit: string, magnitude: number, digits = 4): UnitScale {
   const size = Math.abs(magnitude);
-  if (unit === "1" || unit === "") return { factor: 1, unit: "", decimals: decimalsFor(size, digits) };
+  if (unitText(unit) === "") return { factor: 1, unit: "", decimals: decimalsFor(size, digits) };
   const base = BASE[unit];
   if (!base) return { factor: 1, unit: unitText(unit), decimals: decimalsFor(size, digits) };
   const [toBase, name] = base;
@@ -72,12 +72,15 @@ function decimalsFor(shown: number, digits: number): number {
   return Math.max(0, Math.min(digits + 2, digits - Math.max(before, shown >= 1 ? 1 : before)));
 }
 
+/** Numbers without a unit, and vectors whose components differ in theirs. */
+const BARE = ["", "1", "mixed"];
+
 /** A unit the way people write it. */
 export function unitText(unit: string): string {
-  return unit === "1"
-    ? ""
-    : unit
-        .replace(/\bu(?=[A-Za-z])/g, "µ")
-        .replaceAll("*", "·")
-        .replace("^2", "²");
+  if (BARE.includes(unit)) return "";
+  return unit
+    .replace(/\bu(?=[A-Za-z])/g, "µ")
+    .replaceAll("*", "·")
+    .replaceAll("^2", "²")
+    .replaceAll("^3", "³");
 }

@@ -8,6 +8,7 @@ import { actions } from "../actions";
 import { openBench } from "../open-bench";
 import { showError } from "../send";
 import styles from "./header.module.css";
+import { useSlowPage } from "./use-slow-page";
 
 /** Which bench this is; the others that run; a new one. */
 export function BenchMenu() {
@@ -15,16 +16,17 @@ export function BenchMenu() {
   const title = useBench((s) => s.bench?.title);
   const rate = useBench((s) => s.bench?.sample_rate_khz);
   const watchers = useBench((s) => s.bench?.watchers ?? 0);
+  const slow = useSlowPage();
   const [benches, setBenches] = useState<Bench[]>([]);
   const load = () => api.benches().then(setBenches, showError);
 
   return (
     <Menu width={340} position="bottom-start" shadow="md" onOpen={load}>
       <Menu.Target>
-        <UnstyledButton className={styles.bench} aria-label={`Bench: ${title ?? "none"}. Change bench`}>
+        <UnstyledButton className={styles.bench} title={`${title ?? "No bench"}: change bench`}>
           <span>{title ?? "No bench"} </span>
-          <small>
-            {rate ? `${rate} kHz board · ${watchers} watching` : "connecting"}
+          <small data-slow={slow}>
+            {rate ? `${rate} kHz board · ${slow ? "this page is slow" : `${watchers} watching`}` : "connecting"}
             <IconChevronDown size={12} style={{ verticalAlign: -2 }} />
           </small>
         </UnstyledButton>

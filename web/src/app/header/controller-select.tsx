@@ -11,7 +11,8 @@ export function ControllerSelect() {
   return (
     <Select
       size="sm"
-      w={200}
+      w={190}
+      flex="none"
       aria-label="Controller"
       allowDeselect={false}
       value={active ?? null}

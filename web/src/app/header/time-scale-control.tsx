@@ -22,7 +22,7 @@ export function TimeScaleControl() {
         <ActionIcon
           variant="subtle"
           size="md"
-          aria-label="Half as fast"
+          aria-label="÷2: half as fast"
           onClick={() => set(stepTimeScale(target, 0.5))}
         >
           ÷2
@@ -30,7 +30,7 @@ export function TimeScaleControl() {
       </Tooltip>
       <Popover width={320} position="bottom">
         <Popover.Target>
-          <button type="button" className={styles.target} aria-label={`Time scale ${formatTimeScale(target)}, change`}>
+          <button type="button" className={styles.target} title="Change the time scale">
             <span>{target === null ? "max" : formatTimeScale(target)}</span>
             <small data-capped={capped} data-idle={state !== "running"}>
               {capped && <b>CAPPED </b>}
@@ -78,7 +78,12 @@ export function TimeScaleControl() {
         </Popover.Dropdown>
       </Popover>
       <Tooltip label="Twice as fast ( ] )">
-        <ActionIcon variant="subtle" size="md" aria-label="Twice as fast" onClick={() => set(stepTimeScale(target, 2))}>
+        <ActionIcon
+          variant="subtle"
+          size="md"
+          aria-label="×2: twice as fast"
+          onClick={() => set(stepTimeScale(target, 2))}
+        >
           ×2
         </ActionIcon>
       </Tooltip>

@@ -1,73 +1,91 @@
-import { ActionIcon, Menu, Tooltip, useMantineColorScheme } from "@mantine/core";
+import { ActionIcon, Menu, Tooltip } from "@mantine/core";
+import { useMediaQuery } from "@mantine/hooks";
 import {
   IconBookmark,
   IconDeviceFloppy,
+  IconDots,
   IconGitFork,
   IconKeyboard,
   IconLayoutDashboard,
   IconMoon,
   IconSun,
 } from "@tabler/icons-react";
+import type { ReactNode } from "react";
 import { actions } from "../actions";
-import { setLayout } from "../layouts";
+import { themeSwitch } from "../theme-switch";
 import { useScheme } from "../use-scheme";
-import { type LayoutName, useView } from "../view-store";
 import styles from "./header.module.css";
+import { LayoutItems } from "./layout-items";
 
-const LAYOUTS: [LayoutName, string][] = [
-  ["lecture", "Scope, lanes and 3D in large type"],
-  ["lab", "Bench and faults beside the scopes"],
-  ["research", "Everything"],
-];
+interface Tool {
+  label: string;
+  icon: ReactNode;
+  run(): void;
+}
 
-/** Keep, branch, arrange: what is not about running. */
+/** Keep, branch, arrange: what is not about running. On a narrow page it folds into one menu. */
 export function Tools() {
   const scheme = useScheme();
-  const { setColorScheme } = useMantineColorScheme();
-  const layout = useView((s) => s.layout);
+  const narrow = useMediaQuery("(max-width: 1180px)", undefined, { getInitialValueInEffect: false });
+  const keep: Tool[] = [
+    { label: "Save what happened as a scenario (S)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
+    { label: "Fork: a copy of this bench from now on (F)", icon: <IconGitFork size={19} />, run: actions.fork },
+    { label: "Keep this moment, to fork from later (K)", icon: <IconBookmark size={19} />, run: actions.keep },
+  ];
+  const page: Tool[] = [
+    {
+      label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)",
+      icon: scheme === "dark" ? <IconSun size={19} /> : <IconMoon size={19} />,
+      run: () => themeSwitch.flip(),
+    },
+    { label: "Keyboard ( ? )", icon: <IconKeyboard size={19} />, run: actions.keys },
+  ];
+
+  if (narrow)
+    return (
+      <Menu width={320} position="bottom-end" shadow="md">
+        <Menu.Target>
+          <ActionIcon size={34} variant="subtle" aria-label="More">
+            <IconDots size={19} />
+          </ActionIcon>
+        </Menu.Target>
+        <Menu.Dropdown>
+          {[...keep, ...page].map((tool) => (
+            <Menu.Item key={tool.label} leftSection={tool.icon} onClick={tool.run}>
+              {tool.label}
+            </Menu.Item>
+          ))}
+          <Menu.Divider />
+          <LayoutItems />
+        </Menu.Dropdown>
+      </Menu>
+    );
   return (
     <div className={styles.tools}>
-      <Tool
-        label="Save what happened as a scenario (TOML)"
-        onClick={actions.saveScenario}
-        icon={<IconDeviceFloppy size={19} />}
-      />
-      <Tool label="Fork: a copy of this bench from now on" onClick={actions.fork} icon={<IconGitFork size={19} />} />
-      <Tool label="Keep this moment, to fork from later (K)" onClick={actions.keep} icon={<IconBookmark size={19} />} />
-      <Menu width={300} position="bottom-end" shadow="md">
+      {keep.map((tool) => (
+        <Button key={tool.label} {...tool} />
+      ))}
+      <Menu width={320} position="bottom-end" shadow="md">
         <Menu.Target>
           <ActionIcon size={34} variant="subtle" aria-label="Layout" title="Layout">
             <IconLayoutDashboard size={19} />
           </ActionIcon>
         </Menu.Target>
         <Menu.Dropdown>
-          {LAYOUTS.map(([name, what]) => (
-            <Menu.Item
-              key={name}
-              aria-current={name === layout}
-              fw={name === layout ? 650 : undefined}
-              onClick={() => setLayout(name)}
-            >
-              {name}
-              <small className={styles.menuNote}>{what}</small>
-            </Menu.Item>
-          ))}
+          <LayoutItems />
         </Menu.Dropdown>
       </Menu>
-      <Tool
-        label={scheme === "dark" ? "Light theme (D)" : "Dark theme (D)"}
-        onClick={() => setColorScheme(scheme === "dark" ? "light" : "dark")}
-        icon={scheme === "dark" ? <IconSun size={19} /> : <IconMoon size={19} />}
-      />
-      <Tool label="Keyboard ( ? )" onClick={actions.keys} icon={<IconKeyboard size={19} />} />
+      {page.map((tool) => (
+        <Button key={tool.label} {...tool} />
+      ))}
     </div>
   );
 }
 
-function Tool({ label, icon, onClick }: { label: string; icon: React.ReactNode; onClick(): void }) {
+function Button({ label, icon, run }: Tool) {
   return (
     <Tooltip label={label}>
-      <ActionIcon size={34} variant="subtle" aria-label={label} onClick={onClick}>
+      <ActionIcon size={34} variant="subtle" aria-label={label} onClick={run}>
         {icon}
       </ActionIcon>
     </Tooltip>

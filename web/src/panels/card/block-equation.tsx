@@ -1,6 +1,7 @@
 import { Popover, UnstyledButton } from "@mantine/core";
 import type { Equation } from "../../api/types";
 import { Formula } from "../../ui/formula";
+import { Prose } from "../../ui/prose";
 import styles from "./card.module.css";
 
 /** An equation with its number; where the printed one is wrong, a mark opens what was printed and why not. */
@@ -26,7 +27,9 @@ export function BlockEquation({ equation }: { equation: Equation }) {
               {equation.why && (
                 <>
                   <h3>Why</h3>
-                  <p>{equation.why}</p>
+                  <p>
+                    <Prose text={equation.why} />
+                  </p>
                 </>
               )}
             </Popover.Dropdown>
@@ -39,5 +42,11 @@ export function BlockEquation({ equation }: { equation: Equation }) {
 
 /** What was printed is an equation, or words about one. */
 function Printed({ text }: { text: string }) {
-  return /[\\^_=]/.test(text) ? <Formula latex={text} /> : <p>{text}</p>;
+  return /[\\^_=]/.test(text) ? (
+    <Formula latex={text} />
+  ) : (
+    <p>
+      <Prose text={text} />
+    </p>
+  );
 }

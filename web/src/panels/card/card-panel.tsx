@@ -4,6 +4,7 @@ import { useCatalog } from "../../api/use-catalog";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { Prose } from "../../ui/prose";
 import { BlockEquation } from "./block-equation";
 import styles from "./card.module.css";
 import { instances } from "./instances";
@@ -47,7 +48,9 @@ export function CardPanel() {
       {found ? (
         <>
           <h2 className={styles.title}>{found.title}</h2>
-          <p className={styles.summary}>{found.summary}</p>
+          <p className={styles.summary}>
+            <Prose text={found.summary} />
+          </p>
           {found.equations.length > 0 && (
             <div className={styles.equations}>
               {found.equations.map((equation) => (

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { instances, valueAt } from "./instances";
+import { instances, parameterValue } from "./instances";
 
 const parameters = {
   plant: { model: "nonlinear" },
@@ -19,8 +19,20 @@ it("names each block on the bench and where its values are", () => {
   expect(list.filter((i) => i.family === "control").map((i) => i.name)).toEqual(["mrac", "open_loop"]);
 });
 
-it("reads values by the path that commands use", () => {
-  expect(valueAt(parameters, "controllers.mrac.adaptation_gain")).toBe(3);
-  expect(valueAt(parameters, "diagnosers.kalman.probability_floor")).toBe(0);
-  expect(valueAt(parameters, "sensor.noise_um")).toBeUndefined();
+it("reads values where commands put them, shadow sensors and the active controller included", () => {
+  const document = {
+    controller: { kind: "mrac", leakage: 0.1 },
+    controllers: { mrac: { adaptation_gain: 3 } },
+    sensor: { kind: "ideal", noise_um: 0.05 },
+    sensors: { ideal: { noise_um: 0.07 } },
+  };
+  const list = instances({ parameters: document, controller: "mrac", controllers: ["mrac"], diagnosers: {} });
+  const value = (id: string, name: string) => {
+    const instance = list.find((i) => i.id === id);
+    return instance && parameterValue(document, instance, name);
+  };
+  expect(value("controllers.mrac", "adaptation_gain")).toBe(3);
+  expect(value("controllers.mrac", "leakage")).toBe(0.1);
+  expect(value("sensor", "noise_um")).toBe(0.07);
+  expect(value("sensor", "range_um")).toBeUndefined();
 });

@@ -8,6 +8,8 @@ export interface Instance {
   name: string;
   /** Path of its parameters in the scenario document, as commands name them. */
   path: string;
+  /** Other places where the document may keep a value, for blocks of which several run in shadow. */
+  also: string[];
 }
 
 const section = (document: Document, path: string): Document => {
@@ -16,44 +18,39 @@ const section = (document: Document, path: string): Document => {
   return (at ?? {}) as Document;
 };
 
-/** Value of a field of the bench's document. */
-export function valueAt(document: Document, path: string): unknown {
-  const dot = path.lastIndexOf(".");
-  return section(document, path.slice(0, dot))[path.slice(dot + 1)];
+/** Value of a parameter of a block on the bench, if the document states it. */
+export function parameterValue(document: Document, instance: Instance, parameter: string): unknown {
+  const places = [...instance.also, instance.path];
+  return places.map((path) => section(document, path)[parameter]).find((value) => value !== undefined);
 }
 
 /** Every block on a bench that has a card. */
 export function instances(bench: Pick<Bench, "parameters" | "controllers" | "controller" | "diagnosers">): Instance[] {
   const { parameters } = bench;
   const text = (path: string, key: string, otherwise: string) => String(section(parameters, path)[key] ?? otherwise);
-  const sensor = text("sensor", "kind", "ideal");
   const controllers = [bench.controller, ...bench.controllers.filter((name) => name !== bench.controller)];
+  const sensor = text("sensor", "kind", "ideal");
+  const single = (id: string, title: string, family: string, name: string): Instance => ({
+    id,
+    title,
+    family,
+    name,
+    path: id,
+    also: [],
+  });
   return [
-    {
-      id: "reference",
-      title: "Reference",
-      family: "reference",
-      name: text("reference", "kind", "sine"),
-      path: "reference",
-    },
+    single("reference", "Reference", "reference", text("reference", "kind", "sine")),
     ...controllers.map((name) => ({
-      id: `controllers.${name}`,
-      title: "Controller",
-      family: "control",
-      name,
-      path: `controllers.${name}`,
+      ...single(`controllers.${name}`, "Controller", "control", name),
+      also: name === bench.controller ? ["controller"] : [],
     })),
-    { id: "drive", title: "Drive", family: "board", name: "drive", path: "drive" },
-    { id: "plant", title: "Device", family: "plant", name: text("plant", "model", "linear"), path: "plant" },
-    { id: "sensor", title: "Sensor", family: "sense", name: sensor, path: `sensors.${sensor}` },
-    ...Object.keys(bench.diagnosers).map((id) => ({
-      id: `diagnosers.${id}`,
-      title: "Diagnosis",
-      family: "diagnose",
-      name: text(`diagnosers.${id}`, "kind", "mmae"),
-      path: `diagnosers.${id}`,
-    })),
-    { id: "model", title: "Reference model", family: "board", name: "model", path: "model" },
-    { id: "guard", title: "Guard", family: "board", name: "guard", path: "guard" },
+    single("drive", "Drive", "board", "drive"),
+    single("plant", "Device", "plant", text("plant", "model", "linear")),
+    { ...single("sensor", "Sensor", "sense", sensor), also: [`sensors.${sensor}`] },
+    ...Object.keys(bench.diagnosers).map((id) =>
+      single(`diagnosers.${id}`, "Diagnosis", "diagnose", text(`diagnosers.${id}`, "kind", "mmae")),
+    ),
+    single("model", "Reference model", "board", "model"),
+    single("guard", "Guard", "board", "guard"),
   ];
 }

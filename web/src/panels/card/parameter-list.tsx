@@ -3,7 +3,7 @@ import { useState } from "react";
 import type { Document, Parameter } from "../../api/types";
 import { send } from "../../app/send";
 import styles from "./card.module.css";
-import { type Instance, valueAt } from "./instances";
+import { type Instance, parameterValue } from "./instances";
 import { ParameterRow } from "./parameter-row";
 
 interface ParameterListProps {
@@ -19,14 +19,15 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
   const [collect, setCollect] = useState(false);
   const [staged, setStaged] = useState<Values>({});
   const [undo, setUndo] = useState<Values | undefined>(undefined);
-  const current = (name: string) => valueAt(document, `${instance.path}.${name}`);
+  const current = (name: string) => parameterValue(document, instance, name);
   const shown = parameters.filter((p) => p.type !== "list" && p.type !== "table");
-
-  const defaultOf = (path: string) => parameters.find((p) => `${instance.path}.${p.name}` === path)?.default;
 
   const apply = async (values: Values) => {
     const before = Object.fromEntries(
-      Object.keys(values).map((path) => [path, valueAt(document, path) ?? defaultOf(path)]),
+      Object.keys(values).map((path) => {
+        const parameter = parameters.find((p) => `${instance.path}.${p.name}` === path);
+        return [path, parameter && (current(parameter.name) ?? parameter.default)];
+      }),
     );
     const names = Object.keys(values).map((path) => path.split(".").at(-1)?.replaceAll("_", " "));
     if (!(await send({ kind: "set", values }, `Set ${names.join(", ")}`))) return;

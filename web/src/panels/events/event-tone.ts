@@ -12,6 +12,11 @@ const TONES: Record<string, EventTone> = {
   switch: "change",
   truth_changed: "change",
   reset_trip: "change",
+  failed: "alarm",
+  refused: "alarm",
+  scheduled: "change",
+  reset: "change",
+  restored: "change",
 };
 
 export function eventTone(event: Pick<LogEntry, "kind">): EventTone {

@@ -42,7 +42,10 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             thumbLabel={`Severity of ${fault.title}`}
             marks={[scale.low, 0, suggested, scale.high]
               .filter((v, i, all) => all.indexOf(v) === i)
-              .map((v) => ({ value: v * factor, label: v === suggested ? undefined : severityText(v, scale, unit) }))}
+              .map((v) => ({
+                value: v * factor,
+                label: v === scale.low || v === scale.high ? severityText(v, scale, unit) : undefined,
+              }))}
             onChange={(value) => set({ severity: value / factor })}
             mb={18}
           />

@@ -57,7 +57,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
             size="compact-sm"
             variant="light"
             onClick={inject}
-            aria-label={`Inject ${fault.title} ${severityText(draft.severity, scale, unit)}`}
+            aria-label={`Inject ${severityText(draft.severity, scale, unit)}: ${fault.title}`}
           >
             Inject {severityText(draft.severity, scale, unit)}
           </Button>

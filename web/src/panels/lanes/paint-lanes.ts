@@ -218,5 +218,5 @@ function paintTime(
   });
   ctx.textAlign = "right";
   ctx.font = fontFor(fontSize, 1, 600);
-  ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - 10, y);
+  ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - fontSize * 2.4, y);
 }

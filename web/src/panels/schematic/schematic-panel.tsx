@@ -103,7 +103,6 @@ export function SchematicPanel() {
             key={box.id}
             role="button"
             tabIndex={0}
-            aria-label={`${box.title}: ${kind(box)}. Show its card`}
             className={styles.box}
             data-chosen={cards[box.id] === card}
             data-faulty={box.id === "plant" && acting.length > 0}
@@ -116,23 +115,27 @@ export function SchematicPanel() {
               open(cards[box.id]);
             }}
           >
+            <title>{`${box.title} ${kind(box)}: show its equations and parameters`}</title>
             <rect width={BOX.width} height={BOX.height} rx="5" />
             <text x="8" y="16" className={styles.role}>
               {box.title}
-            </text>
+            </text>{" "}
             <text x="8" y="33" className={styles.kind}>
               {shorten(kind(box))}
             </text>
-            <text
-              x={BOX.width - 8}
-              y="56"
-              textAnchor="end"
-              className={styles.value}
-              ref={box.id === "diagnosis" ? undefined : live(box.id)}
-            >
-              {box.id === "diagnosis" ? verdict : ""}
-            </text>
           </g>
+        ))}
+        {LOOP.map((box) => (
+          <text
+            key={box.id}
+            x={box.x + BOX.width - 8}
+            y={box.y + 56}
+            textAnchor="end"
+            className={styles.value}
+            ref={box.id === "diagnosis" ? undefined : live(box.id)}
+          >
+            {box.id === "diagnosis" ? verdict : ""}
+          </text>
         ))}
       </svg>
       <p className={styles.device}>

@@ -6,6 +6,8 @@ import { unitScale } from "../../ui/unit-scale";
 
 const EVERY_MS = 100;
 const FORGET = 0.995;
+/** Beyond any voltage or stroke: a controller on its way to infinity. */
+const IMMENSE = 1e9;
 
 /** Newest values of named signals, written straight into elements; give each element `live(key)` as its ref. */
 export function useLiveValues(shown: Record<string, string>) {
@@ -35,11 +37,16 @@ export function useLiveValues(shown: Record<string, string>) {
     entries.forEach(({ key, unit }, i) => {
       const value = frame.latest[i];
       const high = Math.max(Math.abs(frame.data[i * 2 * frame.columns]) || 0, Math.abs(value) || 0);
+      const element = elements.current.get(key);
+      if (!element) return;
+      if (!Number.isFinite(value) || high > IMMENSE) {
+        element.textContent = "not finite";
+        return;
+      }
       const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
       peaks.current.set(key, peak);
       const scale = unitScale(unit, peak, 3);
-      const element = elements.current.get(key);
-      if (element) element.textContent = `${formatOn(scale, value)} ${scale.unit}`;
+      element.textContent = `${formatOn(scale, value)} ${scale.unit}`;
     });
   });
   return useCallback(

@@ -1,11 +1,12 @@
 import { IconX } from "@tabler/icons-react";
 import { type RefObject, useEffect, useRef } from "react";
 import { stream } from "../../stream/stream";
-import { formatOn } from "../../ui/format";
+import { formatOn, formatSi } from "../../ui/format";
 import { SignalName } from "../../ui/signal-name";
 import { TraceSwatch } from "../../ui/trace-swatch";
 import styles from "./scope.module.css";
-import type { PlotTrace, ScopePlot } from "./scope-plot";
+import type { PlotTrace } from "./scope-options";
+import type { ScopePlot } from "./scope-plot";
 
 const EVERY_MS = 90;
 
@@ -30,7 +31,10 @@ export function ScopeLegend({ traces, plot, onRemove }: ScopeLegendProps) {
         const element = values.current[i];
         if (!element) return;
         const scale = shown.scaleOf(trace.unit);
-        const text = `${formatOn(scale, shown.reading(i))} ${scale.unit}`;
+        const value = shown.reading(i);
+        const text = scale
+          ? `${formatOn(scale, value)} ${scale.unit}`
+          : `${formatSi(value, trace.unit)} (no axis left)`;
         if (element.textContent !== text) element.textContent = text;
       });
     });

@@ -47,6 +47,7 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
       lineWidth: large ? 2.6 : 1.6,
       fontSize: large ? 15 : 12,
       marks: marksNow,
+      strained: () => stream.loop.strained,
       gestures: { onSpan: look, onLive: goLive },
     });
     plot.current = made;

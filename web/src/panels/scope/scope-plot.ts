@@ -1,59 +1,50 @@
 import uPlot from "uplot";
 import type { PanelFrame } from "../../stream/panel-frame";
-import { formatNumber } from "../../ui/format";
+import { fontFor } from "../../ui/canvas-font";
 import { hover } from "../../ui/hover";
-import { CANVAS, DASHES, type Scheme } from "../../ui/palette";
-import { timeLabels, timeSplits, timeUnit } from "../../ui/time-axis";
+import { CANVAS } from "../../ui/palette";
+import { timeUnit } from "../../ui/time-axis";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
 import { columnAt } from "./column-at";
 import { columnTimes } from "./column-times";
-import { type Envelope, envelopePath } from "./envelope-path";
+import { drawUnits } from "./draw-units";
+import type { Envelope } from "./envelope-path";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { drawMarks, type Marks } from "./scope-marks";
+import { type ScopeModel, scopeOptions } from "./scope-options";
 
-export interface PlotTrace {
-  name: string;
-  unit: string;
-  colour: string;
-  dash: number;
-}
+const MOST_AXES = 3;
 
-export interface ScopePlotOptions {
-  host: HTMLElement;
-  traces: PlotTrace[];
-  scheme: Scheme;
-  lineWidth: number;
-  fontSize: number;
+export interface ScopePlotOptions extends Pick<ScopeModel, "host" | "traces" | "scheme" | "lineWidth" | "fontSize"> {
   marks: () => Marks;
+  /** Whether thin lines must do: they are drawn many times faster. */
+  strained: () => boolean;
   gestures: ScopeGestures;
 }
 
-/** One uPlot with min/max traces on up to two unit axes; fed by frames, never by React. */
+/** One uPlot with min/max traces on up to three unit axes; fed by frames, never by React. */
 export class ScopePlot {
   frame: PanelFrame | undefined;
   /** Ticks shown, kept apart from the frame so that a drag moves the picture before new data come. */
   span = { start: 0, end: 1 };
-  /** Tick that the time axis calls zero: 0, or the trigger. */
-  origin = 0;
-  readonly scales: UnitScale[];
-  readonly units: string[];
   private readonly options: ScopePlotOptions;
+  private readonly units: string[];
   private readonly plot: uPlot;
+  private scales: UnitScale[];
   private ranges: (AxisRange | undefined)[] = [];
   private envelopes: Envelope[] = [];
+  /** Tick that the time axis calls zero: 0, or the trigger. */
+  private origin = 0;
   private hovered = false;
   private readonly dispose: (() => void)[] = [];
 
   constructor(options: ScopePlotOptions) {
     this.options = options;
-    this.units = [...new Set(options.traces.map((t) => t.unit))].slice(0, 2);
+    this.units = [...new Set(options.traces.map((t) => t.unit))].slice(0, MOST_AXES);
     this.scales = this.units.map((unit) => unitScale(unit, 1));
-    this.plot = new uPlot(
-      this.uplotOptions(),
-      [[0, 1], ...options.traces.map(() => [null, null])] as uPlot.AlignedData,
-      options.host,
-    );
+    const empty = [[0, 1], ...options.traces.map(() => [null, null])] as uPlot.AlignedData;
+    this.plot = new uPlot(scopeOptions(this.model()), empty, options.host);
     this.dispose.push(
       listenForGestures(this.plot.over, options.gestures, () => this.span),
       hover.listen((tick, source) => source !== this && this.showHover(tick)),
@@ -87,7 +78,11 @@ export class ScopePlot {
       low: data.subarray(i * 2 * columns, (i * 2 + 1) * columns),
       high: data.subarray((i * 2 + 1) * columns, (i * 2 + 2) * columns),
     }));
-    this.plot.setData([columnTimes(frame, this.origin), ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
+    const { strained, lineWidth } = this.options;
+    const width = strained() ? Math.floor(lineWidth) : lineWidth;
+    for (const series of this.plot.series.slice(1)) series.width = width;
+    const times = columnTimes(frame, this.origin);
+    this.plot.setData([times, ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
     if (this.hovered) hover.set(this.tickAt(this.plot.cursor.left ?? -1), this);
     else this.showHover(hover.tick);
   }
@@ -105,8 +100,28 @@ export class ScopePlot {
     return tick === undefined ? this.frame.latest[trace] : columnAt(this.frame, trace, tick);
   }
 
-  scaleOf(unit: string): UnitScale {
-    return this.scales[Math.max(0, this.units.indexOf(unit))];
+  /** The scale of a unit's axis, or undefined if it has got none. */
+  scaleOf(unit: string): UnitScale | undefined {
+    return this.scales[this.units.indexOf(unit)];
+  }
+
+  private model(): ScopeModel {
+    return {
+      ...this.options,
+      units: this.units,
+      time: () => ({
+        start: (this.span.start - this.origin) * this.dtMs,
+        span: (this.span.end - this.span.start) * this.dtMs,
+      }),
+      range: (axis) => [this.ranges[axis]?.min ?? -1, this.ranges[axis]?.max ?? 1],
+      scale: (axis) => this.scales[axis],
+      envelope: (trace) => this.envelopes[trace],
+      drawn: (u) => this.drawn(u),
+    };
+  }
+
+  private get dtMs(): number {
+    return this.frame?.dtMs ?? 1;
   }
 
   private tickAt(left: number): number | undefined {
@@ -146,124 +161,41 @@ export class ScopePlot {
         }
       });
       const range = nextRange(this.ranges[axis], low, high, now);
-      if (range !== this.ranges[axis]) {
-        this.scales[axis] = unitScale(unit, Math.max(Math.abs(range.min), Math.abs(range.max)));
-        this.ranges[axis] = range;
-      }
+      if (range === this.ranges[axis]) return;
+      this.scales[axis] = unitScale(unit, Math.max(Math.abs(range.min), Math.abs(range.max)));
+      this.ranges[axis] = range;
     });
   }
 
-  private uplotOptions(): uPlot.Options {
-    const { traces, scheme, lineWidth, fontSize, host } = this.options;
-    const colours = CANVAS[scheme];
-    const font = `${fontSize}px "IBM Plex Sans Variable", sans-serif`;
-    const axis = { font, stroke: colours.muted, ticks: { show: false }, border: { show: false } };
-    const spanMs = () => (this.span.end - this.span.start) * (this.frame?.dtMs ?? 1);
-    const startMs = () => (this.span.start - this.origin) * (this.frame?.dtMs ?? 1);
-    const perLabel = fontSize * 8;
-    const two = this.units.length > 1;
-    return {
-      width: Math.max(50, host.clientWidth),
-      height: Math.max(50, host.clientHeight),
-      padding: [fontSize + 12, two ? 0 : 12, 0, 0],
-      legend: { show: false },
-      cursor: {
-        y: false,
-        drag: { x: false, y: false, setScale: false },
-        points: { show: false },
-        bind: { dblclick: () => null, mousedown: () => null, mouseup: () => null },
-      },
-      scales: {
-        x: { time: false, range: () => [startMs(), startMs() + spanMs()] },
-        ...Object.fromEntries(
-          this.units.map((_, i) => [
-            `y${i}`,
-            { range: (): uPlot.Range.MinMax => [this.ranges[i]?.min ?? -1, this.ranges[i]?.max ?? 1] },
-          ]),
-        ),
-      },
-      axes: [
-        {
-          ...axis,
-          scale: "x",
-          size: fontSize + 12,
-          gap: 4,
-          grid: { stroke: colours.grid, width: 1 },
-          splits: (u, _i, min, max) => timeSplits(min, max, Math.max(2, u.over.clientWidth / perLabel)),
-          values: (_u, splits) => timeLabels(splits, spanMs()),
-        },
-        ...this.units.map(
-          (_, i): uPlot.Axis => ({
-            ...axis,
-            scale: `y${i}`,
-            side: i === 0 ? 3 : 1,
-            size: fontSize * 4,
-            gap: 6,
-            space: fontSize * 1.5,
-            grid: { show: i === 0, stroke: colours.grid, width: 1 },
-            values: (_u, splits) => axisLabels(splits, this.scales[i]),
-          }),
-        ),
-      ],
-      series: [
-        {},
-        ...traces.map(
-          (trace): uPlot.Series => ({
-            scale: `y${Math.max(0, this.units.indexOf(trace.unit))}`,
-            stroke: trace.colour,
-            fill: `${trace.colour}b0`,
-            width: lineWidth,
-            dash: [...DASHES[trace.dash]],
-            points: { show: false },
-            paths: envelopePath((series) => this.envelopes[series - 1]),
-          }),
-        ),
-      ],
-      hooks: {
-        draw: [
-          (u) => {
-            this.drawUnits(u, font, colours.muted);
-            if (this.frame) drawMarks(u, this.options.marks(), this.span, scheme, fontSize);
-          },
-        ],
-      },
-    };
+  private drawn(u: uPlot): void {
+    const { scheme, fontSize, marks } = this.options;
+    const { span } = this;
+    const time = timeUnit((span.end - span.start) * this.dtMs).unit;
+    drawUnits(
+      u,
+      this.scales.map((s) => s.unit),
+      time,
+      fontSize,
+      CANVAS[scheme].muted,
+    );
+    if (!this.frame) return;
+    drawMarks(u, marks(), span, scheme, fontSize);
+    if (this.envelopes.every((e) => e.high.every(Number.isNaN))) this.drawNothing(u);
   }
 
-  /** Units stand above their axes, the unit of time at the end of its own. */
-  private drawUnits(u: uPlot, font: string, colour: string): void {
+  /** A span without data says so: it lies before the history, or ahead of the board. */
+  private drawNothing(u: uPlot): void {
     const { ctx, bbox } = u;
-    const ratio = uPlot.pxRatio;
+    const { scheme, fontSize } = this.options;
     ctx.save();
-    ctx.font = font.replace(/^([\d.]+)px/, (_m, size: string) => `600 ${Number(size) * ratio}px`);
-    ctx.fillStyle = colour;
-    ctx.textBaseline = "alphabetic";
-    ctx.textAlign = "right";
-    ctx.fillText(
-      this.scales[0]?.unit ?? "",
-      bbox.left - 6 * ratio,
-      bbox.top - (this.options.fontSize * 0.5 + 4) * ratio,
-    );
-    ctx.textAlign = "left";
-    if (this.scales[1])
-      ctx.fillText(
-        this.scales[1].unit,
-        bbox.left + bbox.width + 6 * ratio,
-        bbox.top - (this.options.fontSize * 0.5 + 4) * ratio,
-      );
-    ctx.textAlign = "right";
-    const spanMs = (this.span.end - this.span.start) * (this.frame?.dtMs ?? 1);
-    ctx.fillText(
-      timeUnit(spanMs).unit,
-      bbox.left - 20 * ratio,
-      bbox.top + bbox.height + (this.options.fontSize + 5) * ratio,
-    );
+    ctx.font = fontFor(fontSize, uPlot.pxRatio, 500);
+    ctx.fillStyle = CANVAS[scheme].muted;
+    ctx.textAlign = "center";
+    ctx.textBaseline = "middle";
+    const words = this.frame?.waiting
+      ? "Waiting for the trigger"
+      : "No data here: the bench no longer has it, or not yet";
+    ctx.fillText(words, bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
     ctx.restore();
   }
-}
-
-function axisLabels(splits: number[], scale: UnitScale): string[] {
-  const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) * scale.factor : 1;
-  const decimals = Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-6)));
-  return splits.map((v) => formatNumber(v * scale.factor, decimals));
 }

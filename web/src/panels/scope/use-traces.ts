@@ -2,7 +2,7 @@ import { useMemo } from "react";
 import { useScheme } from "../../app/use-scheme";
 import { useBench } from "../../stream/bench-store";
 import { traceColour, traceStyle } from "../../ui/trace-style";
-import type { PlotTrace } from "./scope-plot";
+import type { PlotTrace } from "./scope-options";
 
 /** The traces of some signals, as far as the bench has them, in the colours they have everywhere. */
 export function useTraces(names: string[]): PlotTrace[] {

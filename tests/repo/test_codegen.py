@@ -1,0 +1,22 @@
+"""What is generated is what would be generated now: `make codegen` would change nothing."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+
+def test_openapi_document_is_current(root: Path) -> None:
+    now = subprocess.run([sys.executable, "-m", "server.openapi"], cwd=root, capture_output=True, text=True, check=True)
+    assert now.stdout == (root / "web" / "openapi.json").read_text(), "run make codegen"
+
+
+def test_types_of_the_page_are_current(root: Path, tmp_path: Path) -> None:
+    web = root / "web"
+    command = json.loads((web / "package.json").read_text())["scripts"]["codegen"].split()
+    kept, made = web / command[-1], tmp_path / "schema.d.ts"
+    generate = [root / "scripts" / "npm", "--silent", "exec", "--", *command[:-1], made]
+    subprocess.run(generate, cwd=web, check=True, capture_output=True)
+    assert made.read_text() == kept.read_text(), "run make codegen"

@@ -1,0 +1,222 @@
+"""The command line: exit codes, one clear line, nothing written, one JSON object."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from typer.testing import CliRunner
+
+from scenarios.library import get, library
+from scenarios.run import run
+from server.cli import app
+
+ROOT = Path(__file__).resolve().parents[2]
+RUN_KEYS = {
+    "scenario",
+    "title",
+    "source",
+    "seed",
+    "ticks",
+    "dt_s",
+    "elapsed_s",
+    "digest",
+    "metrics",
+    "expectations",
+    "ok",
+}
+EXPECT_KEYS = {"metric", "published", "expected", "measured", "ok", "note"}
+
+
+@pytest.fixture
+def call(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    runner = CliRunner()
+    return lambda *args: runner.invoke(app, [str(arg) for arg in args], catch_exceptions=False)
+
+
+def test_run_prints_one_json_object(call):
+    result = call("run", "ch3-mrac-spring-x2", "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert set(found) >= RUN_KEYS
+    assert found["scenario"] == "ch3-mrac-spring-x2" and found["ticks"] == 10_000
+    assert found["dt_s"] == pytest.approx(1e-5) and found["seed"] == 1 and found["ok"] is True
+    assert len(found["digest"]) == 64 and found["digest"] == run(get("ch3-mrac-spring-x2")).digest
+    assert all(isinstance(value, float) and "." in name for name, value in found["metrics"].items())
+    for entry in found["expectations"]:
+        assert set(entry) >= EXPECT_KEYS and isinstance(entry["ok"], bool)
+        assert entry["measured"] == found["metrics"][entry["metric"]]
+
+
+def test_a_missed_expectation_is_exit_1(call):
+    result = call("run", "ch5-seven-step", "--set", "diagnosers.kalman.probability_floor=0", "--json")
+    assert result.exit_code == 1
+    found = json.loads(result.stdout)
+    assert found["ok"] is False
+    assert found["metrics"]["diagnosis.kalman.correct_fraction"] == pytest.approx(0.44, abs=0.02)
+
+
+def test_run_for_people_names_every_figure(call):
+    result = call("run", "ch5-seven-step")
+    assert result.exit_code == 0
+    for word in ("ch5-seven-step", "digest", "diagnosis.kalman.correct_fraction", "ok  "):
+        assert word in result.stdout
+
+
+def test_set_and_seed_change_the_run(call):
+    def digest(*args: str) -> str:
+        return json.loads(call("run", "ch5-seven-step", "--json", *args).stdout)["digest"]
+
+    plain = digest()
+    assert digest("--seed", "1") == plain
+    assert len({plain, digest("--seed", "2"), digest("--set", "sensor.noise_um=0.06"), digest("--set", "seed=3")}) == 4
+    assert digest("--set", "sensor.noise_um=0.05") == plain
+
+
+def test_seeds_give_means(call):
+    result = call("run", "ch5-seven-step", "--seeds", "1:3", "--json")
+    found = json.loads(result.stdout)
+    assert result.exit_code == 0
+    single = [run(get("ch5-seven-step"), seed).metrics["diagnosis.kalman.correct_fraction"] for seed in (1, 2, 3)]
+    assert found["metrics"]["diagnosis.kalman.correct_fraction"] == pytest.approx(np.mean(single))
+    assert found["metrics_std"]["diagnosis.kalman.correct_fraction"] == pytest.approx(np.std(single, ddof=1))
+    assert set(found) >= RUN_KEYS
+
+
+def test_out_writes_trace_and_summary(call, tmp_path):
+    result = call("run", "ch5-seven-step", "--set", "samples=600", "--out", tmp_path / "a" / "b")
+    assert result.exit_code in (0, 1)
+    trace, summary = sorted((tmp_path / "a" / "b").iterdir(), key=lambda path: path.suffix, reverse=True)
+    table = pq.read_table(trace)
+    assert table.num_rows == 600 and {"tick", "time_ms", "plant.displacement", "kalman.nis.m+5"} <= set(
+        table.column_names
+    )
+    expected = json.loads(summary.read_text())
+    assert set(expected) >= RUN_KEYS
+    metadata = json.loads(table.schema.metadata[b"combbench"])
+    assert metadata["seed"] == 1 and metadata["scenario"]["samples"] == 600
+    assert np.array_equal(table["tick"].to_numpy(), np.arange(600))
+
+
+FILE = """schema = 1
+id = "mine"
+samples = 500
+[reference]
+kind = "sine"
+amplitude_v = 1.0
+frequency_hz = 100.0
+[[expect]]
+metric = "control.rms_error_um"
+max = 1e-9
+"""
+
+
+def test_a_file_runs_like_a_library_scenario(call, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(FILE)
+    good = call("run", path, "--set", "sensor.noise_um=0", "--set", "plant.thermal_noise=false", "--json")
+    assert good.exit_code == 0 and json.loads(good.stdout)["scenario"] == "mine"
+    assert call("run", path, "--set", "plant.thermal_noise=true").exit_code == 1
+
+
+BAD = [
+    (["run", "nothing"], "scenario"),
+    (["run", "ch5-seven-stepp"], "ch5-seven-step"),
+    (["run", "missing.toml"], "missing.toml"),
+    (["run", "ch5-seven-step", "--set", "sensor.noise_nm=3"], "noise_um"),
+    (["run", "ch5-seven-step", "--set", "sensor.noise_um=loud"], "sensor.noise_um"),
+    (["run", "ch5-seven-step", "--set", "sensor.noise_um=nan"], "sensor.noise_um"),
+    (["run", "ch5-seven-step", "--set", "sensor.noise_um"], "--set"),
+    (["run", "ch5-seven-step", "--set", "events.0.severity=99"], "events.0.severity"),
+    (["run", "ch5-seven-step", "--set", "events.0.fault=rust"], "events.0"),
+    (["run", "ch5-seven-step", "--set", "nonsense=1"], "nonsense"),
+    (["run", "ch5-seven-step", "--seeds", "5:1"], "--seeds"),
+    (["run", "ch5-seven-step", "--seeds", "1:2", "--seed", "3"], "--seeds"),
+    (["run", "ch5-seven-step", "--seeds", "1:2", "--out", "x"], "--out"),
+    (["gallery", "--only", "zz*"], "--only"),
+    (["catalog", "animals"], "animals"),
+]
+
+
+@pytest.mark.parametrize(("args", "word"), BAD, ids=[" ".join(args)[:60] for args, _ in BAD])
+def test_bad_input_is_exit_2_and_one_line(call, tmp_path, args, word):
+    result = call(
+        *args, *(["--out", "written"] if args[0] == "run" and "--out" not in args and "--seeds" not in args else [])
+    )
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    lines = result.stderr.strip().split("\n")
+    assert len(lines) == 1 and lines[0].startswith("combbench: ") and word in lines[0], result.stderr
+    assert list(tmp_path.iterdir()) == [], "nothing is written"
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("schema = ", "malformed"),
+        (FILE + "\nvalue = 1\n", "expect.0"),
+        (FILE.replace("sine", "sinus"), "reference.kind"),
+    ],
+)
+def test_a_bad_file_is_exit_2(call, tmp_path, text, word):
+    path = tmp_path / "bad.toml"
+    path.write_text(text)
+    result = call("run", path, "--json")
+    assert result.exit_code == 2 and result.stdout == "" and len(result.stderr.strip().splitlines()) == 1
+    assert word in result.stderr
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    assert call("run", tmp_path / "binary.toml").exit_code == 2
+
+
+def test_out_that_cannot_be_written_is_exit_2(call, tmp_path):
+    (tmp_path / "file").write_text("")
+    result = call("run", "ch5-seven-step", "--set", "samples=10", "--out", tmp_path / "file")
+    assert result.exit_code == 2 and "--out" in result.stderr
+
+
+def test_gallery_runs_every_scenario(call):
+    result = call("gallery", "--json")
+    found = json.loads(result.stdout)
+    assert result.exit_code == 0, [entry["scenario"] for entry in found if not entry["ok"]]
+    assert [entry["scenario"] for entry in found] == [entry.id for entry in library()]
+    assert all(set(entry) >= RUN_KEYS for entry in found)
+    people = call("gallery", "--only", "ch3-mrac-*")
+    assert people.exit_code == 0 and "ch3-mrac-spring-x2" in people.stdout and "ch5" not in people.stdout
+
+
+def test_catalog_lists_every_block(call):
+    found = json.loads(call("catalog", "--json").stdout)
+    assert {entry["family"] for entry in found} >= {
+        "reference",
+        "plant",
+        "sense",
+        "control",
+        "diagnose",
+        "faults",
+        "board",
+    }
+    names = {(entry["family"], entry["name"]) for entry in found}
+    assert {("control", "mrac"), ("plant", "linear"), ("faults", "added_mass"), ("diagnose", "mmae")} <= names
+    text = call("catalog", "control").stdout
+    assert "adaptation_gain" in text and "plant/linear" not in text
+
+
+@pytest.mark.parametrize(("args", "code"), [(["run", "ch3-mrac-spring-x2", "--json"], 0), (["run", "nothing"], 2)])
+def test_the_program_itself(args, code, tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "server.cli", *args],
+        cwd=tmp_path,
+        env={**__import__("os").environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
+    assert (json.loads(done.stdout)["ok"] if code == 0 else done.stdout == "") is True

@@ -1,0 +1,391 @@
+"""Scenarios: the library holds what it promises, every field can be reached, bad input is named."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+from typing import Any
+
+import pytest
+
+from core import registry
+from core.board.drive import Drive
+from core.board.guard import Guard
+from core.board.model import Model
+from core.device.device import Device
+from core.device.geometry import Geometry
+from core.errors import InputError
+from scenarios.edit import parse_assignment, with_values
+from scenarios.library import get, library
+from scenarios.run import build, run
+from scenarios.schema import Event, Expectation, Head, Scenario
+from tests.lab import document
+
+LIBRARY = [pytest.param(entry, id=entry.id) for entry in library()]
+
+
+# -- the library
+
+
+@pytest.mark.parametrize("scenario", LIBRARY)
+def test_library_scenario_keeps_its_expectations(scenario):
+    result = run(scenario)
+    for entry in result.expectations():
+        assert entry["ok"], f"{entry['metric']}: {entry['measured']}, expected {entry['expected']}"
+    assert result.trip is None
+    assert result.board.tick == (scenario.samples or 10_000)
+
+
+@pytest.mark.parametrize("scenario", LIBRARY)
+def test_library_scenario_says_what_it_is(scenario):
+    head = scenario.head
+    assert head.title and head.source and head.summary
+    for entry in head.expect:
+        assert entry.published and (entry.verdict or head.verdict)
+    if head.expect:
+        assert head.claim and head.verdict
+    if head.verdict in ("partly", "not reproduced"):
+        assert any(entry.note for entry in head.expect), "what is true instead"
+    assert Scenario.load(scenario.toml()).document == scenario.document
+
+
+@pytest.mark.parametrize("scenario", LIBRARY)
+def test_library_scenario_gives_the_same_bits_again(scenario):
+    short = with_values(scenario, {"samples": 700} if "samples" in scenario.document else {"duration_ms": 7.0})
+    first, again = run(short), run(Scenario.load(short.toml()))
+    assert first.digest == again.digest
+    assert run(short, seed=99).digest != first.digest or "noise_um = 0.0" in short.toml()
+
+
+def test_expectations_can_miss():
+    scenario = with_values(get("ch5-seven-step"), {"diagnosers.kalman.probability_floor": 0})
+    result = run(scenario)
+    assert not result.summary()["ok"]
+    missing = with_values(get("ch3-mrac-spring-x2"), {"expect": [{"metric": "control.nothing", "min": 0}]})
+    entry = run(missing).expectations()[0]
+    assert entry["measured"] is None and not entry["ok"] and "no such metric" in entry["note"]
+
+
+@pytest.mark.parametrize(
+    ("bounds", "value", "ok"),
+    [
+        ({"min": 1.0}, 1.0, True),
+        ({"min": 1.0}, 0.999, False),
+        ({"max": 1.0}, 1.0, True),
+        ({"max": 1.0}, 1.001, False),
+        ({"min": 1.0, "max": 2.0}, 1.5, True),
+        ({"value": 2.0, "tolerance": 0.25}, 2.25, True),
+        ({"value": 2.0, "tolerance": 0.25}, 1.74, False),
+        ({"value": 2.0, "tolerance": 0.25}, None, False),
+    ],
+)
+def test_expectations(bounds, value, ok):
+    assert Expectation(metric="x", **bounds).holds(value) is ok
+
+
+# -- every field can be set
+
+
+def other_value(parameter: registry.ParameterCard) -> Any:
+    """Return an allowed value that is not the default."""
+    if parameter.choices:
+        return next(choice for choice in parameter.choices if choice != parameter.default)
+    if parameter.type == "boolean":
+        return not parameter.default
+    low = parameter.minimum if parameter.minimum is not None else -1e6
+    high = parameter.maximum if parameter.maximum is not None else 1e6
+    start = parameter.default if isinstance(parameter.default, int | float) else max(low, min(1.0, high))
+    for candidate in (start + 1, start * 1.25 + 0.01, start * 0.5, (low + high) / 2):
+        value = round(candidate) if parameter.type == "integer" else float(candidate)
+        if low < value < high and value != parameter.default:
+            return value
+    raise AssertionError(parameter)
+
+
+def leaves() -> list[Any]:
+    found = []
+
+    def add(table: str, block: Any, base: dict[str, Any]) -> None:
+        card = registry.card(block)
+        for parameter in card.parameters:
+            if parameter.type in ("list", "table"):
+                continue
+            if parameter.name == "amplitude_um":
+                base = {"reference": {"kind": block.name, "amplitude_um": 0.5}}
+            elif parameter.name == "amplitude_v":
+                base = {"reference": {"kind": block.name, "amplitude_v": 1.0}}
+            found.append(
+                pytest.param(base, table, parameter.name, other_value(parameter), id=f"{table}.{parameter.name}")
+            )
+
+    for block in registry.blocks("reference").values():
+        add("reference", block, {"reference": {"kind": block.name, "amplitude_v": 1.0}})
+    for block in registry.blocks("plant").values():
+        add("plant", block, {"plant": {"model": block.name}})
+    for block in registry.blocks("sense").values():
+        add("sensor", block, {"sensor": {"kind": block.name}})
+    for block in registry.blocks("control").values():
+        add("controller", block, {"controller": {"kind": block.name}})
+        add(f"controllers.{block.name}", block, {})
+    for block in registry.blocks("diagnose").values():
+        add("diagnosers.bank", block, {"diagnosers": {"bank": {"kind": block.name}}})
+    for block in (Drive, Guard, Model):
+        add(block.name, block, {})
+    return found
+
+
+@pytest.mark.parametrize(("base", "table", "name", "value"), leaves())
+def test_set_reaches_every_parameter(base, table, name, value):
+    scenario = Scenario.load(document({**base}))
+    found = with_values(scenario, {f"{table}.{name}": value})
+    spec = found.spec
+    if table == "controller":
+        section = spec.controllers[spec.active]
+    elif table.startswith("controllers."):
+        section = spec.controllers[table.removeprefix("controllers.")]
+    elif table.startswith("diagnosers."):
+        section = spec.diagnosers["bank"]
+    elif table == "sensor":
+        section = spec.sensors[spec.measuring]
+    else:
+        section = getattr(spec, table)
+    assert getattr(section.params, name) == value
+    # by the command line as well
+    text = str(value).lower() if isinstance(value, bool) else str(value)
+    path, read = parse_assignment(f"{table}.{name}={text}")
+    assert path == f"{table}.{name}" and read == value
+
+
+@pytest.mark.parametrize("name", sorted(set(Geometry.model_fields)))
+def test_set_reaches_every_length_of_a_drawing(name):
+    base = Scenario.load(document({"device": {"id": "lcr-350"}}))
+    old = getattr(base.spec.device.geometry, name)
+    found = with_values(base, {f"device.geometry.{name}": old + 1 if isinstance(old, int) else old * 1.01})
+    assert getattr(found.spec.device.geometry, name) != old
+    before, after = base.spec.device.metrics(), found.spec.device.metrics()
+    if name != "truss_length_um":  # the segment between beams is what counts
+        assert before != after, "a length that changes nothing"
+
+
+@pytest.mark.parametrize("name", sorted(set(Device.model_fields) - {"id", "geometry"}))
+def test_set_reaches_every_value_of_a_device(name):
+    value: Any = {"title": "x", "source": "y", "fingers": 25}.get(name, 2.5)
+    found = with_values(Scenario.load(document()), {f"device.{name}": value})
+    assert getattr(found.spec.device, name) == value
+
+
+def test_set_reaches_head_events_and_expectations():
+    base = get("ch5-seven-step")
+    found = with_values(
+        base,
+        {
+            "samples": 123,
+            "seed": 5,
+            "sample_rate_khz": 20,
+            "title": "other",
+            "events.0.severity": 0.07,
+            "events.1.at_sample": 77,
+            "expect.0.min": 0.5,
+            "diagnosers.kalman.hypotheses.1.mass": 1.07,
+            "metrics.tail_share": 0.5,
+        },
+    )
+    assert found.samples == 123 and found.spec.seed == 5 and found.spec.dt_ms == 0.05
+    assert found.head.title == "other" and found.head.events[0].severity == 0.07
+    assert found.head.events[1].at_sample == 77 and found.head.expect[0].min == 0.5
+    assert found.spec.diagnosers["kalman"].params.hypotheses[1].mass == 1.07
+    assert found.head.metrics == {"tail_share": 0.5}
+    assert base.samples == 9000 and base.head.events[0].severity == 0.05, "the original is untouched"
+    for name in Head.model_fields:
+        assert name in ("schema_", "id", "title", "source", "summary", "claim", "verdict", "samples", "duration_ms",
+                        "events", "expect", "metrics")  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a.b=1", 1),
+        ("a.b=1.5", 1.5),
+        ("a.b=true", True),
+        ("a.b=text", "text"),
+        ('a.b="text"', "text"),
+        ("a.b=[1, 2]", [1, 2]),
+        ("a.b={ c = 1 }", {"c": 1}),
+        ("a.b=x=y", "x=y"),
+        ("a.b=1e-3", 1e-3),
+        (" a.b = mrac ", "mrac"),
+    ],
+)
+def test_assignments(text, value):
+    assert parse_assignment(text) == ("a.b", value)
+
+
+@pytest.mark.parametrize("text", ["a.b", "=1", " = 1"])
+def test_bad_assignments(text):
+    with pytest.raises(InputError):
+        parse_assignment(text)
+
+
+# -- bad input
+
+
+BAD: list[tuple[dict[str, Any], str]] = [
+    ({"sensor.noise_nm": 5}, "sensor.noise_nm"),
+    ({"sensor.noise": 5}, "sensor.noise"),
+    ({"sensor.noise_um": "loud"}, "sensor.noise_um"),
+    ({"sensor.noise_um": "0.6 um"}, "sensor.noise_um"),
+    ({"sensor.noise_um": -0.1}, "sensor.noise_um"),
+    ({"sensor.noise_um": math.nan}, "sensor.noise_um"),
+    ({"sensor.noise_um": math.inf}, "sensor.noise_um"),
+    ({"sensor.noise_um": [1]}, "sensor.noise_um"),
+    ({"sensor.kind": "perfect"}, "sensor.kind"),
+    ({"sensor.kind": 3}, "sensor.kind"),
+    ({"sensor": 3}, "sensor"),
+    ({"reference.kind": "sinus"}, "reference.kind"),
+    ({"reference": {"kind": "sine"}}, "reference"),
+    ({"reference.amplitude_um": 1.0}, "reference"),
+    ({"reference.frequency_hz": -5}, "reference.frequency_hz"),
+    ({"reference.frequency_khz": 2}, "reference.frequency_khz"),
+    ({"controller.kind": "pdi"}, "controller.kind"),
+    ({"controller": {"kind": "pid", "gain": 1}}, "controller.gain"),
+    ({"controllers.pid.pole": 99}, "controllers.pid.pole"),
+    ({"controllers.nobody.gain": 1}, "controllers"),
+    ({"plant.model": "quadratic"}, "plant.model"),
+    ({"plant.drive": "wireless"}, "plant.kind"),
+    ({"plant.mass": 1}, "plant.mass"),
+    ({"device.id": "ch7"}, "device.id"),
+    ({"device.mass_g": 1}, "device.mass_g"),
+    ({"device.mass_kg": 0}, "device.mass_kg"),
+    ({"device.geometry.fingers": 3.5}, "device.geometry.fingers"),
+    ({"sample_rate_khz": 0}, "sample_rate_khz"),
+    ({"sample_rate_hz": 5}, "sample_rate_hz"),
+    ({"seed": -1}, "seed"),
+    ({"seed": 1.5}, "seed"),
+    ({"samples": 0}, "samples"),
+    ({"samples": 100, "duration_ms": 3.0}, "duration_ms"),
+    ({"schema": 2}, "schema"),
+    ({"id": "No Spaces"}, "id"),
+    ({"verdict": "true"}, "verdict"),
+    ({"nonsense": 1}, "nonsense"),
+    ({"diagnosers.kalman.kind": "oracle"}, "diagnosers.kalman.kind"),
+    ({"diagnosers.Kal man.kind": "mmae"}, "diagnosers.Kal man"),
+    ({"diagnosers.kalman": {"kind": "mmae", "probability_floor": 0.2}}, "diagnosers.kalman.probability_floor"),
+    ({"diagnosers.kalman": {"kind": "mmae", "hypotheses": []}}, "diagnosers.kalman.hypotheses"),
+    (
+        {"diagnosers.kalman": {"kind": "mmae", "hypotheses": [{"name": "a"}, {"name": "a"}]}},
+        "diagnosers.kalman",
+    ),
+    (
+        {"diagnosers.kalman": {"kind": "mmae", "hypotheses": [{"name": "a"}, {"name": "b", "mass": -1}]}},
+        "diagnosers.kalman.hypotheses.1.mass",
+    ),
+    ({"diagnosers.kalman": {"kind": "mmae", "every": 0}}, "diagnosers.kalman.every"),
+    ({"events": [{"at_sample": 1}]}, "events.0"),
+    ({"events": [{"fault": "damping", "severity": 1.0}]}, "events.0"),
+    ({"events": [{"at_sample": 1, "fault": "damping"}]}, "events.0"),
+    ({"events": [{"at_sample": 1, "heal": "all"}, {"at_ms": 1, "fault": "dampling", "severity": 1}]}, "events.1.fault"),
+    ({"events": [{"at_sample": 1, "fault": "damping", "severity": 1e9}]}, "events.0.severity"),
+    ({"events": [{"at_sample": 1, "fault": "damping", "severity": math.nan}]}, "events.0.severity"),
+    ({"events": [{"at_ms": 1, "fault": "damping", "severity": 1, "profile": {"kind": "x"}}]}, "events.0.profile.kind"),
+    ({"events": [{"at_sample": 1, "at_ms": 2.0, "heal": "all"}]}, "events.0"),
+    ({"events": [{"when": "nothing > 1", "heal": "all"}]}, "events.0.when"),
+    ({"events": [{"at_sample": 1, "set": {"sensor.noise_nm": 1}}]}, "events.0.sensor.noise_nm"),
+    ({"events": [{"at_sample": 1, "switch": "nobody"}]}, "events.0.controller"),
+    ({"events": [{"at_sample": 1, "explode": True}]}, "events.0.explode"),
+    ({"expect": [{"metric": "x"}]}, "expect.0"),
+    ({"expect": [{"metric": "x", "value": 1.0}]}, "expect.0"),
+    ({"expect": [{"min": 1.0}]}, "expect.0.metric"),
+    ({"expect": [{"metric": "x", "min": math.nan}]}, "expect.0.min"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("values", "field"), BAD, ids=[str(values)[:80] for values, _ in BAD])
+def test_bad_input_is_refused_with_its_field(values, field):
+    whole = copy.deepcopy(document())
+    for path, value in values.items():
+        table = whole
+        *parents, leaf = path.split(".")
+        for part in parents:
+            table = table.setdefault(part, {})
+        table[leaf] = value
+    with pytest.raises(InputError) as error:
+        build(Scenario.load(whole))
+    assert error.value.field == field, str(error.value)
+    text = str(error.value)
+    assert "\n" not in text and text.startswith(f"{field}: ") and len(text) > len(field) + 8
+
+
+@pytest.mark.parametrize(
+    "text", ["a = ", "schema = 1\n[device", "schema = 1\nschema = 1", "\x00", "x = 1e", "[[events]\n"]
+)
+def test_malformed_toml(text):
+    with pytest.raises(InputError, match="malformed TOML") as error:
+        Scenario.load(text)
+    assert error.value.code == "malformed" and "\n" not in str(error.value)
+    assert "line" in str(error.value) or "end of document" in str(error.value)
+
+
+@pytest.mark.parametrize("thing", [None, 3, [], [1]])
+def test_a_scenario_must_be_a_table(thing):
+    with pytest.raises(InputError):
+        Scenario(thing)
+
+
+@pytest.mark.parametrize(
+    ("path", "word"),
+    [
+        ("sensor.noise_nm", "noise_um"),
+        ("sensor.nois_um", "noise_um"),
+        ("device.mass_g", "mass_kg"),
+        ("reference.amplitud_v", "amplitude_v"),
+    ],
+)
+def test_the_hint_names_what_was_meant(path, word):
+    with pytest.raises(InputError) as error:
+        with_values(Scenario.load(document()), {path: 1.0})
+    assert word in f"{error.value} {error.value.hint}"
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"": 1},
+        {"a..b": 1},
+        {"seed.deep": 1},
+        {"events.5.severity": 1},
+        {"events.x.severity": 1},
+        {"sensor.noise_um.x": 1},
+    ],
+)
+def test_paths_that_lead_nowhere(values):
+    with pytest.raises(InputError):
+        with_values(get("ch5-seven-step"), values)
+
+
+def test_amplitude_in_micrometres_needs_a_device_that_moves():
+    still = {"device": {"id": "lcr-350", "opposite_bias_v": 10.0}, "reference": {"kind": "sine", "amplitude_um": 1.0}}
+    with pytest.raises(InputError):
+        build(Scenario.load(document(still)))
+
+
+def test_an_event_is_several_commands_in_order():
+    event = Event.model_validate(
+        {"at_ms": 1.0, "heal": ["damping"], "fault": "stiffness", "severity": 0.1, "set": {"seed": 1}, "switch": "pid"}
+    )
+    assert [command.kind for command in event.commands()] == ["heal", "inject", "set", "switch"]
+    assert all(command.at_ms == 1.0 for command in event.commands())
+    reset = Event(at_sample=1, reset_trip=True, heal="all").commands()
+    assert [command.kind for command in reset] == ["reset_trip", "heal"]
+
+
+def test_length_in_samples_or_time():
+    assert Scenario.load({**document(), "duration_ms": 12.34}).samples == 1234
+    assert Scenario.load({**document(), "samples": 7}).samples == 7
+    assert Scenario.load(document()).samples is None
+    assert run(Scenario.load({**document(), "samples": 1})).board.tick == 1
+
+
+def test_summary_is_json():
+    summary = run(get("ch3-mrac-spring-x2")).summary()
+    assert json.loads(json.dumps(summary, allow_nan=False)) == summary

@@ -1,0 +1,285 @@
+"""The stream over a real socket: window, drops, events, replay, closing."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from server.stream import client as client_module
+
+
+def test_it_says_hello_with_the_bench(live: Any) -> None:
+    bench = live.bench()
+    with live.stream(bench["id"]) as stream:
+        hello = stream.step()
+        assert hello["type"] == "hello" and hello["wire"] == 1
+        assert hello["server"] == live.service.id
+        assert hello["bench"]["id"] == bench["id"]
+        assert {s["name"] for s in hello["bench"]["signals"]} >= {"plant.displacement", "drive.voltage"}
+        assert hello["last_event"] == hello["bench"]["last_event"]
+
+
+@pytest.mark.parametrize("offered", [None, ["combbench.v0"], ["other"]])
+def test_another_version_is_told_to_reload(live: Any, offered: list[str] | None) -> None:
+    bench = live.bench()
+    with live.stream(bench["id"], subprotocols=offered) as stream, pytest.raises(ConnectionClosed) as caught:
+        stream.step()
+    assert caught.value.rcvd is not None and caught.value.rcvd.code == 4001
+    assert "reload" in caught.value.rcvd.reason
+
+
+def test_a_bench_that_is_not_there(live: Any) -> None:
+    with live.stream("none") as stream, pytest.raises(ConnectionClosed) as caught:
+        stream.step()
+    assert caught.value.rcvd is not None and caught.value.rcvd.code == 4404
+
+
+def test_a_frame_shows_what_the_history_holds(live: Any) -> None:
+    bench = live.bench(paused=True)
+    live.command(bench["id"], "step", ticks=500)
+    with live.stream(bench["id"]) as stream:
+        names = ["plant.displacement", "drive.voltage", "kalman.winner"]
+        stream.send(type="subscribe", panel=7, signals=names, window_ms=4.0, width=50)
+        frame = stream.until_frame(7)
+        (panel,) = frame.panels
+        assert not frame.running and frame.head == 500 and frame.dt_ms == 0.02
+        assert (panel.start, panel.end, panel.revision) == (300, 500, 1)
+        assert panel.columns.shape == (3, 2, 50)
+        query = {"signals": ",".join(names), "start_tick": 300, "end_tick": 500, "columns": 50}
+        trace = live.http.get(f"/api/v1/benches/{bench['id']}/trace", params=query).json()
+        for name, (low, high) in zip(names, panel.columns, strict=True):
+            np.testing.assert_array_equal(low, np.float32(trace["signals"][name]["min"]))
+            np.testing.assert_array_equal(high, np.float32(trace["signals"][name]["max"]))
+        # Nothing moves: nothing is sent, but a second subscription is answered.
+        stream.drain(0.3)
+        assert len(stream.frames) == 1
+        stream.send(type="subscribe", panel=7, signals=names[:1], window_ms=1.0, width=50)
+        assert stream.until_frame(7).panels[0].revision == 2
+        stream.send(type="unsubscribe", panel=7)
+        live.command(bench["id"], "step", ticks=5)
+        stream.drain(0.3)
+        assert len(stream.frames) == 2
+
+
+def test_the_past_is_shown_while_the_board_runs(live: Any) -> None:
+    bench = live.bench(time_scale=0.01)
+    with live.stream(bench["id"]) as stream:
+        stream.until(lambda m: isinstance(m, dict) and m["type"] == "status" and m["tick"] > 400)
+        stream.send(
+            type="subscribe",
+            panel=1,
+            signals=["plant.displacement"],
+            mode="frozen",
+            start_tick=100,
+            end_tick=300,
+            width=200,
+        )
+        (panel,) = stream.until_frame(1).panels
+        assert (panel.start, panel.end) == (100, 300)
+        assert not np.isnan(panel.columns).any()
+        first = stream.until_type("status")["tick"]
+        assert stream.until_type("status")["tick"] > first
+
+
+def test_at_most_two_frames_are_on_their_way(live: Any) -> None:
+    bench = live.bench(time_scale=0.01)
+    with live.stream(bench["id"]) as stream:
+        stream.acks = False
+        stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
+        stream.drain(0.6)
+        assert [frame.frame for frame in stream.frames] == [1, 2]
+        stream.send(type="ack", frame=2)
+        stream.drain(0.3)
+        assert [frame.frame for frame in stream.frames] == [1, 2, 3, 4]
+        # The newest picture comes, not one that waited.
+        assert stream.frames[2].head - stream.frames[1].head > 100
+        assert stream.until_type("status")["dropped_frames"] > 10
+        # A number nobody has sent acknowledges nothing more.
+        stream.send(type="ack", frame=10**6)
+        stream.acks = True
+        stream.drain(0.3)
+        assert len(stream.frames) > 10
+
+
+def test_a_paused_bench_shows_its_last_moment_to_a_slow_page(live: Any) -> None:
+    bench = live.bench(time_scale=0.01)
+    with live.stream(bench["id"]) as stream:
+        stream.acks = False
+        stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
+        stream.drain(0.3)
+        tick = live.command(bench["id"], "pause").json()["tick"]
+        stream.drain(0.2)
+        stream.acks = True
+        stream.send(type="ack", frame=2)
+        assert stream.until_frame(1).head == tick
+
+
+def test_frames_come_at_the_frame_rate(live: Any) -> None:
+    bench = live.bench()
+    with live.stream(bench["id"]) as stream:
+        stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=4.0)
+        stream.until_frame()
+        before = len(stream.frames)
+        stream.drain(2.0)
+        assert 80 <= len(stream.frames) - before <= 126
+
+
+def test_a_stalled_page_is_let_go_and_the_others_see_nothing_of_it(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(client_module, "STALL_S", 1.0)
+    bench = live.bench()
+    with live.stream(bench["id"]) as good, live.stream(bench["id"]) as bad:
+        bad.acks = False
+        for stream in (good, bad):
+            stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
+        watching = threading.Thread(target=good.drain, args=(3.0,))
+        watching.start()
+        began = time.monotonic()
+        with pytest.raises(ConnectionClosed) as caught:
+            bad.drain(6.0)
+        waited = time.monotonic() - began
+        watching.join()
+        assert caught.value.rcvd is not None and caught.value.rcvd.code == 4408
+        assert 0.9 < waited < 2.0
+        assert any(m["type"] == "notice" and m["code"] == "slow_client" for m in bad.messages)
+        assert len(good.frames) > 100
+        good.until(lambda m: isinstance(m, dict) and m["type"] == "status" and m["watchers"] == 1)
+
+
+def test_a_page_that_reads_nothing_at_all_is_cut_off(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not even the close gets through to it; its line is cut, and nothing of it stays."""
+    monkeypatch.setattr(client_module, "STALL_S", 1.0)
+    monkeypatch.setattr(client_module, "WINDOW", 10**9)  # so that the socket itself fills up
+    names = [signal["name"] for signal in live.bench()["signals"]][:32]
+    bench = live.bench(time_scale=0.05)
+    before = len(live.server.server_state.connections)
+    with live.stream(bench["id"], max_queue=1) as stream:
+        for panel in range(6):
+            stream.send(type="subscribe", panel=panel, signals=names, window_ms=50.0, width=1300)
+        deadline = time.monotonic() + 15
+        while live.service.hub.watchers(bench["id"]) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        assert live.service.hub.watchers(bench["id"]) == 0
+        time.sleep(1.5)
+        assert len(live.server.server_state.connections) <= before
+
+
+def test_events_come_in_order_and_are_replayed_after_a_reconnect(live: Any) -> None:
+    bench = live.bench(set={"events": []})
+    with live.stream(bench["id"]) as stream:
+        for severity in (0.01, 0.02, 0.03):
+            assert stream.command("inject", fault="added_mass", severity=severity)["ok"]
+        stream.until_type("event", timeout=3)
+        stream.drain(0.2)
+        seen = [m["event"]["seq"] for m in stream.messages if m["type"] == "event"]
+        assert seen == list(range(seen[0], seen[0] + len(seen)))
+    for severity in (0.04, 0.05):
+        live.command(bench["id"], "inject", fault="added_mass", severity=severity)
+    with live.stream(bench["id"]) as stream:
+        hello = stream.step()
+        stream.send(type="resume", after=seen[-1])
+        stream.until(
+            lambda m: isinstance(m, dict) and m["type"] == "event" and m["event"]["seq"] == hello["last_event"]
+        )
+        again = [m["event"] for m in stream.messages if m["type"] == "event"]
+        # One that happened meanwhile may come before the replay, and once more within it.
+        again = again[[event["seq"] for event in again].index(seen[-1] + 1) :]
+        assert [event["seq"] for event in again] == list(range(seen[-1] + 1, hello["last_event"] + 1))
+        injected = [event["command"]["severity"] for event in again if event["kind"] == "inject"]
+        assert injected == [0.04, 0.05]
+    everything = live.http.get(f"/api/v1/benches/{bench['id']}/events").json()
+    assert [event["seq"] for event in everything["events"]] == list(range(1, everything["last"] + 1))
+
+
+def test_a_new_page_gets_only_what_is_new(live: Any) -> None:
+    bench = live.bench(set={"events": []})
+    live.command(bench["id"], "inject", fault="added_mass", severity=0.05)
+    with live.stream(bench["id"]) as stream:
+        hello = stream.step()
+        live.command(bench["id"], "heal")
+        event = stream.until_type("event")["event"]
+        assert event["seq"] > hello["last_event"]
+
+
+def test_a_command_is_answered_with_its_tick(live: Any) -> None:
+    bench = live.bench(set={"events": []}, time_scale=0.01)
+    with live.stream(bench["id"]) as stream:
+        before = stream.until_type("status")["tick"]
+        stream.send(type="command", id="mine", command={"kind": "switch", "controller": "mrac"})
+        reply = stream.until_type("reply")
+        assert reply["id"] == "mine" and reply["ok"] and reply["tick"] >= before
+        event = stream.until(lambda m: isinstance(m, dict) and m.get("event", {}).get("kind") == "switch")
+        assert event["event"]["tick"] == reply["tick"]
+        assert event["event"]["actor"].startswith("page ")
+        status = stream.until(lambda m: isinstance(m, dict) and m["type"] == "status" and m["parameters"])
+        assert status["controller"] == "mrac"
+        assert status["parameters"]["controller"]["kind"] == "mrac"
+
+
+def test_from_a_command_to_its_effect_on_the_screen(live: Any) -> None:
+    """A fault is seen in a frame within 150 ms (p95); here every one of 20."""
+    bench = live.bench(set={"events": []}, time_scale=0.01)
+    with live.stream(bench["id"]) as stream:
+        stream.send(type="subscribe", panel=1, signals=["faults.damping"], window_ms=1.0)
+        stream.until_frame()
+        waits = []
+        for number in range(20):
+            kind = {"kind": "inject", "fault": "damping", "severity": 0.3} if number % 2 == 0 else {"kind": "heal"}
+            wanted = np.float32(0.3 if number % 2 == 0 else 0.0)
+            began = time.monotonic()
+            stream.send(type="command", id=f"{number}", command=kind)
+            stream.until(lambda m, w=wanted: not isinstance(m, dict) and m.panels[0].latest[0] == w)
+            waits.append(time.monotonic() - began)
+        assert sorted(waits)[18] < 0.15
+
+
+def test_closing_a_bench_closes_its_streams(live: Any) -> None:
+    bench = live.bench()
+    with live.stream(bench["id"]) as stream:
+        stream.step()
+        assert live.http.delete(f"/api/v1/benches/{bench['id']}").status_code == 204
+        with pytest.raises(ConnectionClosed) as caught:
+            stream.drain(5)
+        assert caught.value.rcvd is not None and caught.value.rcvd.code == 4404
+
+
+def test_a_single_sweep_waits_to_be_armed_again(live: Any) -> None:
+    bench = live.bench(time_scale=0.01)
+    with live.stream(bench["id"]) as stream:
+        trigger = {"signal": "reference.voltage", "hysteresis": 0.5, "sweep": "single"}
+        stream.send(
+            type="subscribe",
+            panel=1,
+            signals=["reference.voltage"],
+            mode="triggered",
+            window_ms=1.0,
+            trigger=trigger,
+        )
+        shown = stream.until(lambda m: not isinstance(m, dict) and m.panels[0].flags == 1)
+        first = shown.panels[0].trigger
+        stream.drain(0.3)
+        assert all(p.trigger == first for f in stream.frames for p in f.panels if p.flags & 1)
+        stream.send(type="rearm", panel=1)
+        again = stream.until(
+            lambda m: not isinstance(m, dict) and m.panels[0].flags == 1 and m.panels[0].trigger != first
+        )
+        assert again.panels[0].trigger > first
+
+
+def test_all_panels_together_are_bounded(live: Any) -> None:
+    bench = live.bench(paused=True)
+    names = [signal["name"] for signal in bench["signals"]][:32]
+    with live.stream(bench["id"]) as stream:
+        for panel in range(3):
+            stream.send(type="subscribe", panel=panel, signals=names, window_ms=1.0, width=4096)
+        error = stream.until_type("error")["error"]
+        assert "262144" in error["message"]
+        stream.send(type="unsubscribe", panel=0)
+        for panel in range(10, 50):
+            stream.send(type="subscribe", panel=panel, signals=names[:1], window_ms=1.0, width=10)
+        stream.until(lambda m: isinstance(m, dict) and m["type"] == "error" and "32 panels" in json.dumps(m))

@@ -1,0 +1,181 @@
+"""Live benches: exact bits whoever watches, honest pacing, commands at tick edges."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import pytest
+
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import run
+from scenarios.schema import Scenario
+
+
+def wait_until_paused(live: Any, bench_id: str, seconds: float = 30.0) -> dict[str, Any]:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found: dict[str, Any] = live.get(bench_id)
+        if found["state"] != "running":
+            return found
+        time.sleep(0.05)
+    raise TimeoutError("it runs on")
+
+
+def test_live_with_watchers_and_headless_give_the_same_bits(live: Any) -> None:
+    """Three watchers, one that stalls, a snapshot in the middle: the digest is that of the headless run."""
+    expected = run(get("ch5-seven-step"))
+    bench = live.bench(time_scale=0.1, paused=True)
+    stop = threading.Event()
+
+    def watch(acks: bool) -> None:
+        with live.stream(bench["id"]) as stream:
+            stream.acks = acks
+            names = [signal["name"] for signal in bench["signals"]][:12]
+            for panel in range(6):
+                stream.send(type="subscribe", panel=panel, signals=names, window_ms=4.0, width=800)
+            while not stop.is_set():
+                try:
+                    stream.step(0.2)
+                except TimeoutError:
+                    continue
+
+    watchers = [threading.Thread(target=watch, args=(number < 3,)) for number in range(4)]
+    for watcher in watchers:
+        watcher.start()
+    while live.get(bench["id"])["watchers"] < 4:
+        time.sleep(0.02)
+    live.command(bench["id"], "start")
+    while live.get(bench["id"])["tick"] < 3000:
+        time.sleep(0.01)
+    snapshot = live.http.post(f"/api/v1/benches/{bench['id']}/snapshots").json()
+    assert wait_until_paused(live, bench["id"])["tick"] == 9000
+    first = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
+    restored = live.http.post(f"/api/v1/benches/{bench['id']}/snapshots/{snapshot['id']}/restore").json()
+    assert restored["tick"] == snapshot["tick"] >= 3000 and restored["state"] == "paused"
+    live.command(bench["id"], "start")
+    assert wait_until_paused(live, bench["id"])["tick"] == 9000
+    second = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
+    stop.set()
+    for watcher in watchers:
+        watcher.join()
+    assert first == second == {"tick": 9000, "digest": expected.digest}
+
+
+def test_what_happened_live_is_saved_and_run_headless_with_the_same_bits(live: Any) -> None:
+    bench = live.bench(set={"events": []}, time_scale=0.05)
+    for command in (
+        {"kind": "inject", "fault": "added_mass", "severity": 0.05},
+        {"kind": "switch", "controller": "mrac"},
+        {"kind": "set", "values": {"reference.amplitude_v": 8.0, "sensor.noise_um": 0.1}},
+        {"kind": "heal"},
+        {"kind": "pause"},
+    ):
+        time.sleep(0.1)
+        assert live.command(bench["id"], **command).status_code == 200
+    answer = live.http.get(f"/api/v1/benches/{bench['id']}/scenario")
+    assert answer.headers["content-type"].startswith("text/plain")
+    digest = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
+    result = run(Scenario.load(answer.text))
+    assert (result.board.tick, result.digest) == (digest["tick"], digest["digest"])
+
+
+def test_two_forks_meet_the_same_noise(live: Any) -> None:
+    bench = live.bench(time_scale=0.05)
+    time.sleep(0.3)
+    forks = []
+    snapshot = live.http.post(f"/api/v1/benches/{bench['id']}/snapshots").json()["id"]
+    for _ in range(2):
+        fork = live.http.post(f"/api/v1/benches/{bench['id']}/fork", json={"snapshot": snapshot}).json()
+        forks.append(fork)
+        live.command(fork["id"], "pause")
+    ends = []
+    for fork in forks:
+        tick = live.get(fork["id"])["tick"]
+        if tick < 8000:
+            live.command(fork["id"], "step", ticks=8000 - tick)
+        ends.append(live.http.get(f"/api/v1/benches/{fork['id']}/digest").json())
+    assert ends[0] == ends[1]
+    assert ends[0]["digest"] == run(with_values(get("ch5-seven-step"), {"samples": 8000})).digest
+
+
+@pytest.mark.parametrize("scale", [1e-4, 0.002, 0.05, 1.0])
+def test_time_runs_at_its_scale(live: Any, scale: float) -> None:
+    bench = live.bench(set={"samples": 10_000_000, "events": [], "sample_rate_khz": 100}, time_scale=scale)
+    with live.stream(bench["id"]) as stream:
+        first = stream.until_type("status")
+        began = time.perf_counter()
+        status = first
+        while time.perf_counter() - began < 2.5:
+            status = stream.until_type("status")
+        device_s = (status["tick"] - first["tick"]) * bench["dt_ms"] * 1e-3
+        wall_s = time.perf_counter() - began
+        assert device_s / wall_s == pytest.approx(scale, rel=0.12)
+        assert status["achieved_scale"] == pytest.approx(scale, rel=0.05)
+        assert not status["capped"]
+
+
+def test_as_fast_as_possible_is_faster_than_real_time_and_still_takes_commands(live: Any) -> None:
+    bench = live.bench(set={"samples": 100_000_000, "events": []}, time_scale=None)
+    time.sleep(1.0)
+    began = time.perf_counter()
+    answer = live.command(bench["id"], "inject", fault="added_mass", severity=0.05)
+    assert answer.status_code == 200
+    assert time.perf_counter() - began < 0.2
+    status = live.get(bench["id"])
+    assert status["achieved_scale"] > 1.0 and not status["capped"]
+    live.command(bench["id"], "time_scale", value=0.002)
+    time.sleep(1.2)
+    after = live.get(bench["id"])
+    assert after["time_scale"] == 0.002 and after["state"] == "running"
+    assert after["achieved_scale"] == pytest.approx(0.002, rel=0.1)
+
+
+def test_a_paused_bench_stands_still_and_steps_exactly(live: Any) -> None:
+    bench = live.bench(paused=True)
+    assert live.get(bench["id"])["tick"] == 0
+    assert live.command(bench["id"], "step").json()["tick"] == 0
+    assert live.get(bench["id"])["tick"] == 1
+    live.command(bench["id"], "step_period")
+    assert live.get(bench["id"])["tick"] == 26
+    time.sleep(0.1)
+    assert live.get(bench["id"])["tick"] == 26
+
+
+def test_a_trip_stops_one_bench_and_says_why(live: Any) -> None:
+    other = live.bench()
+    bench = live.bench(set={"events": [], "guard": {"travel_um": 0.5}}, time_scale=0.05)
+    stopped = wait_until_paused(live, bench["id"])
+    assert stopped["state"] == "tripped"
+    assert "travel" in stopped["trip"]["reason"]
+    refused = live.command(bench["id"], "start")
+    assert refused.status_code == 422 and refused.json()["error"]["code"] == "tripped"
+    kinds = [e["kind"] for e in live.http.get(f"/api/v1/benches/{bench['id']}/events").json()["events"]]
+    assert "tripped" in kinds
+    trace = live.http.get(f"/api/v1/benches/{bench['id']}/trace", params={"columns": 10})
+    assert trace.status_code == 200
+    live.command(bench["id"], "set", values={"guard.travel_um": 25.0})
+    assert live.command(bench["id"], "reset_trip").status_code == 200
+    assert live.command(bench["id"], "start").status_code == 200
+    assert live.get(bench["id"])["state"] == "running"
+    assert live.get(other["id"])["state"] == "running"
+
+
+def test_a_reset_begins_the_scenario_again(live: Any) -> None:
+    bench = live.bench(time_scale=0.05)
+    time.sleep(0.2)
+    entry = live.command(bench["id"], "reset", values={"sensor.noise_um": 0.2}).json()["entry"]
+    assert entry["tick"] == 0 and entry["kind"] == "reset"
+    assert "0.2" in live.http.get(f"/api/v1/benches/{bench['id']}/scenario").text
+    wait_until_paused(live, bench["id"])
+    expected = run(with_values(get("ch5-seven-step"), {"sensor.noise_um": 0.2}))
+    assert live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()["digest"] == expected.digest
+
+
+def test_deleted_benches_are_gone(live: Any) -> None:
+    bench = live.bench()
+    assert live.http.delete(f"/api/v1/benches/{bench['id']}").status_code == 204
+    assert live.http.get(f"/api/v1/benches/{bench['id']}").status_code == 404
+    assert live.command(bench["id"], "pause").status_code == 404

@@ -1,0 +1,27 @@
+import AxeBuilder from "@axe-core/playwright";
+import { expect, test } from "./lab";
+
+for (const colorScheme of ["dark", "light"] as const) {
+  test.describe(colorScheme, () => {
+    test.use({ colorScheme });
+
+    test(`axe finds nothing serious in ${colorScheme}`, async ({ page, openBench }) => {
+      await openBench("lab");
+      await page.getByRole("button", { name: "Damping", exact: true }).click();
+      await page.getByRole("button", { name: /^Inject .* Added mass$/ }).click();
+      await expect(page.getByText("1 fault acts")).toBeVisible();
+      await seriousViolations(page).then((found) => expect(found).toEqual([]));
+      await page.getByRole("button", { name: /Diagnosis ?Kalman/ }).click();
+      await page.keyboard.press("?");
+      await expect(page.getByRole("dialog")).toBeVisible();
+      await seriousViolations(page).then((found) => expect(found).toEqual([]));
+    });
+  });
+}
+
+async function seriousViolations(page: import("@playwright/test").Page): Promise<string[]> {
+  const { violations } = await new AxeBuilder({ page }).exclude("iframe").analyze();
+  return violations
+    .filter((v) => v.impact === "serious" || v.impact === "critical")
+    .map((v) => `${v.id}: ${v.help}: ${v.nodes.map((n) => n.target.join(" ")).join(" | ")}`);
+}

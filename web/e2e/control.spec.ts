@@ -1,0 +1,55 @@
+import { readFile } from "node:fs/promises";
+import { expect, test } from "./lab";
+
+test("the controller changes live", async ({ page, openBench }) => {
+  await openBench();
+  await page.getByRole("combobox", { name: "Controller" }).click();
+  await page
+    .getByRole("option", { name: /reference adaptive|MRAC/i })
+    .first()
+    .click();
+  await page.getByRole("tab", { name: "Events" }).click();
+  await expect(page.getByRole("button", { name: /switch to mrac/ })).toBeVisible();
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+});
+
+test("a parameter changes live, a wrong one is refused in words, and what happened is saved", async ({
+  page,
+  openBench,
+}) => {
+  await openBench();
+  await page.getByRole("button", { name: /Sensor ?Ideal/ }).click();
+  const noise = page.getByRole("textbox", { name: /^Noise, µm/ });
+  await noise.fill("0.2");
+  await noise.press("Enter");
+  await page.getByRole("tab", { name: "Events" }).click();
+  await expect(page.getByRole("button", { name: /set sensors?\..*noise_um = 0\.2/ })).toBeVisible();
+  await noise.fill("-1");
+  await noise.press("Enter");
+  await expect(page.getByRole("alert").filter({ hasText: "at least 0" })).toBeVisible();
+
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: /^Save what happened/ }).click(),
+  ]);
+  const toml = await readFile(await download.path(), "utf8");
+  expect(toml).toMatch(/sensors?\..*noise_um/);
+  expect(download.suggestedFilename()).toMatch(/^first-look-\d+\.toml$/);
+});
+
+test("a runaway controller trips the board, the page says why, and the trip can be reset", async ({
+  page,
+  openBench,
+  server,
+}) => {
+  await openBench();
+  const id = new URL(page.url()).searchParams.get("bench");
+  const send = (data: object) => server.ask("POST", `/benches/${id}/commands`, data);
+  await send({ kind: "switch", controller: "mrac", cold: true });
+  await send({ kind: "set", values: { "controllers.mrac.adaptation_gain": 30 } });
+  await send({ kind: "time_scale", value: 0.1 });
+  await expect(page.getByTestId("bench-state")).toHaveText("tripped", { timeout: 40_000 });
+  await expect(page.getByText(/^Tripped: /)).toBeVisible();
+  await page.getByRole("button", { name: "Reset the trip" }).click();
+  await expect(page.getByTestId("bench-state")).not.toHaveText("tripped");
+});

@@ -1,0 +1,90 @@
+import { type ChildProcess, spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+const COMBBENCH = join(import.meta.dirname, "..", "..", ".venv", "bin", "combbench");
+const START_MS = 120_000;
+
+/** A real server of its own: free port, empty data folder. */
+export class LabServer {
+  /** Address with the token in it. */
+  url = "";
+  private readonly port: number;
+  private readonly data = mkdtempSync(join(tmpdir(), "combbench-e2e-"));
+  private process: ChildProcess | undefined;
+
+  private constructor(port: number) {
+    this.port = port;
+  }
+
+  static async create(): Promise<LabServer> {
+    const server = new LabServer(await freePort());
+    await server.start();
+    return server;
+  }
+
+  get origin(): string {
+    return `http://127.0.0.1:${this.port}`;
+  }
+
+  async start(): Promise<void> {
+    const child = spawn(COMBBENCH, ["serve", "--port", String(this.port), "--data", this.data]);
+    this.process = child;
+    let said = "";
+    this.url = await new Promise((resolve, reject) => {
+      const timer = setTimeout(() => reject(new Error(`the server did not start:\n${said}`)), START_MS);
+      const listen = (chunk: Buffer) => {
+        said += chunk.toString();
+        const address = /http:\/\/\S+token=\S+/.exec(said)?.[0];
+        if (!address) return;
+        clearTimeout(timer);
+        resolve(address);
+      };
+      child.stdout.on("data", listen);
+      child.stderr.on("data", listen);
+      child.on("exit", (code) => reject(new Error(`the server ended with ${code}:\n${said}`)));
+    });
+  }
+
+  /** Ask the API as a script would, with the token; an answer that is not a success is an error. */
+  async ask<T>(method: string, path: string, body?: object): Promise<T> {
+    const token = new URL(this.url).searchParams.get("token");
+    const answer = await fetch(`${this.origin}/api/v1${path}`, {
+      method,
+      headers: { authorization: `Bearer ${token}`, "content-type": "application/json" },
+      body: body && JSON.stringify(body),
+    });
+    const text = await answer.text();
+    if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${text}`);
+    return (text ? JSON.parse(text) : undefined) as T;
+  }
+
+  /** End it as an operator would. */
+  async stop(): Promise<void> {
+    const child = this.process;
+    this.process = undefined;
+    if (!child || child.exitCode !== null) return;
+    const ended = new Promise((resolve) => child.once("exit", resolve));
+    child.kill("SIGTERM");
+    await ended;
+  }
+
+  async destroy(): Promise<void> {
+    await this.stop();
+    rmSync(this.data, { recursive: true, force: true });
+  }
+}
+
+function freePort(): Promise<number> {
+  return new Promise((resolve, reject) => {
+    const probe = createServer();
+    probe.once("error", reject);
+    probe.listen(0, "127.0.0.1", () => {
+      const address = probe.address();
+      const port = typeof address === "object" && address ? address.port : 0;
+      probe.close(() => resolve(port));
+    });
+  });
+}

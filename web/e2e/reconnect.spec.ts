@@ -1,0 +1,27 @@
+import { expect, test } from "@playwright/test";
+import { LabServer } from "./lab-server";
+
+test("the page outlives its server and goes on when it is back", async ({ page }) => {
+  test.setTimeout(240_000);
+  const server = await LabServer.create();
+  try {
+    await page.request.get(server.url);
+    await page.goto(`${server.origin}/?layout=lab`);
+    await expect(page.getByTestId("bench-state")).toHaveText("running");
+
+    await server.stop();
+    await expect(page.getByTestId("bench-state")).toHaveText("reconnecting");
+    await expect(page.getByRole("alert").filter({ hasText: "Connection lost" })).toBeVisible();
+    await expect(page.getByRole("button", { name: "Try now" })).toBeVisible();
+
+    await server.start();
+    await page.request.get(server.url);
+    await page.getByRole("button", { name: "Start it again" }).click({ timeout: 30_000 });
+    await expect(page.getByTestId("bench-state")).toHaveText("running");
+    const clock = page.getByRole("timer", { name: "Device time" });
+    const before = await clock.innerText();
+    await expect.poll(() => clock.innerText()).not.toBe(before);
+  } finally {
+    await server.destroy();
+  }
+});

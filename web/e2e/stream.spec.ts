@@ -1,0 +1,73 @@
+import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
+
+test("a first visit opens a bench that is already running", async ({ page, server }) => {
+  const started = Date.now();
+  await page.goto(server.url);
+  await expect(page.getByTestId("bench-state")).toHaveText("running", { timeout: 15_000 });
+  await expect(page.getByText("Try this:")).toBeVisible();
+  await expect(page.locator(SCOPE_CANVAS).first()).toBeVisible();
+  expect(page.url()).not.toContain("token");
+  console.log(`first visit: running after ${Date.now() - started} ms`);
+});
+
+test("traces move, device time runs, and pausing stops both", async ({ page, openBench }) => {
+  await openBench();
+  const clock = page.getByRole("timer", { name: "Device time" });
+  const before = await clock.innerText();
+  await expect.poll(() => clock.innerText()).not.toBe(before);
+  const picture = await pictureOf(page, SCOPE_CANVAS);
+  await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(picture);
+
+  await page.keyboard.press(" ");
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
+  await page.waitForTimeout(500);
+  const stopped = await clock.innerText();
+  await page.keyboard.press(".");
+  await expect.poll(() => clock.innerText()).not.toBe(stopped);
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
+});
+
+test("time scale doubles and halves by key, target and achieved side by side", async ({ page, openBench }) => {
+  await openBench();
+  const scale = page.getByRole("group", { name: "Time scale" });
+  await page.keyboard.press("]");
+  await expect(scale.getByRole("button", { name: /^4\.00/ })).toBeVisible();
+  await expect(scale.getByText(/runs (4\.0|3\.9)\d\sms\/s/)).toBeVisible();
+  await page.keyboard.press("[");
+  await expect(scale.getByRole("button", { name: /^2\.00/ })).toBeVisible();
+});
+
+test("looking back does not stop the board, and LIVE returns", async ({ page, openBench }) => {
+  await openBench();
+  await page.waitForTimeout(2500);
+  const clock = page.getByRole("timer", { name: "Device time" });
+  const scope = page.locator("section[aria-label^='Scope']").first();
+  await scope.getByLabel(/^Plot/).focus();
+  await page.keyboard.press("ArrowLeft");
+  await expect(scope.getByRole("button", { name: "LIVE" })).toHaveAttribute("aria-pressed", "false");
+  await page.waitForTimeout(700);
+  const still = await pictureOf(page, SCOPE_CANVAS);
+  const time = await clock.innerText();
+  await page.waitForTimeout(700);
+  expect(await pictureOf(page, SCOPE_CANVAS)).toBe(still);
+  expect(await clock.innerText()).not.toBe(time);
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+
+  const box = await scope.locator("canvas").boundingBox();
+  if (!box) throw new Error("the scope has no place");
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.wheel(0, -400);
+  await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(still);
+
+  await scope.getByRole("button", { name: "LIVE" }).click();
+  await expect(scope.getByRole("button", { name: "LIVE" })).toHaveAttribute("aria-pressed", "true");
+  const live = await pictureOf(page, SCOPE_CANVAS);
+  await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(live);
+});
+
+test("a trigger holds the picture at an edge", async ({ page, openBench }) => {
+  await openBench();
+  const scope = page.locator("section[aria-label^='Scope']").first();
+  await scope.getByRole("button", { name: "Trigger" }).click();
+  await expect(scope.getByRole("button", { name: /● ↗ 0 V/ })).toBeVisible();
+});

@@ -1,0 +1,26 @@
+import { Menu } from "@mantine/core";
+import { setLayout } from "../layouts";
+import { type LayoutName, useView } from "../view-store";
+import styles from "./header.module.css";
+
+const LAYOUTS: [LayoutName, string][] = [
+  ["lecture", "Scope, lanes, faults and 3D in large type (1)"],
+  ["lab", "Bench and faults beside the scopes (2)"],
+  ["research", "Everything (3)"],
+];
+
+/** The built-in layouts, as items of a menu. */
+export function LayoutItems() {
+  const layout = useView((s) => s.layout);
+  return LAYOUTS.map(([name, what]) => (
+    <Menu.Item
+      key={name}
+      aria-current={name === layout}
+      fw={name === layout ? 650 : undefined}
+      onClick={() => setLayout(name)}
+    >
+      {name.charAt(0).toUpperCase() + name.slice(1)} layout
+      <small className={styles.menuNote}>{what}</small>
+    </Menu.Item>
+  ));
+}

@@ -1,0 +1,105 @@
+import type uPlot from "uplot";
+import { fontFor } from "../../ui/canvas-font";
+import { formatNumber } from "../../ui/format";
+import { CANVAS, DASHES, type Scheme } from "../../ui/palette";
+import { timeLabels, timeSplits } from "../../ui/time-axis";
+import type { UnitScale } from "../../ui/unit-scale";
+import { type Envelope, envelopePath } from "./envelope-path";
+
+export interface PlotTrace {
+  name: string;
+  unit: string;
+  colour: string;
+  dash: number;
+}
+
+/** What a plot's axes and series ask of the scope while it draws. */
+export interface ScopeModel {
+  host: HTMLElement;
+  traces: PlotTrace[];
+  /** Units with an axis, at most three. */
+  units: string[];
+  scheme: Scheme;
+  lineWidth: number;
+  fontSize: number;
+  /** Time shown, in ms from the origin of the time axis. */
+  time(): { start: number; span: number };
+  range(axis: number): uPlot.Range.MinMax;
+  scale(axis: number): UnitScale;
+  envelope(trace: number): Envelope | undefined;
+  drawn(u: uPlot): void;
+}
+
+/** uPlot's options for a scope: device time below, one axis for each unit, min/max traces. */
+export function scopeOptions(model: ScopeModel): uPlot.Options {
+  const { traces, units, scheme, lineWidth, fontSize, host } = model;
+  const colours = CANVAS[scheme];
+  const axis = { font: fontFor(fontSize, 1), stroke: colours.muted, ticks: { show: false }, border: { show: false } };
+  return {
+    width: Math.max(50, host.clientWidth),
+    height: Math.max(50, host.clientHeight),
+    padding: [fontSize + 12, units.length > 1 ? 0 : 12, 0, 0],
+    legend: { show: false },
+    cursor: {
+      y: false,
+      drag: { x: false, y: false, setScale: false },
+      points: { show: false },
+      bind: { dblclick: () => null, mousedown: () => null, mouseup: () => null },
+    },
+    scales: {
+      x: {
+        time: false,
+        range: () => {
+          const { start, span } = model.time();
+          return [start, start + span];
+        },
+      },
+      ...Object.fromEntries(units.map((_, i) => [`y${i}`, { range: () => model.range(i) }])),
+    },
+    axes: [
+      {
+        ...axis,
+        scale: "x",
+        size: fontSize + 12,
+        gap: 4,
+        grid: { stroke: colours.grid, width: 1 },
+        splits: (u, _i, min, max) => timeSplits(min, max, Math.max(2, u.over.clientWidth / (fontSize * 8))),
+        values: (_u, splits) => timeLabels(splits, model.time().span),
+      },
+      ...units.map(
+        (_, i): uPlot.Axis => ({
+          ...axis,
+          scale: `y${i}`,
+          side: i === 0 ? 3 : 1,
+          size: fontSize * 4,
+          gap: 6,
+          space: (_u, _axis, _min, _max, height) => Math.max(fontSize * 1.2, height / 9),
+          grid: { show: i === 0, stroke: colours.grid, width: 1 },
+          values: (_u, splits) => valueLabels(splits, model.scale(i)),
+        }),
+      ),
+    ],
+    series: [
+      {},
+      ...traces.map(
+        (trace): uPlot.Series => ({
+          show: units.includes(trace.unit),
+          scale: `y${Math.max(0, units.indexOf(trace.unit))}`,
+          stroke: trace.colour,
+          fill: `${trace.colour}b0`,
+          width: lineWidth,
+          dash: [...DASHES[trace.dash]],
+          points: { show: false },
+          paths: envelopePath((series) => model.envelope(series - 1)),
+        }),
+      ),
+    ],
+    hooks: { draw: [(u) => model.drawn(u)] },
+  };
+}
+
+function valueLabels(splits: number[], scale: UnitScale): string[] {
+  const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) * scale.factor : 1;
+  const decimals = Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-6)));
+  return splits.map((v) => formatNumber(v * scale.factor, decimals));
+}

@@ -1,0 +1,169 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { encodeFrame } from "./encode-frame.fixture";
+import { StreamClient, type StreamHandlers } from "./stream-client";
+
+/** A WebSocket that only remembers; the test plays the server. */
+class FakeSocket {
+  static readonly OPEN = 1;
+  static made: FakeSocket[] = [];
+  readyState = 0;
+  sent: string[] = [];
+  onopen: (() => void) | undefined;
+  onmessage: ((event: { data: unknown }) => void) | undefined;
+  onclose: ((event: { code: number }) => void) | undefined;
+  readonly url: string;
+  readonly protocol: string;
+
+  constructor(url: string, protocol: string) {
+    this.url = url;
+    this.protocol = protocol;
+    FakeSocket.made.push(this);
+  }
+
+  send(text: string) {
+    this.sent.push(text);
+  }
+
+  close() {
+    this.readyState = 3;
+  }
+
+  accept() {
+    this.readyState = 1;
+    this.onopen?.();
+  }
+
+  say(message: object | ArrayBuffer) {
+    this.onmessage?.({ data: message instanceof ArrayBuffer ? message : JSON.stringify(message) });
+  }
+
+  async drop(code: number) {
+    this.readyState = 3;
+    this.onclose?.({ code });
+    await vi.advanceTimersByTimeAsync(0);
+  }
+}
+
+describe("StreamClient", () => {
+  let handlers: { [K in keyof StreamHandlers]: ReturnType<typeof vi.fn> };
+  let client: StreamClient;
+  const last = () => FakeSocket.made[FakeSocket.made.length - 1];
+  const types = (socket: FakeSocket) => socket.sent.map((text) => (JSON.parse(text) as { type: string }).type);
+
+  beforeEach(() => {
+    vi.useFakeTimers();
+    vi.stubGlobal("WebSocket", FakeSocket);
+    vi.spyOn(Math, "random").mockReturnValue(0.5);
+    FakeSocket.made = [];
+    handlers = { onMessage: vi.fn(), onOpen: vi.fn(), onClose: vi.fn(), explain: vi.fn(async () => undefined) };
+    client = new StreamClient(handlers as unknown as StreamHandlers);
+    client.connect("ws://bench/stream");
+  });
+
+  afterEach(() => {
+    vi.useRealTimers();
+    vi.unstubAllGlobals();
+    vi.restoreAllMocks();
+  });
+
+  it("offers the wire version as its subprotocol and subscribes when it is open", () => {
+    client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 10 }, vi.fn());
+    expect(last().protocol).toBe("combbench.v1");
+    expect(last().sent).toEqual([]);
+    last().accept();
+    expect(types(last())).toEqual(["subscribe"]);
+  });
+
+  it("waits 0.5, 1, 2, 5 s between attempts, and starts over after a hello", async () => {
+    last().accept();
+    const waits: number[] = [];
+    for (let i = 0; i < 4; i += 1) {
+      await last().drop(1006);
+      const before = FakeSocket.made.length;
+      let waited = 0;
+      while (FakeSocket.made.length === before) {
+        await vi.advanceTimersByTimeAsync(100);
+        waited += 100;
+      }
+      waits.push(waited);
+    }
+    expect(waits).toEqual([500, 1000, 2000, 5000]);
+    last().accept();
+    last().say({ type: "hello" });
+    await last().drop(1001);
+    await vi.advanceTimersByTimeAsync(500);
+    expect(FakeSocket.made).toHaveLength(6);
+  });
+
+  it("does not try again when that cannot help", async () => {
+    last().accept();
+    await last().drop(4404);
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect(FakeSocket.made).toHaveLength(1);
+    expect(handlers.onClose).toHaveBeenCalledWith(
+      expect.objectContaining({ title: "This bench is gone" }),
+      4404,
+      undefined,
+    );
+  });
+
+  it("asks why when a connection never opened", async () => {
+    handlers.explain.mockResolvedValue(4401);
+    await last().drop(1006);
+    expect(handlers.onClose).toHaveBeenCalledWith(
+      expect.objectContaining({ title: "You are not logged in" }),
+      4401,
+      undefined,
+    );
+  });
+
+  it("resolves a command with its tick, rejects a refusal in the server's words", async () => {
+    last().accept();
+    const done = client.command({ kind: "pause" });
+    const refused = client.command({ kind: "heal", faults: ["x"] });
+    last().say({ type: "reply", id: "c1", ok: true, tick: 42 });
+    last().say({
+      type: "reply",
+      id: "c2",
+      ok: false,
+      error: { code: "invalid", message: "no such fault", field: "faults", hint: "" },
+    });
+    await expect(done).resolves.toBe(42);
+    await expect(refused).rejects.toThrow("no such fault");
+  });
+
+  it("fails a command that is not answered, cut off or sent while offline", async () => {
+    await expect(client.command({ kind: "pause" })).rejects.toThrow("not connected");
+    last().accept();
+    const silent = client.command({ kind: "pause" });
+    const silence = expect(silent).rejects.toThrow("did not answer");
+    await vi.advanceTimersByTimeAsync(5000);
+    await silence;
+    const cut = client.command({ kind: "pause" });
+    const lost = expect(cut).rejects.toThrow("connection was lost");
+    await last().drop(1006);
+    await lost;
+  });
+
+  it("only stores a frame; drawing acknowledges it", () => {
+    const draw = vi.fn();
+    const feed = client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 1 }, draw);
+    last().accept();
+    const panel = {
+      panel: feed.panel,
+      revision: 1,
+      startTick: 0,
+      endTick: 1,
+      flags: 0,
+      min: [[1]],
+      max: [[1]],
+      latest: [1],
+    };
+    last().say(encodeFrame({ frame: 1, headTick: 77, dtMs: 0.01, panels: [panel] }));
+    expect(client.head.tick).toBe(77);
+    expect(draw).not.toHaveBeenCalled();
+    client.feeds.draw();
+    expect(draw).toHaveBeenCalledOnce();
+    expect(types(last())).toEqual(["subscribe", "ack"]);
+  });
+});
