@@ -30,6 +30,11 @@ def kernel(function: F) -> F:
     return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
 
 
+def inlined(function: F) -> F:
+    """Compile a helper into whatever calls it: for the few whose call would cost as much as their work."""
+    return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
+
+
 @kernel
 def settled(value: float) -> float:
     """Return ``value``, or zero once it is too small to matter.

@@ -12,6 +12,7 @@ from core.board.board import Board
 from core.board.environment import Environment
 from core.board.score import Scores
 from core.errors import unknown
+from scenarios.lateral_metrics import lateral_metrics
 
 SETTLED = 0.02
 """Share of the model's amplitude within which a loop counts as settled."""
@@ -115,7 +116,7 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
             raise unknown("metric option", key, allowed, f"metrics.{key}")
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise unknown("metric option value", value, ["a number"], f"metrics.{key}")
-    found = device_metrics(board)
+    found = device_metrics(board) | lateral_metrics(board)
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
     for name, scores in board.scores().items():

@@ -29,6 +29,7 @@ class Event(BaseModel):
     fault: str | None = None
     severity: float | None = None
     profile: dict[str, Any] | None = None
+    parameters: dict[str, Any] | None = None
     set: dict[str, Any] | None = None
     switch: str | None = None
     cold: bool = False
@@ -40,6 +41,8 @@ class Event(BaseModel):
             raise ValueError("fault and severity go together")
         if self.profile is not None and self.fault is None:
             raise ValueError("profile belongs to a fault")
+        if self.parameters is not None and self.fault is None:
+            raise ValueError("parameters belong to a fault")
         if not (self.heal or self.fault or self.set or self.switch or self.reset_trip):
             raise ValueError("needs one of fault, heal, set, switch, reset_trip")
         if self.at_sample is None and self.at_ms is None and self.when is None:

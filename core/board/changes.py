@@ -12,7 +12,8 @@ from core.board import program
 from core.board.commands import Command, Heal, Inject, Set, Switch
 from core.board.spec import Section, Spec, parse, with_values
 from core.board.wiring import Instance, Wiring, wire
-from core.errors import InputError, from_validation, unknown
+from core.errors import InputError, from_validation, short, unknown
+from core.faults.fault import FaultParams
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -24,7 +25,8 @@ def describe(command: Command) -> str:
     """Say in words what a command does."""
     if isinstance(command, Inject):
         shape = "" if command.profile.kind == "step" else f", {command.profile.kind}"
-        return f"inject {command.fault} {command.severity:+g}{shape}"
+        chosen = "".join(f", {name} {short(value)}" for name, value in command.parameters.items())
+        return f"inject {command.fault} {command.severity:+g}{shape}{chosen}"
     if isinstance(command, Heal):
         return "heal all" if command.faults == "all" else f"heal {', '.join(command.faults)}"
     if isinstance(command, Set):
@@ -52,6 +54,8 @@ def event(command: dict[str, Any]) -> dict[str, Any]:
         return {**rest, "reset_trip": True}
     if rest["profile"]["kind"] == "step":
         del rest["profile"]  # what a fault does unless told otherwise
+    if not rest.get("parameters"):
+        rest.pop("parameters", None)
     return rest
 
 
@@ -158,12 +162,17 @@ def _names(command: Heal) -> list[str]:
 
 def _fault_params(command: Inject, tick: int) -> BlockParams:
     block = registry.block("faults", command.fault, "fault")
+    own = [name for name in block.Params.model_fields if name not in FaultParams.model_fields]
+    for name in command.parameters:
+        if name not in own:
+            raise unknown("parameter", name, own, f"parameters.{name}")
     try:
         return block.Params.model_validate(
-            {"severity": command.severity, "profile": command.profile, "start_tick": tick}
+            {"severity": command.severity, "profile": command.profile, "start_tick": tick, **command.parameters}
         )
     except ValidationError as error:
-        raise from_validation(error) from None
+        found = from_validation(error)
+        raise (found.under("parameters") if found.field.split(".")[0] in own else found) from None
 
 
 def _same_fault(first: BlockParams, second: BlockParams) -> bool:

@@ -35,6 +35,7 @@ class Inject(Timed):
     fault: str
     severity: float
     profile: Profile = Profile()
+    parameters: dict[str, Any] = Field(default={}, max_length=20, description="what else the fault lets one choose")
 
 
 class Heal(Timed):

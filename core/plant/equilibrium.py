@@ -1,0 +1,213 @@
+"""Where a plant comes to rest, and where it can no longer: static equilibria, their folds, and pull-in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.block import FloatArray
+from core.plant import plane, slaved_lateral
+from core.plant.electrostatics import comb
+from core.plant.shuttle import FIRST_V, SECOND_V
+from core.plant.suspension import elastic_force
+
+Force = Callable[[FloatArray, float, float], FloatArray]
+"""Generalised force at a place under two squared voltages."""
+
+
+@dataclass(frozen=True)
+class Fold:
+    """The end of a stable branch: travel, voltage on the shuttle, place of the worst corner sideways."""
+
+    x_um: float
+    volts: float
+    lateral_um: float
+
+
+def planar_force(p: FloatArray, suspension: FloatArray) -> Force:
+    """Return the static force of a planar plant."""
+    square, limit, stator, strength = p[plane.GAP_SQUARED], p[plane.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
+    overlap = p[plane.ROTOR] - stator
+
+    def force(q: FloatArray, right: float, left: float) -> FloatArray:
+        x, y, theta = float(q[0]), float(q[1]), float(q[2])
+        yy, tt = y + p[plane.Y_MISS], theta + p[plane.T_MISS]
+        first = comb(square, limit, stator, 0.5 * (overlap + x), 1.0, yy, tt)
+        second = comb(square, limit, stator, 0.5 * (overlap - x), -1.0, yy, tt)
+        pulled = strength * (right * np.array(first[:3]) + left * np.array(second[:3]))
+        return np.asarray(np.array(elastic_force(suspension, x, y, theta)) + pulled)
+
+    return force
+
+
+def slaved_force(p: FloatArray, stiffness: float) -> Force:
+    """Return the static force of the slaved plant, a place of one number."""
+
+    def force(q: FloatArray, right: float, left: float) -> FloatArray:
+        x = float(q[0])
+        return np.array([slaved_lateral.slaved_force(p, x, right, left) - stiffness * x])
+
+    return force
+
+
+SCALES = np.array([1e-5, 1e-6, 1e-8])
+"""Steps of the numerical stiffness along x, y and theta."""
+
+
+def stiffness(force: Force, q: FloatArray, right: float, left: float) -> FloatArray:
+    """Return minus the Jacobian of the force, by central differences."""
+    columns = []
+    for i in range(len(q)):
+        step = np.zeros(len(q))
+        step[i] = SCALES[i]
+        columns.append((force(q - step, right, left) - force(q + step, right, left)) / (2.0 * SCALES[i]))
+    return np.column_stack(columns)
+
+
+def is_stable(force: Force, q: FloatArray, right: float, left: float) -> bool:
+    """Say whether the energy has a minimum there."""
+    k = stiffness(force, q, right, left)
+    size = np.sqrt(np.abs(np.diag(k))) + 1e-300
+    return bool(np.linalg.eigvalsh(0.5 * (k + k.T) / np.outer(size, size))[0] > 0.0)
+
+
+def rest_at(force: Force, start: FloatArray, right: float, left: float) -> FloatArray | None:
+    """Return the equilibrium next to a place under given squared voltages, or none."""
+    q = start.copy()
+    for _ in range(60):
+        try:
+            move = np.linalg.solve(stiffness(force, q, right, left), force(q, right, left))
+        except np.linalg.LinAlgError:
+            return None
+        q = q + move
+        if not np.all(np.isfinite(q)) or abs(q[0]) > 30.0 or (len(q) > 1 and (abs(q[1]) > 2.0 or abs(q[2]) > 0.015)):
+            return None
+        if np.all(np.abs(move) < 1e-9 * SCALES / SCALES[-1] if len(q) == 3 else np.abs(move) < 1e-9):
+            return q
+    return None
+
+
+def voltage_at(
+    force: Force, x: float, start: FloatArray, stators: tuple[float, float]
+) -> tuple[FloatArray, float] | None:
+    """Return the place and the voltage on the shuttle that hold it at rest at a travel, by Newton's method."""
+    q, v = start[:-1].copy(), float(start[-1])
+    q[0] = x
+    unknowns = np.append(q[1:], v)
+
+    def residual(z: FloatArray) -> FloatArray:
+        place = np.append([x], z[:-1])
+        return force(place, (stators[0] - z[-1]) * (stators[0] - z[-1]), (stators[1] - z[-1]) * (stators[1] - z[-1]))
+
+    scales = np.append(SCALES[1 : len(q)], 1e-5)
+    for _ in range(40):
+        f = residual(unknowns)
+        columns = []
+        for i, h in enumerate(scales):
+            step = np.zeros(len(scales))
+            step[i] = h
+            columns.append((residual(unknowns + step) - residual(unknowns - step)) / (2.0 * h))
+        try:
+            move = np.linalg.solve(np.column_stack(columns), f)
+        except np.linalg.LinAlgError:
+            return None
+        unknowns = unknowns - move
+        if not np.all(np.isfinite(unknowns)):
+            return None
+        if np.all(np.abs(move) < 1e-4 * scales):
+            return np.append([x], unknowns[:-1]), float(unknowns[-1])
+    return None
+
+
+def fold(
+    force: Force,
+    stators: tuple[float, float],
+    lateral: Callable[[FloatArray], float],
+    size: int,
+    farthest: float = 20.0,
+    step: float = 0.05,
+) -> Fold | None:
+    """Return the first place, to either side, where the equilibrium stops being stable as the drive rises.
+
+    Parameters
+    ----------
+    force : callable
+        Static force.
+    stators : tuple of float
+        Voltages of the stators.
+    lateral : callable
+        Displacement of the worst corner sideways at a place.
+    size : int
+        Coordinates of a place, 1 or 3.
+    farthest, step : float
+        Largest travel looked at, and how finely, um.
+
+    Returns
+    -------
+    Fold or None
+        Of the two sides the one that needs less voltage; none when both are stable as far as was looked. A device that
+        is unstable without any drive has its fold at 0 V.
+    """
+    rest = rest_at(force, np.zeros(size), stators[0] * stators[0], stators[1] * stators[1])
+    if rest is None or not is_stable(force, rest, stators[0] * stators[0], stators[1] * stators[1]):
+        return Fold(0.0, 0.0, 0.0)
+    found = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
+    ends = [entry for entry in found if entry is not None]
+    return min(ends, key=lambda entry: abs(entry.volts)) if ends else None
+
+
+def _one_side(
+    force: Force,
+    stators: tuple[float, float],
+    lateral: Callable[[FloatArray], float],
+    rest: FloatArray,
+    side: float,
+    farthest: float,
+    step: float,
+) -> Fold | None:
+    def stable(x: float, near: FloatArray) -> tuple[bool, FloatArray]:
+        held = voltage_at(force, x, near, stators)
+        if held is None:
+            return False, near
+        q, v = held
+        right, left = (stators[0] - v) * (stators[0] - v), (stators[1] - v) * (stators[1] - v)
+        return is_stable(force, q, right, left), np.append(q, v)
+
+    last = np.append(rest, 0.0)
+    x, pace = float(rest[0]), step
+    while pace > 1e-7:
+        good, state = stable(x + side * pace, last)
+        if good:
+            x, last = x + side * pace, state
+            if abs(x) > farthest:
+                return None
+        else:
+            pace *= 0.5
+    return Fold(x, float(last[-1]), lateral(last[:-1]))
+
+
+def bias_pull_in(p: FloatArray, suspension: FloatArray, highest: float = 400.0) -> float | None:
+    """Return the bias, V on both stators with opposite signs, beyond which a planar plant has no stable rest."""
+    force = planar_force(p, suspension)
+
+    def at(volts: float, near: FloatArray) -> FloatArray | None:
+        q = rest_at(force, near, volts * volts, volts * volts)
+        return q if q is not None and is_stable(force, q, volts * volts, volts * volts) else None
+
+    volts, step, place = 0.0, 1.0, np.zeros(3)
+    while step > 1e-6:
+        found = at(volts + step, place)
+        if found is None:
+            step *= 0.5
+        else:
+            volts, place = volts + step, found
+            if volts > highest:
+                return None
+    return volts
+
+
+def stators_of(p: FloatArray) -> tuple[float, float]:
+    """Return the voltages of the stators in packed parameters of a plant."""
+    return float(p[FIRST_V]), float(p[SECOND_V])
