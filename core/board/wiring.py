@@ -17,6 +17,9 @@ from core.board.spec import Spec
 from core.faults.fault import Fault
 from core.signals import Signal, SignalTable
 
+NOTHING = "@nothing"
+"""A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
+
 
 @dataclass(frozen=True)
 class Instance:
@@ -71,7 +74,9 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
     for name, block in registry.blocks("faults").items():
         order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
-    order += [own(name, section) for name, section in spec.sensors.items()]
+    # first what only detects, then what recovers a displacement from it
+    for recovers in (False, True):
+        order += [own(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers]
     order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
     for name, section in spec.diagnosers.items():
         order.append(own(name, section))
@@ -80,6 +85,11 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     order += [own(name, section) for name, section in spec.controllers.items()]
     order += [own("drive", spec.drive), own("guard", spec.guard)]
     return order
+
+
+def recovered(block: type[Block]) -> bool:
+    """Say whether a sensor puts out a displacement."""
+    return any(port.name == "displacement" for port in block.outputs)
 
 
 def _scored(params: BlockParams) -> BlockParams:
@@ -102,9 +112,11 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
                     size += 1
                     if not port.hidden:
                         shown.append((name, port, instance, kind))
-    for name in spec.controllers:
+    for name in (*spec.controllers, *spec.sensors):
         index[f"{name}.engaged"] = size
         size += 1
+    index[NOTHING] = size
+    size += 1
     shown.sort(key=lambda entry: entry[3] != "output")
     signals = SignalTable(
         [
@@ -129,7 +141,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     w = np.zeros(size)
     for port in Effects.outputs:
         w[index[f"effects.{port.name}"]] = port.neutral
-    w[index[f"{spec.active}.engaged"]] = 1.0
+    engage(spec, index, w)
     return Wiring(
         instances=order,
         signals=signals,
@@ -144,9 +156,29 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     )
 
 
+def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
+    """Tell every controller whether it drives, and every sensor whether it is needed; the others may rest."""
+    running = {spec.active, *needed(spec)}
+    for name in (*spec.controllers, *spec.sensors):
+        w[index[f"{name}.engaged"]] = 1.0 if name in running else 0.0
+
+
+def needed(spec: Spec) -> set[str]:
+    """Return the sensor in use, those that always run, and all they read from."""
+    found: set[str] = set()
+    always = [name for name, section in spec.sensors.items() if getattr(section.params, "always", False)]
+    waiting = [spec.measuring, *always]
+    while waiting:
+        name = waiting.pop()
+        if name in spec.sensors and name not in found:
+            found.add(name)
+            waiting += [port.source.split(".")[0] for port in spec.sensors[name].block.inputs]
+    return found
+
+
 def ports_of(spec: Spec, instance: Instance, index: dict[str, int]) -> IntArray:
     """Return the signal indices of an instance's ports: inputs, outputs, taps."""
-    inputs = [index[_source(spec, instance, port)] for port in instance.block.inputs]
+    inputs = [index[_source(spec, instance, port, index)] for port in instance.block.inputs]
     own = [index[signal_name(instance, port.name)] for port in (*instance.block.outputs, *instance.block.taps)]
     return np.array(inputs + own, dtype=np.int64)
 
@@ -156,7 +188,10 @@ def signal_name(instance: Instance, port: str) -> str:
     return instance.prefix if issubclass(instance.block, Fault) else f"{instance.prefix}.{port}"
 
 
-def _source(spec: Spec, instance: Instance, port: Port) -> str:
+def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -> str:
+    if port.source.endswith("?"):
+        signal = port.source.removesuffix("?")
+        return signal if signal in index else NOTHING
     if port.source == "@engaged":
         return f"{instance.prefix}.engaged"
     if port.source == "@measuring":
