@@ -187,13 +187,10 @@ function paintDelays(
     const found = change.delay === undefined ? next : change.tick + change.delay;
     ctx.fillStyle = change.delay === undefined ? colours.alarm : colours.accent;
     ctx.fillRect(left, middle - 3, Math.max(2, x(found) - left), 6);
-    const text =
-      change.delay === undefined
-        ? "not found yet"
-        : `${change.delay} samples · ${formatNumber(change.delay * frame.dtMs, 2)} ms`;
     const at = Math.max(x(found), layout.left) + 6;
-    if (at + ctx.measureText(text).width > x(next) && i + 1 < switches.length) return;
-    ctx.fillText(text, at, middle + 0.5);
+    const room = i + 1 < switches.length ? x(next) - at - 4 : Number.POSITIVE_INFINITY;
+    const text = delayWords(change.delay, frame.dtMs).find((words) => ctx.measureText(words).width <= room);
+    if (text) ctx.fillText(text, at, middle + 0.5);
   });
 }
 
@@ -220,4 +217,11 @@ function paintTime(
   ctx.textAlign = "right";
   ctx.font = fontFor(fontSize, 1, 600);
   ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - fontSize * 2.4, y);
+}
+
+/** A delay in words, the longest first; the picture takes what fits. */
+function delayWords(delay: number | undefined, dtMs: number): string[] {
+  if (delay === undefined) return ["not found yet", "not yet"];
+  const ms = `${formatNumber(delay * dtMs, 2)} ms`;
+  return [`${delay} samples · ${ms}`, `${delay} · ${ms}`, ms, String(delay)];
 }
