@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -104,7 +105,13 @@ class Score(Block):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the ticks between two verdicts and the factors of the hypotheses."""
-        factors = [value for item in params.hypotheses for value in (item.mass, item.stiffness, item.damping)]
+        # nothing changes the true drive gain, so a hypothesis about it is never the truth
+        masses = [item.mass if item.gain == 1.0 else math.nan for item in params.hypotheses]
+        factors = [
+            value
+            for mass, item in zip(masses, params.hypotheses, strict=True)
+            for value in (mass, item.stiffness, item.damping)
+        ]
         return np.array([float(len(params.hypotheses)), context.every, *factors])
 
     @classmethod
