@@ -34,7 +34,7 @@ def test_library_scenario_keeps_its_expectations(scenario):
     for entry in result.expectations():
         assert entry["ok"], f"{entry['metric']}: {entry['measured']}, expected {entry['expected']}"
     assert result.trip is None
-    assert result.board.tick == (scenario.samples or 10_000)
+    assert result.board.tick == (0 if scenario.study else scenario.samples or 10_000)
 
 
 @pytest.mark.parametrize("scenario", LIBRARY)
@@ -55,7 +55,8 @@ def test_library_scenario_gives_the_same_bits_again(scenario):
     short = with_values(scenario, {"samples": 700} if "samples" in scenario.document else {"duration_ms": 7.0})
     first, again = run(short), run(Scenario.load(short.toml()))
     assert first.digest == again.digest
-    assert run(short, seed=99).digest != first.digest or "noise_um = 0.0" in short.toml()
+    no_chance = scenario.study or "noise_um = 0.0" in short.toml()
+    assert run(short, seed=99).digest != first.digest or no_chance
 
 
 def test_expectations_can_miss():
@@ -172,7 +173,7 @@ def test_set_reaches_every_length_of_a_drawing(name):
         assert before != after, "a length that changes nothing"
 
 
-@pytest.mark.parametrize("name", sorted(set(Device.model_fields) - {"id", "geometry"}))
+@pytest.mark.parametrize("name", sorted(set(Device.model_fields) - {"id", "geometry", "printed"}))
 def test_set_reaches_every_value_of_a_device(name):
     value: Any = {"title": "x", "source": "y", "fingers": 25}.get(name, 2.5)
     found = with_values(Scenario.load(document()), {f"device.{name}": value})
@@ -203,7 +204,7 @@ def test_set_reaches_head_events_and_expectations():
     assert base.samples == 9000 and base.head.events[0].severity == 0.05, "the original is untouched"
     for name in Head.model_fields:
         assert name in ("schema_", "id", "title", "source", "summary", "claim", "verdict", "samples", "duration_ms",
-                        "events", "expect", "metrics")  # fmt: skip
+                        "events", "expect", "metrics", "study")  # fmt: skip
 
 
 @pytest.mark.parametrize(
