@@ -414,7 +414,9 @@ def test_score_against_its_definition(data):
     context = Context(dt_ms=0.01, every=1, seed=0, device=NOMINAL, model=NOMINAL)
     p, s = score.Score.pack(params, context), score.Score.state(params, context)
     w = np.zeros(32)
-    io = np.array([2, 5, 8, 9, 10, 11, 12, 13, 14, 15])  # probability, nis, three scales, outputs, taps
+    w[16] = 1.0
+    # probability, nis, three scales, drive gain, other, outputs, taps
+    io = np.array([2, 5, 8, 9, 10, 16, 17, 11, 12, 13, 14, 15])
     for tick, (who, what) in enumerate(zip(winner, truth, strict=True)):
         w[0] = tick
         w[2:5] = 0.1
@@ -461,7 +463,6 @@ def test_truth_needs_all_factors_and_is_none_otherwise():
     assert np.all(signals(50, faults={"damping": 0.3})["kalman.truth"] == 5)
 
 
-@pytest.mark.xfail(strict=True, reason="the truth does not look at the drive gain of a hypothesis")
 def test_a_hypothesis_on_the_drive_is_not_the_truth_of_a_healthy_device():
     bank = {"kind": "mmae", "hypotheses": [{"name": "gain+10", "gain": 1.1}, {"name": "healthy"}]}
     trace = play(make({**BENCH, "diagnosers": {"kalman": bank}}), 400)
