@@ -25,6 +25,9 @@ IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
 PARKED = {"controller": ("controllers", "control", "open_loop"), "sensor": ("sensors", "sense", "ideal")}
 """Of these all run, one is in use: table of the one, table of all, family, and the usual one."""
 
+EXCHANGED = {"reference.kind": ("reference", "kind", ()), "plant.model": ("plant", "model", ("drive", "every"))}
+"""Paths that name a block which is alone in its table: the table, the key, and what else may stand there."""
+
 DEFAULTS: Document = {
     "device": {"id": "ch3"},
     "plant": {"model": "linear"},
@@ -228,10 +231,11 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
             table[_position(parts[-1], table, path)] = copy.deepcopy(value)
             continue
         table[parts[-1]] = copy.deepcopy(value)
-        if path == "reference.kind":
-            # a new kind of reference keeps what it shares with the old one
-            fields = registry.block("reference", value, path).Params.model_fields
-            doc["reference"] = {key: entry for key, entry in table.items() if key == "kind" or key in fields}
+        if path in EXCHANGED:
+            # a new kind keeps what it shares with the old one
+            section, key, own = EXCHANGED[path]
+            fields = {key, *own, *registry.block(section, value, path).Params.model_fields}
+            doc[section] = {name: entry for name, entry in table.items() if name in fields}
     return doc
 
 

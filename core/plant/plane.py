@@ -67,7 +67,7 @@ class PlaneParams(ShuttleParams):
     turn_rad_m: float = parameter(HEALTHY.th1, "rotation per travel", "rad/m", ge=-1e4, le=1e4)
     turn_cubic_rad_m3: float = parameter(HEALTHY.th3, "rotation per cubed travel", "rad/m^3", ge=-1e13, le=1e13)
     misalignment_um: float = parameter(0.0, "sideways offset of the combs as made", "um", ge=-0.5, le=0.5)
-    misalignment_rad: float = parameter(0.0, "rotation of the combs as made", "rad", ge=-3e-3, le=3e-3)
+    misalignment_mrad: float = parameter(0.0, "rotation of the combs as made", "mrad", ge=-3, le=3)
     lateral_damping_ns_m: float = parameter(4.57e-7, "damping along y without the fingers", "N s/m", ge=0, le=1e-3)
     rotation_damping_nms: float = parameter(
         2.90e-14, "damping of the rotation without the fingers", "N m s", ge=0, le=1e-9
@@ -109,7 +109,7 @@ def packed(params: Any, context: Context) -> list[float]:
         params.stop_stiffness_n_m,
         params.stop_damping_ns_m * 1e3,
         params.misalignment_um,
-        params.misalignment_rad,
+        params.misalignment_mrad * 1e-3,
         params.cubic_n_m3 * 1e-12,
         params.lateral_stiffness_n_m,
         params.lateral_reach_um,

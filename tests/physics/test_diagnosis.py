@@ -424,7 +424,9 @@ def test_score_against_its_definition(data):
     context = Context(dt_ms=0.01, every=1, seed=0, device=NOMINAL, model=NOMINAL)
     p, s = score.Score.pack(params, context), score.Score.state(params, context)
     w = np.zeros(32)
-    io = np.array([2, 5, 8, 9, 10, 11, 12, 13, 14, 15])  # probability, nis, three scales, outputs, taps
+    w[16] = 1.0
+    # probability, nis, three scales, drive gain, other, outputs, taps
+    io = np.array([2, 5, 8, 9, 10, 16, 17, 11, 12, 13, 14, 15])
     for tick, (who, what) in enumerate(zip(winner, truth, strict=True)):
         w[0] = tick
         w[2:5] = 0.1

@@ -33,6 +33,9 @@ def test_library_scenario_keeps_its_expectations(scenario):
     result = run(scenario)
     for entry in result.expectations():
         assert entry["ok"], f"{entry['metric']}: {entry['measured']}, expected {entry['expected']}"
+    if any(entry.metric == "lateral.contact_ms" for entry in scenario.head.expect):
+        assert result.trip is not None and "touched" in result.trip.reason
+        return
     assert result.trip is None
     assert result.board.tick == (0 if scenario.study else scenario.samples or 10_000)
 
