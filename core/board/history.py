@@ -136,7 +136,9 @@ def _crossing(ring: Any, signal: int, sign: float, level: float, hysteresis: flo
 def _untouched(rows: int, columns: int) -> Float32Array:
     """Return zeros that take memory page by page as they are written; numpy's own ask for huge pages."""
     size = max(1, rows * columns)
-    return np.frombuffer(mmap.mmap(-1, 4 * size), dtype=np.float32)[: rows * columns].reshape(rows, columns)
+    return np.frombuffer(mmap.mmap(-1, 4 * size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS), dtype=np.float32)[
+        : rows * columns
+    ].reshape(rows, columns)
 
 
 class History:
