@@ -75,7 +75,7 @@ BODIES: list[tuple[str, bytes, int, str, list[str]]] = [
     ("out of range", b'{"scenario": "ch5-seven-step", "time_scale": 5}', 422, "invalid", ["time_scale", "1"]),
     ("not live path", b'{"scenario": "ch5-seven-step", "set": {"a.b": 1}}', 422, "unknown", ["a"]),
     ("NaN", b'{"scenario": "ch5-seven-step", "time_scale": NaN}', 400, "malformed", ["NaN"]),
-    ("Infinity", b'{"scenario": "ch5-seven-step", "set": {"sensor.noise_um": Infinity}}', 400, "malformed", ["Infinity"]),
+    ("Infinity", b'{"scenario": "first-look", "set": {"sensor.noise_um": Infinity}}', 400, "malformed", ["Infinity"]),
     ("overflow", b'{"scenario": "ch5-seven-step", "time_scale": 1e999}', 400, "malformed", ["1e999"]),
     ("double key", b'{"scenario": "a", "scenario": "b"}', 400, "malformed", ["twice"]),
     ("malformed JSON", b'{"scenario": ', 400, "malformed", ["JSON"]),
@@ -160,9 +160,25 @@ MESSAGES: list[tuple[str, str | bytes, str, list[str]]] = [
     ("wrong type", '{"type": "ack", "frame": "1"}', "invalid", ["frame"]),
     ("unknown signal", '{"type": "subscribe", "panel": 1, "signals": ["moon"], "window_ms": 1}', "unknown", ["moon"]),
     ("no window", '{"type": "subscribe", "panel": 1, "signals": ["plant.velocity"]}', "invalid", ["window_ms"]),
-    ("empty span", '{"type": "subscribe", "panel": 1, "signals": ["plant.velocity"], "mode": "frozen", "start_tick": 5, "end_tick": 5}', "invalid", ["start_tick"]),
-    ("too wide", '{"type": "subscribe", "panel": 1, "signals": ["plant.velocity"], "window_ms": 1, "width": 100000}', "invalid", ["width", "4096"]),
-    ("no trigger", '{"type": "subscribe", "panel": 1, "signals": ["plant.velocity"], "mode": "triggered", "window_ms": 1}', "invalid", ["trigger"]),
+    (
+        "empty span",
+        '{"type": "subscribe", "panel": 1, "signals": ["plant.velocity"], "mode": "frozen", '
+        '"start_tick": 5, "end_tick": 5}',
+        "invalid",
+        ["start_tick"],
+    ),
+    (
+        "too wide",
+        '{"type": "subscribe", "panel": 1, "signals": ["plant.velocity"], "window_ms": 1, "width": 100000}',
+        "invalid",
+        ["width", "4096"],
+    ),
+    (
+        "no trigger",
+        '{"type": "subscribe", "panel": 1, "signals": ["plant.velocity"], "mode": "triggered", "window_ms": 1}',
+        "invalid",
+        ["trigger"],
+    ),
     ("rearm nothing", '{"type": "rearm", "panel": 9}', "invalid", ["panel 9"]),
     ("an unknown command without an id", '{"type": "command", "command": {"kind": "explode"}}', "invalid", ["id"]),
 ]  # fmt: skip

@@ -47,7 +47,7 @@ def test_where_it_may_listen(host: str, token: str | None, allowed: bool) -> Non
 def test_a_port_that_is_taken_is_named(tmp_path: Path) -> None:
     first = bind(Settings(port=0, data=tmp_path))
     try:
-        with pytest.raises(InputError, match="cannot listen on 127.0.0.1"):
+        with pytest.raises(InputError, match=r"cannot listen on 127\.0\.0\.1"):
             bind(Settings(port=first.getsockname()[1], data=tmp_path))
     finally:
         first.close()

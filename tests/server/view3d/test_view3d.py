@@ -133,9 +133,8 @@ def test_faults_and_motion_reach_the_parts(live: Any) -> None:
         assert scene._mass.visible and scene._film.visible
         assert tuple(scene._suspension.color) != color
         assert len(seen) > 5
-        assert tuple(scene._suspension.bones[2].position)[0] == pytest.approx(
-            0.5 * tuple(scene._suspension.bones[1].position)[0]
-        )
+        shuttle, truss = (scene._suspension.bones[i].position for i in (1, 2))
+        assert truss[0] == pytest.approx(0.5 * shuttle[0])
 
 
 def test_the_rest_works_without_the_folder(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
