@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import signal
 import socket
 import sys
 import webbrowser
+from typing import TYPE_CHECKING
 
 import uvicorn
-from fastapi import FastAPI
-from starlette.requests import HTTPConnection
 
 from core.errors import InputError
 from server import logs
-from server.app import create_app
-from server.service import Service
 from server.settings import Settings
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+    from starlette.requests import HTTPConnection
+
+    from server.service import Service
 
 log = logging.getLogger(__name__)
 
@@ -33,8 +37,8 @@ class Server(uvicorn.Server):
         As for uvicorn.
     service : Service
         Whose streams to close.
-    on_ready : callable, optional
-        Called once requests are answered.
+    address : str
+        Printed once requests are answered.
     """
 
     def __init__(self, config: uvicorn.Config, service: Service, address: str = "") -> None:
@@ -72,7 +76,7 @@ def check_binding(settings: Settings) -> None:
         Saying what to set.
     """
     token = settings.token.get_secret_value() if settings.token else ""
-    if settings.token is not None and len(token) < MIN_TOKEN:
+    if token and len(token) < MIN_TOKEN:
         raise InputError(f"must have at least {MIN_TOKEN} characters", "token")
     if not settings.is_loopback and not token:
         raise InputError(
@@ -140,6 +144,8 @@ def serve(settings: Settings) -> None:
     listener = bind(settings)
     try:
         settings.data.mkdir(parents=True, exist_ok=True)
+        from server.app import create_app  # loads everything; a wrong setting is told before that
+
         app = create_app(settings)
     except OSError as error:
         listener.close()
@@ -149,6 +155,9 @@ def serve(settings: Settings) -> None:
     port = listener.getsockname()[1]
     address = f"http://{shown}:{port}/?token={app.state.identity.token}"
     server = make_server(settings, app, address)
+    # Once all is stopped uvicorn raises the signal again; being told to stop is no failure.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: None)
     server.run(sockets=[listener])
     if not server.started:
         raise InputError("the service did not start; the lines above say why", "serve")

@@ -17,6 +17,7 @@ from scenarios.library import library
 from scenarios.run import build
 from server.bench.benches import Benches
 from server.bench.engine import Engine
+from server.bench.portrait import bench_of
 from server.bench.session import Session
 from server.bench.status import Bench
 from server.lag import LagProbe
@@ -89,7 +90,7 @@ class Service:
     def view(self, session: Session) -> Bench:
         """Describe a bench in full."""
         view3d = f"/benches/{session.id}/3d/" if self.theatre is not None else None
-        return session.view(self.hub.watchers(session.id), self.lag.p99_ms(), view3d)
+        return bench_of(session, self.hub.watchers(session.id), self.lag.p99_ms(), view3d)
 
     async def close_bench(self, session: Session) -> None:
         """Close a bench and everything that shows it."""

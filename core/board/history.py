@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mmap
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,13 @@ WIDEST = 4096
 
 
 @kernel
+def _put(rows: Any, row: int, place: int, value: Any) -> None:
+    """Write what is new: a page of memory nobody wrote to costs nothing, and most faults stay at zero."""
+    if rows[row, place] != value:
+        rows[row, place] = value
+
+
+@kernel
 def _append(
     ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, first: int, rows: FloatArray, at: int
 ) -> None:
@@ -30,7 +38,7 @@ def _append(
         signal = at + c
         place = first % capacity
         for i in range(count):
-            ring[signal, place] = np.float32(rows[i, c])
+            _put(ring, signal, place, np.float32(rows[i, c]))
             place += 1
             if place == capacity:
                 place = 0
@@ -43,8 +51,8 @@ def _append(
                 value = ring[signal, place]
                 least = value if value < least else least
                 most = value if value > most else most
-            low[signal, bucket % sizes[0]] = least
-            high[signal, bucket % sizes[0]] = most
+            _put(low, signal, bucket % sizes[0], least)
+            _put(high, signal, bucket % sizes[0], most)
         span = FACTOR
         for level in range(1, LEVELS):
             for bucket in range(first // (span * FACTOR), (end - 1) // (span * FACTOR) + 1):
@@ -55,8 +63,8 @@ def _append(
                 for place in range(begin + 1, begin + inner):
                     least = min(least, low[signal, place])
                     most = max(most, high[signal, place])
-                low[signal, offsets[level] + bucket % sizes[level]] = least
-                high[signal, offsets[level] + bucket % sizes[level]] = most
+                _put(low, signal, offsets[level] + bucket % sizes[level], least)
+                _put(high, signal, offsets[level] + bucket % sizes[level], most)
             span *= FACTOR
 
 
@@ -125,6 +133,12 @@ def _crossing(ring: Any, signal: int, sign: float, level: float, hysteresis: flo
     return int(found)
 
 
+def _untouched(rows: int, columns: int) -> Float32Array:
+    """Return zeros that take memory page by page as they are written; numpy's own ask for huge pages."""
+    size = max(1, rows * columns)
+    return np.frombuffer(mmap.mmap(-1, 4 * size), dtype=np.float32)[: rows * columns].reshape(rows, columns)
+
+
 class History:
     """The last ticks of every signal.
 
@@ -140,9 +154,9 @@ class History:
         self.capacity = -(-capacity // WIDEST) * WIDEST
         self._sizes = np.array([self.capacity // FACTOR ** (level + 1) for level in range(LEVELS)], dtype=np.int64)
         self._offsets = np.concatenate([[0], np.cumsum(self._sizes)[:-1]]).astype(np.int64)
-        self._ring = np.zeros((signals, self.capacity), dtype=np.float32)
-        self._low = np.zeros((signals, int(self._sizes.sum())), dtype=np.float32)
-        self._high = np.zeros_like(self._low)
+        self._ring = _untouched(signals, self.capacity)
+        self._low = _untouched(signals, int(self._sizes.sum()))
+        self._high = _untouched(signals, int(self._sizes.sum()))
         self._begin = 0
         self.end_tick = 0
 

@@ -48,4 +48,4 @@ class Observer:
                     samples = int(delay[i])
                     text = f"{name} found {label} after {samples} samples ({samples * self._dt_ms:.3g} ms)"
                     found.append({"kind": "recognised", "text": text, "tick": tick, "old": samples, "new": label})
-        return found
+        return sorted(found, key=lambda finding: int(finding["tick"]))

@@ -17,6 +17,8 @@ PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI = range(9)  # lane
 X1, X2, P11, P12, P22, LOG, COVARIANCE, LOG_COVARIANCE, LIKELIHOOD = range(9)  # lanes of s
 MEASURED, APPLIED, CHARGE, PROBABILITY, RESIDUAL, NIS = range(6)
 START, LAST_CHARGE, OWN = 0, 1, 2
+LEAST = 1e-12
+"""Least residual covariance, as a share of R."""
 
 
 def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -57,8 +59,8 @@ def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
             c12 = q1 * f21 + q2 * f22 + g1 * g2 * p[PROCESS]
             c22 = q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
         residual = settled(z - x1) if seen else 0.0
-        # psi = H P- H' + R ; the text prints it without R
-        psi = c11 if p[PRINTED] != 0.0 else c11 + p[SENSOR]
+        # psi = H P- H' + R ; the text prints it without R, and without assumed noise that would end at nothing
+        psi = max(c11, LEAST * p[SENSOR]) if p[PRINTED] != 0.0 else c11 + p[SENSOR]
         innovation = c11 + p[SENSOR]
         k1 = c11 / innovation
         k2 = c12 / innovation
@@ -230,4 +232,4 @@ def steady_gain(
     noise = np.outer(gamma, gamma) * q + np.eye(2) * 1e-18
     prior = solve_discrete_are(transition_matrix.T, np.array([[1.0], [0.0]]), noise, np.array([[r]]))
     psi = prior[0, 0] + r
-    return prior[0, 0] / psi, prior[1, 0] / psi, prior[0, 0] if printed else psi
+    return prior[0, 0] / psi, prior[1, 0] / psi, max(prior[0, 0], LEAST * r) if printed else psi

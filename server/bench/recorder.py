@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import queue
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -21,6 +22,10 @@ QUEUE_BYTES = 64 << 20
 """Rows on their way to the disk, at most."""
 
 BATCH_TICKS = 8192
+FLUSH_S = 0.5
+"""What is not written yet is never older than this."""
+
+NOTHING = (0, np.empty((0, 0), np.float32))
 
 
 class Recorder:
@@ -94,24 +99,22 @@ class Recorder:
     def _write(self) -> None:
         """Write batches until the end or an error of the disk."""
         batch: list[NDArray[np.float32]] = []
-        first, held = 0, 0
+        first, held, due = 0, 0, time.monotonic() + FLUSH_S
         try:
             while True:
                 try:
-                    item = self._queue.get(timeout=1.0)
+                    item = self._queue.get(timeout=FLUSH_S)
                 except queue.Empty:
-                    item = (0, np.empty((0, 0), np.float32))
+                    item = NOTHING
                 if item is not None and item[1].size:
                     first = first if batch else item[0]
                     batch.append(item[1])
                     held += item[1].shape[1]
                     with self._lock:
                         self._bytes -= item[1].nbytes
-                    if held < BATCH_TICKS:
-                        continue
-                if batch:
+                if batch and (item is None or held >= BATCH_TICKS or time.monotonic() >= due):
                     self._file.append(table_of(self._schema, first, self._dt_ms, np.hstack(batch)))
-                    batch, held = [], 0
+                    batch, held, due = [], 0, time.monotonic() + FLUSH_S
                 if item is None:
                     break
             self._on_end(self._file.finish(), self.reason)

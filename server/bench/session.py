@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from core.board.board import Board, Checkpoint, Rows
-from core.board.changes import describe
 from core.board.history import History
 from core.device.geometry import Geometry
 from core.errors import InputError
@@ -24,21 +23,13 @@ from scenarios.schema import Scenario
 from server.bench.commands import Pause, Start, Step, StepPeriod, TimeScale
 from server.bench.events import Event, EventLog
 from server.bench.pacing import Pacer
+from server.bench.portrait import MAX_PENDING, document_of, status_of
 from server.bench.recorder import Recorder
-from server.bench.status import (
-    ActiveFault,
-    Bench,
-    BenchStatus,
-    DiagnoserInfo,
-    Pending,
-    Snapshot,
-    State,
-)
+from server.bench.status import BenchStatus, Snapshot
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 
 STATUS_S = 0.2
-MAX_PENDING = 100
 FORK_TICKS = 20_000
 """Past a fork brings along."""
 
@@ -291,48 +282,7 @@ class Session:
 
     def document(self) -> dict[str, Any]:
         """Return what happened as a scenario; run headless it gives the same bits (a job)."""
-        title = self.scenario.head.title or self.scenario.id
-        head = {
-            "schema": 1,
-            "id": f"{self.scenario.id[:58]}-live",
-            "title": f"{title}, as run live"[:200],
-            "source": self.scenario.head.source,
-        }
-        document = {**head, **self.board.save()}
-        if self.board.tick == 0:  # nothing has happened yet: what is saved is what would
-            del document["samples"]
-            if self.scenario.samples is not None:
-                document["samples"] = self.scenario.samples
-        return document
-
-    def view(self, watchers: int, loop_lag_ms: float, view3d: str | None) -> Bench:
-        """Describe the bench in full."""
-        spec, last = self.board.spec, self.events.last
-        return Bench(
-            **{**dict(self.status), "watchers": watchers, "loop_lag_ms": loop_lag_ms, "last_event": last},
-            id=self.id,
-            title=self.scenario.head.title or self.scenario.id,
-            scenario_id=self.scenario.id,
-            source=self.scenario.head.source,
-            created=self.created,
-            seed=spec.seed,
-            dt_ms=self.dt_ms,
-            sample_rate_khz=spec.frame.sample_rate_khz,
-            samples=self.scenario.samples,
-            drive_period_ticks=self.drive_period_ticks,
-            history_ticks=self.history.capacity,
-            signals=list(self.signals),
-            controllers=list(spec.controllers),
-            diagnosers={
-                name: DiagnoserInfo(
-                    kind=section.block.name,
-                    names=[item.name for item in getattr(section.params, "hypotheses", ())],
-                )
-                for name, section in spec.diagnosers.items()
-            },
-            parameters=spec.document,
-            view3d=view3d,
-        )
+        return document_of(self)
 
     # ---- inside
 
@@ -443,40 +393,4 @@ class Session:
 
     def _look(self) -> BenchStatus:
         """Look at the board: an object nobody changes afterwards."""
-        board, pacer = self.board, self.pacer
-        state: State = "running" if self._running else "paused"
-        if board.trip is not None:
-            state = "tripped"
-        return BenchStatus(
-            state=state,
-            tick=board.tick,
-            first_tick=self.history.first_tick,
-            time_scale=pacer.scale,
-            achieved_scale=pacer.achieved if self._running else 0.0,
-            capped=self._running and pacer.capped,
-            overruns=pacer.overruns,
-            given_up_ms=pacer.given_up_s * 1e3,
-            controller=board.spec.active,
-            faults=[
-                ActiveFault(
-                    name=name,
-                    severity=params.severity,  # type: ignore[attr-defined]
-                    profile=params.profile.model_dump(),  # type: ignore[attr-defined]
-                    since_tick=params.start_tick,  # type: ignore[attr-defined]
-                )
-                for name, params in board.faults.items()
-            ],
-            pending=[
-                Pending(
-                    text=describe(entry.command),
-                    actor=entry.actor,
-                    tick=entry.tick,
-                    when=entry.command.when,
-                )
-                for entry in board.pending[:MAX_PENDING]
-            ],
-            trip=board.trip,
-            scores=board.scores(),
-            last_event=self.events.last,
-            recording=list(self.recorders),
-        )
+        return status_of(self)

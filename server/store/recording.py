@@ -45,7 +45,6 @@ class RecordingFile:
         self._sink.close()
         return convert(self._path)
 
-
     def salvage(self) -> int:
         """Let go of a stream that cannot be written any more; keep what has reached the disk."""
         with contextlib.suppress(OSError):

@@ -13,7 +13,6 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
-from scipy.io import savemat
 
 Format = Literal["csv", "parquet", "npz", "mat"]
 
@@ -50,6 +49,8 @@ def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[
 
 def write(table: pa.Table, path: Path, kind: Format) -> None:
     """Write a table; the file appears whole or not at all."""
+    from scipy.io import savemat  # loads half of scipy
+
     part = path.with_name(path.name + ".part")
     with part.open("wb") as file:
         if kind == "parquet":

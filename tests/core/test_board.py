@@ -326,7 +326,6 @@ def test_log_is_numbered_and_only_grows():
         assert entry["text"] and "\n" not in entry["text"]
 
 
-@pytest.mark.xfail(strict=True, reason="entries of one call are grouped by diagnoser, not ordered by tick")
 def test_the_order_of_the_log_does_not_depend_on_chunks():
     def told(chunk: int) -> list[tuple[int, str]]:
         board = make({}, [fault("added_mass", 0.05, at_sample=30)], base=RICH)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from core import registry
@@ -156,7 +156,7 @@ def test_steps_touch_only_their_own_parameters_state_and_ports():
 # -- snapshots
 
 
-@settings(max_examples=12)
+@settings(max_examples=12, phases=[Phase.generate])  # shrinking boards takes minutes
 @given(
     name=st.sampled_from(sorted(CASES)),
     chunks=st.lists(st.integers(1, 90), min_size=1, max_size=12),

@@ -238,6 +238,16 @@ def test_printed_residual_covariance_is_worse():
     assert right > 0.94 and wrong <= 0.45
 
 
+@pytest.mark.parametrize("form", ["recursive", "steady"])
+@pytest.mark.parametrize("covariance", ["correct", "printed"])
+def test_a_bank_without_assumed_noise_stays_finite(form, covariance):
+    bank = {"kind": "mmae", "process_noise_v": 0.0, "form": form, "residual_covariance": covariance}
+    trace = signals(40_000, {"diagnosers": {"kalman": bank}})
+    found = of_bank(trace, "probability")
+    assert np.all(np.isfinite(found)) and np.all(np.isfinite(of_bank(trace, "nis")))
+    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1e-9)
+
+
 def seven_steps(seeds: range) -> dict[str, float]:
     return run_seeds(get("ch5-seven-step"), seeds)["metrics"]
 

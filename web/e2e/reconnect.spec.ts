@@ -11,7 +11,7 @@ test("the page outlives its server and goes on when it is back", async ({ page }
 
     await server.stop();
     await expect(page.getByTestId("bench-state")).toHaveText("reconnecting");
-    await expect(page.getByRole("alert").filter({ hasText: "Connection lost" })).toBeVisible();
+    await expect(page.getByRole("region", { name: "Notice" }).getByText("Connection lost")).toBeVisible();
     await expect(page.getByRole("button", { name: "Try now" })).toBeVisible();
 
     await server.start();

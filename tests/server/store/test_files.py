@@ -26,10 +26,7 @@ def read(path: Path, kind: str) -> dict[str, Any]:
     if kind == "parquet":
         return {name: column.to_numpy() for name, column in zip(*_columns(pq.read_table(path)), strict=True)}
     if kind == "csv":
-        return {
-            name: column.to_numpy()
-            for name, column in zip(*_columns(pyarrow.csv.read_csv(path)), strict=True)
-        }
+        return {name: column.to_numpy() for name, column in zip(*_columns(pyarrow.csv.read_csv(path)), strict=True)}
     if kind == "npz":
         return dict(np.load(path))
     found = {k: v[:, 0] for k, v in loadmat(path).items() if not k.startswith("__")}

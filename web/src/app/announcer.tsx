@@ -20,6 +20,7 @@ export function Announcer() {
 
   useEffect(() => {
     if (phase === "waiting") alarm("Connection lost, trying again.");
+    if (phase === "closed") alarm("Not connected. The notice at the top says why.");
     if (phase === "open") announce("Connected.");
   }, [phase]);
 

@@ -100,11 +100,12 @@ function Line({
   children?: ReactNode;
 }) {
   return (
-    <div className={styles.banner} data-tone={tone} role={tone === "alarm" ? "alert" : "status"}>
+    // Announced by the page's live regions, not here a second time.
+    <section className={styles.banner} data-tone={tone} aria-label="Notice">
       <strong>{title}</strong>
       <span>{text}</span>
       <div className={styles.actions}>{children}</div>
-    </div>
+    </section>
   );
 }
 

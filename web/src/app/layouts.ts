@@ -19,9 +19,12 @@ export function attachDock(api: DockviewApi): void {
   );
 }
 
-/** Choose a built-in layout afresh; what was rearranged in it is forgotten. */
+/** Choose a built-in layout afresh; what was rearranged in it is forgotten. The address names it. */
 export function setLayout(name: LayoutName): void {
   localStorage.removeItem(storageKey(name));
+  const url = new URL(window.location.href);
+  url.searchParams.set("layout", name);
+  window.history.replaceState(null, "", url);
   arrange(name, undefined);
 }
 

@@ -4,6 +4,13 @@ export function contrast(a: string, b: string): number {
   return (x + 0.05) / (y + 0.05);
 }
 
+const INKS = ["#0b0e12", "#ffffff"];
+
+/** The ink, dark or light, that reads better on a colour. */
+export function inkOn(colour: string): string {
+  return contrast(INKS[0], colour) >= contrast(INKS[1], colour) ? INKS[0] : INKS[1];
+}
+
 function luminance(hex: string): number {
   const [r, g, b] = [1, 3, 5].map((i) => {
     const c = Number.parseInt(hex.slice(i, i + 2), 16) / 255;

@@ -46,6 +46,7 @@ export function NumberField({
         aria-label={unit ? `${label}, ${unit}` : label}
         aria-invalid={wrong !== undefined}
         inputMode="decimal"
+        placeholder="auto"
         value={text}
         disabled={disabled}
         onChange={(event) => setText(event.currentTarget.value)}

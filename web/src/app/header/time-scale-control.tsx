@@ -28,7 +28,7 @@ export function TimeScaleControl() {
           ÷2
         </ActionIcon>
       </Tooltip>
-      <Popover width={320} position="bottom">
+      <Popover width={400} position="bottom">
         <Popover.Target>
           <button type="button" className={styles.target} title="Change the time scale">
             <span>{target === null ? "max" : formatTimeScale(target)}</span>

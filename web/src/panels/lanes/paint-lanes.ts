@@ -1,5 +1,6 @@
 import type { PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
+import { inkOn } from "../../ui/contrast";
 import { formatNumber } from "../../ui/format";
 import { hatch } from "../../ui/hatch";
 import { CANVAS, type Scheme } from "../../ui/palette";
@@ -154,7 +155,7 @@ function paintBand(
       ctx.fillStyle = colours.panel;
       ctx.fillRect(at - 4, top + 2, needed + 8, height - 4);
     }
-    ctx.fillStyle = solid && run.value >= 0 ? "#0d1115" : colours.text;
+    ctx.fillStyle = solid && run.value >= 0 ? inkOn(String(fill(run.value))) : colours.text;
     ctx.fillText(label, at, top + height / 2 + 0.5);
   }
 }
@@ -186,13 +187,10 @@ function paintDelays(
     const found = change.delay === undefined ? next : change.tick + change.delay;
     ctx.fillStyle = change.delay === undefined ? colours.alarm : colours.accent;
     ctx.fillRect(left, middle - 3, Math.max(2, x(found) - left), 6);
-    const text =
-      change.delay === undefined
-        ? "not found yet"
-        : `${change.delay} samples · ${formatNumber(change.delay * frame.dtMs, 2)} ms`;
     const at = Math.max(x(found), layout.left) + 6;
-    if (at + ctx.measureText(text).width > x(next) && i + 1 < switches.length) return;
-    ctx.fillText(text, at, middle + 0.5);
+    const room = i + 1 < switches.length ? x(next) - at - 4 : Number.POSITIVE_INFINITY;
+    const text = delayWords(change.delay, frame.dtMs).find((words) => ctx.measureText(words).width <= room);
+    if (text) ctx.fillText(text, at, middle + 0.5);
   });
 }
 
@@ -219,4 +217,11 @@ function paintTime(
   ctx.textAlign = "right";
   ctx.font = fontFor(fontSize, 1, 600);
   ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - fontSize * 2.4, y);
+}
+
+/** A delay in words, the longest first; the picture takes what fits. */
+function delayWords(delay: number | undefined, dtMs: number): string[] {
+  if (delay === undefined) return ["not found yet", "not yet"];
+  const ms = `${formatNumber(delay * dtMs, 2)} ms`;
+  return [`${delay} samples · ${ms}`, `${delay} · ${ms}`, ms, String(delay)];
 }

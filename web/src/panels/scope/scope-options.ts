@@ -38,7 +38,7 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
   return {
     width: Math.max(50, host.clientWidth),
     height: Math.max(50, host.clientHeight),
-    padding: [fontSize + 12, units.length > 1 ? 0 : 12, 0, 0],
+    padding: [fontSize + 12, units.length > 1 ? 0 : fontSize * 1.6, 0, 0],
     legend: { show: false },
     cursor: {
       y: false,

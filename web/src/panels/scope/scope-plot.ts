@@ -93,11 +93,12 @@ export class ScopePlot {
     if (this.frame) this.draw(this.frame, this.span);
   }
 
-  /** Value of a trace at the hovered tick, or the newest one. */
+  /** Value of a trace at the hovered tick if that is in sight, else the newest one. */
   reading(trace: number): number {
     if (!this.frame || trace >= this.frame.signals) return Number.NaN;
     const { tick } = hover;
-    return tick === undefined ? this.frame.latest[trace] : columnAt(this.frame, trace, tick);
+    const inSight = tick !== undefined && tick >= this.span.start && tick < this.span.end;
+    return inSight ? columnAt(this.frame, trace, tick) : this.frame.latest[trace];
   }
 
   /** The scale of a unit's axis, or undefined if it has got none. */

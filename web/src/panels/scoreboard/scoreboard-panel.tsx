@@ -34,7 +34,10 @@ export function ScoreboardPanel() {
               <tr key={id}>
                 <th scope="row">{id.replaceAll("_", " ")}</th>
                 <td>{formatPercent(score.correct_fraction, 2)}</td>
-                <td>{found.length ? `${formatNumber(mean, 1)} samples · ${formatNumber(mean * dtMs, 2)} ms` : "–"}</td>
+                <td>
+                  {found.length ? formatNumber(mean, 1) : "–"}
+                  {found.length > 0 && <small>samples, {formatNumber(mean * dtMs, 2)} ms</small>}
+                </td>
                 <td>
                   {score.delays.length - found.length} of {score.delays.length}
                 </td>

@@ -1,0 +1,102 @@
+"""What a live bench looks like from outside: its status, and all that is said of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from core.board.changes import describe
+from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
+
+if TYPE_CHECKING:
+    from server.bench.session import Session
+
+MAX_PENDING = 100
+"""Commands that may wait for their moment."""
+
+
+def status_of(session: Session) -> BenchStatus:
+    """Return the status: an object nobody changes afterwards."""
+    board, pacer = session.board, session.pacer
+    state: State = "running" if session.is_running else "paused"
+    if board.trip is not None:
+        state = "tripped"
+    return BenchStatus(
+        state=state,
+        tick=board.tick,
+        first_tick=session.history.first_tick,
+        time_scale=pacer.scale,
+        achieved_scale=pacer.achieved if session.is_running else 0.0,
+        capped=session.is_running and pacer.capped,
+        overruns=pacer.overruns,
+        given_up_ms=pacer.given_up_s * 1e3,
+        controller=board.spec.active,
+        faults=[
+            ActiveFault(
+                name=name,
+                severity=params.severity,  # type: ignore[attr-defined]
+                profile=params.profile.model_dump(),  # type: ignore[attr-defined]
+                since_tick=params.start_tick,  # type: ignore[attr-defined]
+            )
+            for name, params in board.faults.items()
+        ],
+        pending=[
+            Pending(
+                text=describe(entry.command),
+                actor=entry.actor,
+                tick=entry.tick,
+                when=entry.command.when,
+            )
+            for entry in board.pending[:MAX_PENDING]
+        ],
+        trip=board.trip,
+        scores=board.scores(),
+        last_event=session.events.last,
+        recording=list(session.recorders),
+    )
+
+
+def bench_of(session: Session, watchers: int, loop_lag_ms: float, view3d: str | None) -> Bench:
+    """Describe a bench in full."""
+    spec, last = session.board.spec, session.events.last
+    return Bench(
+        **{**dict(session.status), "watchers": watchers, "loop_lag_ms": loop_lag_ms, "last_event": last},
+        id=session.id,
+        title=session.scenario.head.title or session.scenario.id,
+        scenario_id=session.scenario.id,
+        source=session.scenario.head.source,
+        created=session.created,
+        seed=spec.seed,
+        dt_ms=session.dt_ms,
+        sample_rate_khz=spec.frame.sample_rate_khz,
+        samples=session.scenario.samples,
+        drive_period_ticks=session.drive_period_ticks,
+        history_ticks=session.history.capacity,
+        signals=list(session.signals),
+        controllers=list(spec.controllers),
+        diagnosers={
+            name: DiagnoserInfo(
+                kind=section.block.name,
+                names=[item.name for item in getattr(section.params, "hypotheses", ())],
+            )
+            for name, section in spec.diagnosers.items()
+        },
+        parameters=spec.document,
+        view3d=view3d,
+    )
+
+
+def document_of(session: Session) -> dict[str, Any]:
+    """Return what happened on a bench as a scenario; run headless it gives the same bits."""
+    title = session.scenario.head.title or session.scenario.id
+    head = {
+        "schema": 1,
+        "id": f"{session.scenario.id[:58]}-live",
+        "title": f"{title}, as run live"[:200],
+        "source": session.scenario.head.source,
+    }
+    document = {**head, **session.board.save()}
+    if session.board.tick == 0:  # nothing has happened yet: what is saved is what would
+        del document["samples"]
+        if session.scenario.samples is not None:
+            document["samples"] = session.scenario.samples
+    return document

@@ -1,0 +1,145 @@
+"""The service as a process: what it prints, how it ends, what a kill leaves."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pyarrow.parquet as pq
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+TOKEN = "a-canary-token-for-the-logs"
+
+
+@contextmanager
+def process(folder: Path, *arguments: str, **more: str) -> Iterator[Any]:
+    """Run ``combbench serve`` and wait until it says where it is."""
+    environment = {
+        **os.environ,
+        "COMBBENCH_TOKEN": TOKEN,
+        "COMBBENCH_DATA": str(folder / "data"),
+        "COMBBENCH_LOG_LEVEL": "DEBUG",
+        **more,
+    }
+    command = [sys.executable, "-m", "server.cli", "serve", "--port", "0", *arguments]
+    errors = (folder / "stderr").open("wb")
+    root = Path(__file__).resolve().parents[2]
+    running = subprocess.Popen(command, cwd=root, env=environment, stdout=subprocess.PIPE, stderr=errors, text=True)
+    try:
+        assert running.stdout is not None
+        running.address = running.stdout.readline().strip()  # type: ignore[attr-defined]
+        yield running
+    finally:
+        if running.poll() is None:
+            running.kill()
+        running.communicate()
+        errors.close()
+
+
+def client(address: str) -> httpx.Client:
+    base = address.removeprefix("CombBench is at ").partition("/?")[0]
+    return httpx.Client(base_url=base, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=20, trust_env=False)
+
+
+def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
+    from websockets.sync.client import connect
+
+    with process(tmp_path) as running:
+        assert running.address.startswith("CombBench is at http://127.0.0.1:")
+        assert running.address.endswith(f"/?token={TOKEN}")
+        with client(running.address) as http:
+            assert http.get("/health/ready").status_code == 200
+            bench = http.post("/api/v1/benches", json={"scenario": "ch5-seven-step", "time_scale": 0.02}).json()
+            recording = http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
+            http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", "set": {"samples": 10_000_000}})
+            with http.stream("GET", f"/?token={TOKEN}"):
+                pass
+            url = str(http.base_url).replace("http", "ws").rstrip("/")
+            headers = {"Authorization": f"Bearer {TOKEN}"}
+            stream = connect(
+                f"{url}/api/v1/benches/{bench['id']}/stream",
+                additional_headers=headers,
+                subprotocols=["combbench.v1"],  # type: ignore[list-item]
+                proxy=None,
+            )
+            time.sleep(1.0)
+            began = time.monotonic()
+            running.send_signal(signal.SIGTERM)
+            last: list[str] = []
+            with pytest.raises(ConnectionClosed) as caught:
+                while True:
+                    message = stream.recv(timeout=5)
+                    last.append(message if isinstance(message, str) else "")
+            assert caught.value.rcvd is not None and caught.value.rcvd.code == 1001
+            assert any('"code":"shutdown"' in message for message in last[-3:])
+            assert running.wait(10) == 0
+            assert time.monotonic() - began < 8
+    table = pq.read_table(tmp_path / "data" / "recordings" / f"{recording['id']}.parquet")
+    assert table.num_rows > 100
+    assert table["tick"].to_pylist() == list(range(table["tick"][0].as_py(), table["tick"][-1].as_py() + 1))
+    said = (tmp_path / "stderr").read_text()
+    assert TOKEN not in said
+    assert "Traceback" not in said
+
+
+def test_a_kill_loses_nothing_that_was_written(tmp_path: Path) -> None:
+    """Every half second is written, so a kill costs no more than that on a machine that keeps up."""
+    with process(tmp_path) as running, client(running.address) as http:
+        bench = http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": 0.02}).json()
+        recording = http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
+        growing = tmp_path / "data" / "recordings" / f"{recording['id']}.arrows"
+        sizes = {growing.stat().st_size}
+        end = time.monotonic() + 30
+        while len(sizes) < 4:
+            assert time.monotonic() < end, "the recording does not grow"
+            time.sleep(0.05)
+            sizes.add(growing.stat().st_size)
+        running.kill()
+        running.wait(5)
+    with process(tmp_path) as running, client(running.address) as http:
+        found = http.get(f"/api/v1/recordings/{recording['id']}").json()
+        assert found["state"] == "aborted"
+        trace = http.get(f"/api/v1/recordings/{recording['id']}/trace")
+    ticks = pq.read_table(io.BytesIO(trace.content))["tick"].to_pylist()
+    assert len(ticks) == found["ticks"] > 500
+    assert ticks == list(range(found["start_tick"], found["start_tick"] + found["ticks"]))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "environment", "words"),
+    [
+        (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": ""}, ["0.0.0.0", "token"]),
+        (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": "short"}, ["16 characters"]),
+        ([], {"COMBBENCH_MAX_BENCHES": "none"}, ["max_benches", "COMBBENCH_MAX_BENCHES"]),
+        ([], {"COMBBENCH_DATA": "/proc/nowhere"}, ["/proc/nowhere", "data"]),
+    ],
+)
+def test_it_does_not_start_with_wrong_settings(
+    tmp_path: Path, arguments: list[str], environment: dict[str, str], words: list[str]
+) -> None:
+    with process(tmp_path, *arguments, **environment) as running:
+        assert running.wait(20) == 2
+        assert running.address == ""
+    said = (tmp_path / "stderr").read_text()
+    assert all(word in said for word in words), said
+    assert "Traceback" not in said and len(said.strip().splitlines()) == 1
+
+
+def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        with process(tmp_path, "--port", port) as running:
+            assert running.wait(20) == 2
+    said = (tmp_path / "stderr").read_text()
+    assert f"127.0.0.1:{port}" in said and len(said.strip().splitlines()) == 1

@@ -1,0 +1,159 @@
+"""The 3D view through our port: behind the gate, alive while watched, gone after."""
+
+from __future__ import annotations
+
+import socket
+import sys
+import threading
+import time
+from typing import Any
+
+import httpx
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+VISER = "viser-v1.1.1"
+
+
+def join(live: Any, bench: dict[str, Any]) -> Any:
+    url = live.address.replace("http", "ws") + f"/benches/{bench['id']}/3d"
+    headers = {"Authorization": live.http.headers["authorization"]}
+    return connect(
+        url,
+        additional_headers=headers,
+        subprotocols=[VISER],
+        proxy=None,
+        max_size=None,
+        compression=None,  # type: ignore[list-item]
+    )
+
+
+def count(socket_: Any, seconds: float) -> int:
+    end, messages = time.monotonic() + seconds, 0
+    while (left := end - time.monotonic()) > 0:
+        try:
+            socket_.recv(timeout=left)
+        except TimeoutError:
+            break
+        messages += 1
+    return messages
+
+
+def test_the_page_is_visers_with_our_lines(live: Any) -> None:
+    bench = live.bench()
+    assert bench["view3d"] == f"/benches/{bench['id']}/3d/"
+    page = live.http.get(bench["view3d"])
+    assert page.status_code == 200
+    assert "document.hasFocus=()=>false" in page.text
+    assert "unsafe-eval" in page.headers["content-security-policy"]
+    assert live.http.get("/benches/none/3d/").status_code == 404
+
+
+def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
+    bench = live.bench(time_scale=0.002)
+    show = live.service.theatre.show_of(live.service.benches.get(bench["id"]))
+    with join(live, bench) as page:
+        assert page.subprotocol == VISER
+        assert count(page, 1.0) > 10
+        assert count(page, 2.0) > 40
+        port = show._scene.port
+        with join(live, bench) as second:
+            assert count(second, 1.0) > 10
+            assert show.watchers == 2 and show._scene.port == port
+    end = time.monotonic() + 5
+    while show._scene is not None:
+        assert time.monotonic() < end, "the scene stays lit for nobody"
+        time.sleep(0.05)
+    with pytest.raises(OSError), socket.create_connection(("127.0.0.1", port), 1):
+        pass
+
+
+def test_a_paused_bench_sends_nothing(live: Any) -> None:
+    bench = live.bench(paused=True)
+    live.command(bench["id"], "step", ticks=100)
+    with join(live, bench) as page:
+        count(page, 1.5)
+        assert count(page, 1.0) <= 1
+
+
+def test_the_scene_listens_on_loopback_and_opens_no_tunnel(live: Any) -> None:
+    bench = live.bench()
+    with join(live, bench) as page:
+        count(page, 0.3)
+        server = live.service.theatre.show_of(live.service.benches.get(bench["id"]))._scene._server
+        assert server.get_host() == "127.0.0.1"
+        from viser import _messages
+
+        handlers = server._websock_server._incoming_handlers
+        assert not handlers.get(_messages.ShareUrlRequest)
+        assert not handlers.get(_messages.ShareUrlDisconnect)
+
+
+def test_closing_the_bench_closes_its_scene(live: Any) -> None:
+    bench = live.bench()
+    with join(live, bench) as page:
+        count(page, 0.3)
+        live.http.delete(f"/api/v1/benches/{bench['id']}")
+        with pytest.raises(ConnectionClosed):
+            count(page, 10)
+    with join(live, bench) as page, pytest.raises(ConnectionClosed) as caught:
+        page.recv(timeout=5)
+    assert caught.value.rcvd is not None and caught.value.rcvd.code == 4404
+
+
+def test_nothing_stays_behind(live: Any) -> None:
+    bench = live.bench()
+    with join(live, bench) as page:
+        count(page, 0.2)
+    time.sleep(1.0)
+    before = threading.active_count()
+    for _ in range(3):
+        with join(live, bench) as page:
+            count(page, 0.2)
+    time.sleep(1.5)
+    assert threading.active_count() <= before + 1
+
+
+def test_faults_and_motion_reach_the_parts(live: Any) -> None:
+    bench = live.bench(set={"events": []}, time_scale=0.002)
+    session = live.service.benches.get(bench["id"])
+    with join(live, bench) as page:
+        count(page, 0.5)
+        scene = live.service.theatre.show_of(session)._scene
+        assert not scene._mass.visible and not scene._film.visible
+        color = tuple(scene._suspension.color)
+        for fault in ("added_mass", "stiffness", "damping"):
+            live.command(bench["id"], "inject", fault=fault, severity=0.2)
+        seen = set()
+        end = time.monotonic() + 5
+        while time.monotonic() < end and not (scene._mass.visible and len(seen) > 5):
+            count(page, 0.1)
+            seen.add(float(scene._shuttle.position[0]))
+        assert scene._mass.visible and scene._film.visible
+        assert tuple(scene._suspension.color) != color
+        assert len(seen) > 5
+        assert tuple(scene._suspension.bones[2].position)[0] == pytest.approx(
+            0.5 * tuple(scene._suspension.bones[1].position)[0]
+        )
+
+
+def test_the_rest_works_without_the_folder(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    import importlib.util
+
+    found = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util,
+        "find_spec",
+        lambda name, package=None: None if name == "server.view3d" else found(name, package),
+    )
+    for name in [name for name in sys.modules if name.startswith("server.view3d")]:
+        monkeypatch.setitem(sys.modules, name, None)
+    with serve() as live:
+        bench = live.bench()
+        assert bench["view3d"] is None
+        assert live.http.get(f"/benches/{bench['id']}/3d/").status_code == 404
+        with live.stream(bench["id"]) as stream:
+            stream.until_type("status")
+        with httpx.Client(trust_env=False) as client:
+            assert client.get(live.address + "/health/ready").status_code == 200

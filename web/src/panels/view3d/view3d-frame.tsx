@@ -1,0 +1,81 @@
+import { useEffect, useRef, useState } from "react";
+import { useScheme } from "../../app/use-scheme";
+import { useBench } from "../../stream/bench-store";
+import { usePanelVisible } from "../../ui/panel-visible";
+import { softwareGl } from "../../ui/software-gl";
+import { useOnScreen } from "../../ui/use-on-screen";
+import styles from "./view3d.module.css";
+
+const POLL_MS = 1000;
+/** The traces come first: loading the 3D page holds the main thread for a while. */
+const HEAD_START_MS = 1200;
+
+/**
+ * The server's 3D page in a frame, loaded only while it can be seen.
+ *
+ * When its connection closes, the frame waits for the server and is loaded afresh.
+ */
+export function View3dFrame({ path }: { path: string }) {
+  const waiting = useBench((s) => s.connection.phase === "waiting");
+  const scheme = useScheme();
+  const place = useRef<HTMLDivElement>(null);
+  const frame = useRef<HTMLIFrameElement>(null);
+  const onScreen = useOnScreen(place);
+  const visible = usePanelVisible() && onScreen;
+  const [ready, setReady] = useState(false);
+  const [loads, setLoads] = useState(0);
+  const [closed, setClosed] = useState(false);
+
+  useEffect(() => {
+    const timer = setTimeout(() => setReady(true), HEAD_START_MS);
+    return () => clearTimeout(timer);
+  }, []);
+
+  useEffect(() => {
+    const listen = (event: MessageEvent) => {
+      if (event.source !== frame.current?.contentWindow || event.origin !== window.location.origin) return;
+      const state = (event.data as { viser?: string } | null)?.viser;
+      if (state === "closed") setClosed(true);
+      if (state === "connected") setClosed(false);
+    };
+    window.addEventListener("message", listen);
+    return () => window.removeEventListener("message", listen);
+  }, []);
+
+  useEffect(() => {
+    if (!closed || !visible) return;
+    const timer = setInterval(async () => {
+      const answer = await fetch(path).catch(() => undefined);
+      if (!answer?.ok) return;
+      setClosed(false);
+      setLoads((n) => n + 1);
+    }, POLL_MS);
+    return () => clearInterval(timer);
+  }, [closed, path, visible]);
+
+  return (
+    <div ref={place} className={styles.view}>
+      {ready && visible && (
+        <iframe
+          key={`${path}-${loads}-${scheme}`}
+          ref={frame}
+          className={styles.frame}
+          src={`${path}?${query(scheme)}`}
+          title="The device in 3D"
+        />
+      )}
+      {(closed || waiting) && (
+        <div className={styles.veil} role="status">
+          The 3D view waits for the server
+        </div>
+      )}
+    </div>
+  );
+}
+
+function query(scheme: string): URLSearchParams {
+  const ratio = softwareGl() ? 0.5 : Math.min(window.devicePixelRatio, 1.5);
+  const wanted = new URLSearchParams({ hideViserLogo: "1", fixedDpr: String(ratio) });
+  if (scheme === "dark") wanted.set("darkMode", "1");
+  return wanted;
+}
