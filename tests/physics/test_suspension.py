@@ -11,6 +11,7 @@ from core.device.frame import Damage, along_x, stiffness, stiffness_ratio
 from core.device.geometry import Geometry
 from core.device.pull_in import rotation_pull_in_v
 from core.faults.point_adhesion import PointAdhesion
+from core.faults.structure import linear
 from scenarios.lateral_metrics import geometry_pull_in
 from tests.lab import do, inject, make, play
 
@@ -87,6 +88,19 @@ def test_the_text_s_adhesion_and_broken_truss():
     assert stiffness_ratio(LCR, Damage(adhesion=("outer", 0.5))) == pytest.approx(4.95, rel=0.01)
     assert stiffness_ratio(LCR, Damage(adhesion=("outer", 0.75))) == pytest.approx(2.17, rel=0.01)
     assert stiffness_ratio(LCR, Damage(lost_ends=(2,))) == pytest.approx(0.830, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("damage", "turn"),
+    [
+        (Damage(adhesion=("inner", 0.75)), 31.4),
+        (Damage(lost_ends=(2,)), -12.5),
+        (Damage(lost_ends=(0, 1, 2)), -44.6),
+    ],
+)
+def test_a_hurt_side_turns_the_shuttle(damage, turn):
+    """Rotation per travel by another frame program; the sign: the softer side, at +y, runs ahead, x - theta y > x."""
+    assert linear(damage)[3] * 1e6 == pytest.approx(turn, rel=0.06)
 
 
 def test_pull_in_of_a_drawing_scales_as_it_should():
