@@ -7,8 +7,8 @@ The same Python function, run uncompiled, is its own oracle.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, TypeVar, cast
 
 import numba
@@ -51,7 +51,8 @@ class Port:
     unit, meaning : str
         Shown to people.
     source : str
-        For inputs: the signal it is wired to unless the wiring says otherwise.
+        For inputs: the signal it is wired to unless the wiring says otherwise. One that ends in ``?`` may be
+        missing and reads 0 then.
     labels : tuple of str
         For vectors: one name per component.
     each : str
@@ -170,6 +171,8 @@ class Context:
         Whether the reference drives the plant between samples.
     limit_v : float
         Limit of the drive to either side.
+    sensors : mapping of str to BlockParams
+        Parameters of every sensor: what calibrating it would tell.
     """
 
     dt_ms: float
@@ -183,6 +186,7 @@ class Context:
     sensor_noise_um: float = 0.0
     analogue: bool = False
     limit_v: float = 30.0
+    sensors: Mapping[str, BlockParams] = field(default_factory=dict)
 
 
 class Block:

@@ -11,7 +11,7 @@ from core.block import BlockParams
 from core.board import program
 from core.board.commands import Command, Heal, Inject, Set, Switch
 from core.board.spec import Section, Spec, parse, with_values
-from core.board.wiring import Instance, Wiring, wire
+from core.board.wiring import Instance, Wiring, engage, wire
 from core.errors import InputError, from_validation, unknown
 
 if TYPE_CHECKING:
@@ -245,8 +245,7 @@ def _rewire(board: Board, spec: Spec) -> None:
     new: Wiring = wire(spec, board.faults)
     assert new.signals.names == old.signals.names
     new.w[:] = old.w
-    for name in spec.controllers:
-        new.w[new.index[f"{name}.engaged"]] = 1.0 if name == spec.active else 0.0
+    engage(spec, new.index, new.w)
     for before, after in zip(old.instances, new.instances, strict=True):
         if before.block is after.block:
             kept, fresh = old.state_of(before.key), new.state_of(after.key)

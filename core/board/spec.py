@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -101,6 +101,13 @@ class Spec:
 
     def context(self, every: int = 1) -> Context:
         """Return what a block that runs every so many ticks may know."""
+        sensor = self.sensors[self.measuring]
+        # the noise of a sample of the sensor, however often the block that asks runs
+        noise = getattr(sensor.block, "noise_um", None)
+        own = noise(sensor.params, self._known(sensor.every)) if noise else getattr(sensor.params, "noise_um", 0.0)
+        return replace(self._known(every), sensor_noise_um=float(own))
+
+    def _known(self, every: int) -> Context:
         nominal = self.device.oscillator()
         return Context(
             dt_ms=self.dt_ms * every,
@@ -111,9 +118,9 @@ class Spec:
             temperature_k=self.device.temperature_k,
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
-            sensor_noise_um=float(getattr(self.sensors[self.measuring].params, "noise_um", 0.0)),
             analogue=getattr(self.drive.params, "kind", "held") == "analogue",
             limit_v=float(getattr(self.drive.params, "limit_v", 30.0)),
+            sensors={name: section.params for name, section in self.sensors.items()},
         )
 
 

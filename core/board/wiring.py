@@ -17,6 +17,9 @@ from core.board.spec import Spec
 from core.faults.fault import Fault
 from core.signals import Signal, SignalTable
 
+NOTHING = "nothing"
+"""A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
+
 
 @dataclass(frozen=True)
 class Instance:
@@ -69,7 +72,9 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     order = [own("plant", spec.plant), Instance("effects", "effects", Effects, Effects.Params())]
     for name, block in registry.blocks("faults").items():
         order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
-    order += [own(name, section) for name, section in spec.sensors.items()]
+    # first what only detects, then what recovers a displacement from it
+    for recovers in (False, True):
+        order += [own(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers]
     order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
     for name, section in spec.diagnosers.items():
         order.append(own(name, section))
@@ -78,6 +83,11 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     order += [own(name, section) for name, section in spec.controllers.items()]
     order += [own("drive", spec.drive), own("guard", spec.guard)]
     return order
+
+
+def recovered(block: type[Block]) -> bool:
+    """Say whether a sensor puts out a displacement."""
+    return any(port.name == "displacement" for port in block.outputs)
 
 
 def _scored(params: BlockParams) -> BlockParams:
@@ -100,9 +110,11 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
                     size += 1
                     if not port.hidden:
                         shown.append((name, port, instance, kind))
-    for name in spec.controllers:
+    for name in (*spec.controllers, *spec.sensors):
         index[f"{name}.engaged"] = size
         size += 1
+    index[NOTHING] = size
+    size += 1
     shown.sort(key=lambda entry: entry[3] != "output")
     signals = SignalTable(
         [
@@ -127,7 +139,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     w = np.zeros(size)
     for port in Effects.outputs:
         w[index[f"effects.{port.name}"]] = 1.0
-    w[index[f"{spec.active}.engaged"]] = 1.0
+    engage(spec, index, w)
     return Wiring(
         instances=order,
         signals=signals,
@@ -142,9 +154,15 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     )
 
 
+def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
+    """Tell every controller and every sensor whether it is the one in use."""
+    for name in (*spec.controllers, *spec.sensors):
+        w[index[f"{name}.engaged"]] = 1.0 if name in (spec.active, spec.measuring) else 0.0
+
+
 def ports_of(spec: Spec, instance: Instance, index: dict[str, int]) -> IntArray:
     """Return the signal indices of an instance's ports: inputs, outputs, taps."""
-    inputs = [index[_source(spec, instance, port)] for port in instance.block.inputs]
+    inputs = [index[_source(spec, instance, port, index)] for port in instance.block.inputs]
     own = [index[signal_name(instance, port.name)] for port in (*instance.block.outputs, *instance.block.taps)]
     return np.array(inputs + own, dtype=np.int64)
 
@@ -154,7 +172,10 @@ def signal_name(instance: Instance, port: str) -> str:
     return instance.prefix if issubclass(instance.block, Fault) else f"{instance.prefix}.{port}"
 
 
-def _source(spec: Spec, instance: Instance, port: Port) -> str:
+def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -> str:
+    if port.source.endswith("?"):
+        signal = port.source.removesuffix("?")
+        return signal if signal in index else NOTHING
     if port.source == "@engaged":
         return f"{instance.prefix}.engaged"
     if port.source == "@measuring":

@@ -1,0 +1,123 @@
+"""Capacitive displacement sensor: two combs, difference and sum."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from core.block import TICK, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter
+from core.noise import key, normal
+from core.sense.sensor import Sensor
+from core.units import FF_PER_F, UM_PER_M
+
+GRADIENT, OVERLAP, GAP, START, NOISE, FIRST_KEY, SECOND_KEY = range(7)
+TRUE, LATERAL, ROTATION, DISPLACEMENT, SUM, POSITIVE, NEGATIVE, ERROR = range(8)
+
+NODES = np.array([-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640])
+WEIGHTS = np.array([0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891])
+
+
+@kernel
+def squeezed(p: Any, side: float, overlap: float, y: float, theta: float) -> float:
+    r"""Return the overlap a straight comb would need for the capacitance of a shifted and turned one.
+
+    :math:`\int\frac{d\xi}{1-(\eta/g)^2},\;\eta=y+\theta\xi`, five-point Gauss; contact counts as 0.999 of the gap.
+    """
+    if y == 0.0 and theta == 0.0:
+        return overlap
+    half = 0.5 * overlap
+    total = 0.0
+    for i in range(5):
+        xi = side * (p[START] + half * (1.0 + NODES[i]))
+        u = (y + theta * xi) / p[GAP]
+        total += WEIGHTS[i] / (1.0 - min(u * u, 0.998))
+    return half * total
+
+
+def capacitive_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Read both combs; displacement from the difference."""
+    x = w[io[TRUE]]
+    y = w[io[LATERAL]]
+    theta = w[io[ROTATION]]
+    gradient = p[GRADIENT]
+    positive = gradient * squeezed(p, 1.0, p[OVERLAP] + x, y, theta) + p[NOISE] * normal(p[FIRST_KEY], w[TICK])
+    negative = gradient * squeezed(p, -1.0, p[OVERLAP] - x, y, theta) + p[NOISE] * normal(p[SECOND_KEY], w[TICK])
+    z = (positive - negative) / (2.0 * gradient) if gradient != 0.0 else 0.0
+    w[io[DISPLACEMENT]] = z
+    w[io[SUM]] = positive + negative
+    w[io[POSITIVE]] = positive
+    w[io[NEGATIVE]] = negative
+    w[io[ERROR]] = z - x
+
+
+class Capacitive(Sensor):
+    r"""Difference of two comb capacitances (2.2.1.1-2), :math:`C_{sp,sn}=C_{s0}\pm\frac{\partial C_s}{\partial x}x`.
+
+    Exact for an ideal comb. The sum does not see the displacement; it sees what narrows gaps on one side,
+    :math:`C\propto\int\frac{d\xi}{g-\eta}+\frac{d\xi}{g+\eta},\;\eta=y+\theta\xi`: lateral motion and rotation,
+    which no displacement sensor shows.
+    """
+
+    title = "Capacitive sensor"
+    inputs = (
+        Port("true", "um", "true displacement", source="plant.displacement"),
+        Port("lateral", "um", "true lateral displacement, where the plant has one", source="plant.lateral?"),
+        Port("rotation", "rad", "true rotation, where the plant has one", source="plant.rotation?"),
+    )
+    outputs = (
+        Port("displacement", "um", "measured displacement"),
+        Port("sum", "fF", "sum of both capacitances: sees lateral motion and rotation"),
+    )
+    taps = (
+        Port("positive", "fF", "capacitance of the comb that closes towards +x"),
+        Port("negative", "fF", "capacitance of the opposite comb"),
+        Port("error", "um", "measured minus true displacement"),
+    )
+    equations = (
+        Equation(
+            "capacitances", r"C_{sp}=C_{s0}+\tfrac{\partial C_s}{\partial x}x,\;C_{sn}=C_{s0}-\tfrac{\partial C_s}"
+            r"{\partial x}x", "2.2.1.1-2"
+        ),
+        Equation("displacement", r"z=\frac{C_{sp}-C_{sn}}{2\,\partial C_s/\partial x}"),
+        Equation("sum", r"C_{sp}+C_{sn}=n\varepsilon_0t\oint\left[\frac{1}{g-\eta}+\frac{1}{g+\eta}\right]d\xi"),
+    )
+
+    class Params(BlockParams):
+        """Combs and readout."""
+
+        overlap_um: float = parameter(40.0, "overlap of the fingers at rest", "um", gt=0, le=1000)
+        gap_um: float = parameter(2.1, "gap between the fingers", "um", gt=0, le=100)
+        comb_start_um: float = parameter(126.13, "where the overlap begins, from the centre", "um", ge=0, le=1e4)
+        noise_af_rthz: float = parameter(
+            0.1, "noise density of the difference (assumed)", "aF/rtHz", ge=0, le=1e6, equation="2.2.1"
+        )
+
+    @classmethod
+    def noise_ff(cls, params: Any, context: Context) -> float:
+        """Return the standard deviation of the difference in one sample, white up to half the sample rate."""
+        return float(params.noise_af_rthz * 1e-3 * math.sqrt(500.0 / context.dt_ms))
+
+    @classmethod
+    def noise_um(cls, params: Any, context: Context) -> float:
+        """Return the noise of the difference as displacement."""
+        gradient = context.capacitance_gradient * FF_PER_F / UM_PER_M
+        return cls.noise_ff(params, context) / (2.0 * gradient) if gradient else 0.0
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the parameters for the step: fF and um; each comb carries half the variance of the difference."""
+        return np.array(
+            [
+                context.capacitance_gradient * FF_PER_F / UM_PER_M,
+                params.overlap_um,
+                params.gap_um,
+                params.comb_start_um,
+                cls.noise_ff(params, context) / math.sqrt(2.0),
+                key(context.seed, "sensor.capacitive.positive"),
+                key(context.seed, "sensor.capacitive.negative"),
+            ]
+        )
+
+    step = capacitive_step

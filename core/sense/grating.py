@@ -1,0 +1,131 @@
+r"""The grating in the shuttle under a focused beam: what is transmitted, and how high the surface is.
+
+A bar grating of pitch :math:`\Lambda` with the share :math:`D` open, smoothed by a Gaussian beam of
+:math:`1/e^2` radius :math:`w`, is open under the beam by
+
+.. math:: o(x)=D+\sum_m a_m\cos\frac{2\pi m(x-x_0)}{\Lambda},\qquad
+    a_m=\frac{2}{\pi m}\sin(\pi mD)\,e^{-(\pi mw/\Lambda)^2/2}
+
+The dissertation gives the 2 um openings (2.2.2) and the 2 um resolution (6.3); the pitch of 4 um follows from
+them. Spot, bar transmission and signal to noise ratio are not in the text and are assumptions.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from core.block import BlockParams, Context, kernel, parameter
+from core.noise import key, uniform
+
+MEAN, WAVE, OFFSET, COUNT, FIRST = range(5)
+"""Layout of a packed grating: mean, 2 pi over pitch, offset, number of harmonics, then their amplitudes."""
+HARMONICS = 64
+NEGLIGIBLE = 1e-9
+
+
+class GratingParams(BlockParams):
+    """A grating and the beam on it."""
+
+    pitch_um: float = parameter(4.0, "pitch of the grating", "um", gt=0, le=1000, equation="2.2.2")
+    opening: float = parameter(0.5, "open share of the pitch", gt=0.01, le=0.99, equation="2.2.2")
+    spot_um: float = parameter(1.5, "1/e^2 radius of the beam on the grating (assumed)", "um", gt=0, le=100)
+    grating_offset_um: float | None = parameter(
+        None, "position of an opening under the beam at rest; drawn by the seed unless given", "um", ge=-1000, le=1000
+    )
+
+    def shape(self) -> list[float]:
+        """Return the amplitudes of the harmonics of the open share, as many as matter."""
+        found = []
+        for m in range(1, HARMONICS + 1):
+            smooth = math.exp(-0.5 * (math.pi * m * self.spot_um / self.pitch_um) ** 2)
+            found.append(2.0 / (math.pi * m) * math.sin(math.pi * m * self.opening) * smooth)
+        while len(found) > 1 and abs(found[-1]) <= NEGLIGIBLE * abs(found[0]):
+            found.pop()
+        return found
+
+    def offset(self, seed: int) -> float:
+        """Return the position of an opening, given or drawn."""
+        if self.grating_offset_um is not None:
+            return self.grating_offset_um
+        return float(self.pitch_um * uniform(key(seed, "sensor.grating"), 0.0))
+
+
+class BeamParams(GratingParams):
+    """A grating, a beam through it and the noise of the detector."""
+
+    bar_transmission: float = parameter(
+        0.5, "transmission of the bars at 1310 nm; polysilicon is not opaque (assumed)", ge=0, le=0.99
+    )
+    snr_db: float = parameter(
+        30.0, "signal to noise ratio of a sample: rms of the fundamental over rms of the noise", "dB", ge=-20, le=200
+    )
+
+    @property
+    def mean(self) -> float:
+        """Mean intensity over a pitch, full light being 1."""
+        return self.opening + (1.0 - self.opening) * self.bar_transmission
+
+    @property
+    def harmonics(self) -> list[float]:
+        """Amplitudes of the intensity."""
+        return [(1.0 - self.bar_transmission) * a for a in self.shape()]
+
+    @property
+    def visibility(self) -> float:
+        """Fundamental over mean."""
+        return abs(self.harmonics[0]) / self.mean
+
+    @property
+    def noise(self) -> float:
+        r"""Standard deviation of the intensity, :math:`\frac{c_1}{\sqrt2}10^{-SNR/20}`."""
+        return abs(self.harmonics[0]) / math.sqrt(2.0) * math.pow(10.0, -self.snr_db / 20.0)
+
+    @property
+    def phase_noise_um(self) -> float:
+        r"""Displacement noise of a pair in quadrature, :math:`\frac{\Lambda}{2\pi\sqrt2}10^{-SNR/20}`."""
+        return self.pitch_um / (2.0 * math.pi * math.sqrt(2.0)) * math.pow(10.0, -self.snr_db / 20.0)
+
+    def packed(self, context: Context) -> list[float]:
+        """Return the packed grating of the intensity."""
+        return pack_grating(self.mean, self.pitch_um, self.offset(context.seed), self.harmonics)
+
+
+def pack_grating(mean: float, pitch_um: float, offset_um: float, amplitudes: list[float]) -> list[float]:
+    """Lay out a Fourier series for the kernels below."""
+    return [mean, 2.0 * math.pi / pitch_um, offset_um, float(len(amplitudes)), *amplitudes]
+
+
+@kernel
+def level(p: Any, at: int, x: float) -> float:
+    """Return the value of the series packed at ``at``; what is not a number gives none."""
+    if not math.isfinite(x):
+        return math.nan
+    now = math.cos(p[at + WAVE] * (x - p[at + OFFSET]))
+    twice = 2.0 * now
+    before = 1.0
+    total = float(p[at + MEAN] + p[at + FIRST] * now)
+    for m in range(1, int(p[at + COUNT])):
+        after = twice * now - before
+        before = now
+        now = after
+        total += p[at + FIRST + m] * now
+    return total
+
+
+@kernel
+def slope(p: Any, at: int, x: float) -> float:
+    """Return the derivative of the series packed at ``at`` by displacement, 1/um."""
+    if not math.isfinite(x):
+        return math.nan
+    angle = p[at + WAVE] * (x - p[at + OFFSET])
+    twice = 2.0 * math.cos(angle)
+    now = math.sin(angle)
+    before = 0.0
+    total = float(p[at + FIRST] * now)
+    for m in range(1, int(p[at + COUNT])):
+        after = twice * now - before
+        before = now
+        now = after
+        total += (m + 1.0) * p[at + FIRST + m] * now
+    return float(-p[at + WAVE] * total)

@@ -1,0 +1,83 @@
+"""Recovery from two beams with a Kalman filter that knows the device and the voltage."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from core.block import Context, Equation, FloatArray, Port
+from core.sense import tracker
+from core.sense.dual_beam import DualBeam
+from core.sense.sensor import Sensor, calibrated
+from core.sense.tracker import TrackerParams, correct, predict
+
+PITCH, OFFSET, NOISE, MODEL = range(4)
+TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(7)
+STARTED, OWN = range(2)
+
+
+def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Predict, unwrap the phase about the prediction, correct."""
+    if s[STARTED] != 0.0:
+        predict(p, MODEL, s, OWN, w[io[APPLIED]])
+    s[STARTED] = 1.0
+    x = s[OWN + tracker.X]
+    ahead = (x - p[OFFSET]) / p[PITCH] - w[io[TURN]]
+    residual = p[PITCH] * (math.floor(ahead + 0.5) - ahead) if math.isfinite(ahead) else 0.0
+    correct(s, OWN, residual, 1.0, p[NOISE])
+    error = s[OWN + tracker.X] - w[io[TRUE]]
+    w[io[DISPLACEMENT]] = s[OWN + tracker.X]
+    w[io[ERROR]] = error
+    w[io[RESIDUAL]] = residual
+    w[io[SLIPS]] = math.floor(error / p[PITCH] + 0.5) if math.isfinite(error) else 0.0
+
+
+class QuadratureKalman(Sensor):
+    r"""The phase of two beams through a Kalman filter on :math:`(x,\dot x,f)`, unwrapped about its prediction (6.3).
+
+    The filter knows the nominal device and the voltage; what the model lacks goes into the slow force :math:`f`.
+    """
+
+    title = "Quadrature with Kalman filter"
+    inputs = (
+        Port("turn", "1", "phase of the pair, in turns", source="quadrature.turn"),
+        Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage"),
+        Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
+    )
+    outputs = (Port("displacement", "um", "recovered displacement"),)
+    taps = (
+        Port("error", "um", "recovered minus true displacement"),
+        Port("residual", "um", "phase, as displacement, minus prediction"),
+        Port("slips", "1", "whole pitches it is off by"),
+    )
+    equations = (
+        Equation("motion", r"\ddot x=\frac{F_e-\beta\dot x-kx}{m}+f,\quad \dot f=n"),
+        Equation(
+            "residual", r"r=\Lambda\left\langle\frac{\varphi}{2\pi}-\frac{x^--x_0}{\Lambda}\right\rangle_{\pm1/2}"
+        ),
+    )
+
+    class Params(TrackerParams):
+        """What it assumes of the shuttle."""
+
+    @classmethod
+    def noise_um(cls, params: Any, context: Context) -> float:
+        """Return the noise of the phase as displacement; the filter's own error is smaller but not white."""
+        return calibrated(context, "dual_beam", DualBeam.Params).phase_noise_um
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the parameters for the step."""
+        pair = calibrated(context, "dual_beam", DualBeam.Params)
+        noise = max(pair.phase_noise_um, 1e-6)
+        own = [pair.pitch_um, pair.offset(context.seed), noise * noise]
+        return np.array(own + tracker.pack_model(params, context))
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> FloatArray:
+        """Whether it has run, and the filter."""
+        return np.array([0.0, *tracker.start(params, context)])
+
+    step = quadrature_kalman_step
