@@ -11,6 +11,7 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.score import Scores
 from core.errors import unknown
+from scenarios.sensing_metrics import sensing_metrics
 
 SETTLED = 0.02
 """Share of the model's amplitude within which a loop counts as settled."""
@@ -109,6 +110,7 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
     found = device_metrics(board)
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
+        found |= sensing_metrics(board, trace, options)
     for name, scores in board.scores().items():
         found |= diagnosis_metrics(name, scores, step_lengths(trace[f"{name}.truth"]))
     return found

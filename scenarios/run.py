@@ -15,7 +15,13 @@ from core.errors import InputError
 from scenarios.metrics import measure
 from scenarios.schema import Scenario
 
-TRACED_FIGURES = ("plant.displacement", "model.displacement", "drive.voltage", "reference.voltage")
+TRACED_FIGURES = (
+    "plant.displacement",
+    "sensor.displacement",
+    "model.displacement",
+    "drive.voltage",
+    "reference.voltage",
+)
 
 
 @dataclass

@@ -77,8 +77,10 @@ class Capacitive(Sensor):
     )
     equations = (
         Equation(
-            "capacitances", r"C_{sp}=C_{s0}+\tfrac{\partial C_s}{\partial x}x,\;C_{sn}=C_{s0}-\tfrac{\partial C_s}"
-            r"{\partial x}x", "2.2.1.1-2"
+            "capacitances",
+            r"C_{sp}=C_{s0}+\tfrac{\partial C_s}{\partial x}x,\;C_{sn}=C_{s0}-\tfrac{\partial C_s}"
+            r"{\partial x}x",
+            "2.2.1.1-2",
         ),
         Equation("displacement", r"z=\frac{C_{sp}-C_{sn}}{2\,\partial C_s/\partial x}"),
         Equation("sum", r"C_{sp}+C_{sn}=n\varepsilon_0t\oint\left[\frac{1}{g-\eta}+\frac{1}{g+\eta}\right]d\xi"),

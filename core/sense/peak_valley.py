@@ -61,8 +61,12 @@ def peak_valley_step(p: Any, s: Any, w: Any, io: Any) -> None:
                 s[SENSE] = -s[SENSE]
             way = 1.0 - way
             s[BEST] = way
-        way = min(max(way, 0.0), 1.0)
-        w[io[DISPLACEMENT]] = p[GRATING + OFFSET] + half * (s[BEHIND] + s[SENSE] * way)
+        if math.isfinite(way):
+            way = min(max(way, 0.0), 1.0)
+            if s[SURE] != 0.0 and s[BEST] > 1.0 - p[TOLERANCE] and way < s[BEST]:
+                # past a fringe extreme, if only just: the motion is taken to go on
+                way = 2.0 - way
+            w[io[DISPLACEMENT]] = p[GRATING + OFFSET] + half * (s[BEHIND] + s[SENSE] * way)
     w[io[ERROR]] = w[io[DISPLACEMENT]] - w[io[TRUE]]
     w[io[EXTREMES]] = s[BEHIND]
     w[io[DIRECTION]] = s[SENSE] if s[SURE] != 0.0 else 0.0
@@ -119,10 +123,10 @@ class PeakValley(Sensor):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step, with the grating as calibrated."""
-        doppler = params.light == "doppler"
-        beam: Any = ThroughWafer.Params
-        known = calibrated(context, "doppler", Doppler.Params) if doppler else calibrated(context, "through_wafer", beam)
-        return np.array([doppler, params.hysteresis, params.tolerance, params.follow, *known.packed(context)])
+        own = [params.light == "doppler", params.hysteresis, params.tolerance, params.follow]
+        kinds: dict[str, Any] = {"through_wafer": ThroughWafer.Params, "doppler": Doppler.Params}
+        known = calibrated(context, params.light, kinds[params.light])
+        return np.array([*own, *known.packed(context)])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

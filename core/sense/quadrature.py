@@ -57,8 +57,12 @@ class Quadrature(Sensor):
         Port("slips", "1", "whole pitches it is off by"),
     )
     equations = (
-        Equation("phase", r"\varphi=\mathrm{atan2}\!\left(\frac{\hat I_b-\hat I_a\cos\delta}{\sin\delta},\hat I_a\right),"
-                 r"\quad\hat I=\frac{I-\bar I}{c_1},\;\delta=\frac{2\pi s}{\Lambda}", "6.3 in words"),
+        Equation(
+            "phase",
+            r"\varphi=\mathrm{atan2}\!\left(\frac{\hat I_b-\hat I_a\cos\delta}{\sin\delta},\hat I_a\right),"
+            r"\quad\hat I=\frac{I-\bar I}{c_1},\;\delta=\frac{2\pi s}{\Lambda}",
+            "6.3 in words",
+        ),
         Equation("displacement", r"x=x_0+\frac{\Lambda}{2\pi}\,\mathrm{unwrap}\,\varphi"),
     )
 

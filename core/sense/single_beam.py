@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Context, Equation, FloatArray, Port, kernel, parameter
+from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter
 from core.sense import tracker
 from core.sense.grating import COUNT, FIRST, MEAN, OFFSET, WAVE
 from core.sense.sensor import Sensor, calibrated
 from core.sense.through_wafer import ThroughWafer
-from core.sense.tracker import FILTER, P11, F, TrackerParams, V, X, correct, predict
+from core.sense.tracker import FILTER, P11, TrackerParams, V, X, coast, correct, predict
 
 ALWAYS, NOISE, FORGET, PENALTY, DROP, NEAR, SAME_X, SAME_V, MODEL = range(9)
 GRATING = MODEL + tracker.MODEL
@@ -22,7 +22,7 @@ SCORE, USED, WIDTH = FILTER, FILTER + 1, FILTER + 2
 NO, YES, NEW = 0.0, 1.0, 2.0
 RUNNING, BEST, CHANGES, FRESH = range(4)
 OWN = FRESH + FILTER
-"""State: whether it runs, the best hypothesis, how often that changed, a filter as at the start, the hypotheses."""
+"""State: whether it runs, the best hypothesis, how often that changed, a filter to start from, the hypotheses."""
 
 
 @kernel
@@ -89,8 +89,7 @@ def mirror(p: Any, s: Any, b: int, extreme: float) -> None:
 
 @kernel
 def follow(p: Any, s: Any, b: int, z: float) -> None:
-    """Correct one hypothesis, which has been predicted, and add its reflection where it may have turned."""
-    half = math.pi / p[GRATING + WAVE]
+    """Correct one hypothesis, which has been predicted, and score it."""
     value, first, second = light(p, s[b + X])
     # to second order: near an extreme of the light the slope is nothing and the curvature is all
     bend = 0.5 * second * s[b + P11]
@@ -134,8 +133,9 @@ def sift(p: Any, s: Any) -> float:
         keep = s[b + SCORE] > high - p[DROP]
         for j in range(MOST):
             o = OWN + j * WIDTH
-            if j != i and s[o + USED] != NO and (s[o + SCORE] > s[b + SCORE] or (s[o + SCORE] == s[b + SCORE] and j < i)):
-                keep = keep and not alike(p, s, o, s[b + X], s[b + V])
+            ahead = s[o + SCORE] > s[b + SCORE] or (s[o + SCORE] == s[b + SCORE] and j < i)
+            if j != i and s[o + USED] != NO and ahead and alike(p, s, o, s[b + X], s[b + V]):
+                keep = False
         s[b + USED] = YES if keep else NO
         left += 1.0 if keep else 0.0
     return left
@@ -143,6 +143,8 @@ def sift(p: Any, s: Any) -> float:
 
 def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Follow every hypothesis and put out the likeliest."""
+    if w[TICK] > 0.0:
+        coast(p, MODEL, s, FRESH, w[io[APPLIED]])
     if w[io[ENGAGED]] == 0.0 and p[ALWAYS] == 0.0:
         s[RUNNING] = 0.0
         for port in range(DISPLACEMENT, SLIPS + 1):
@@ -186,11 +188,12 @@ class SingleBeam(Sensor):
 
     The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`. So whenever a hypothesis
     passes an extreme, or turns near one, its reflection :math:`(2x_e-x,-\dot x)` is followed as well, at most ten in
-    all; only one of the two keeps obeying the equation of motion. The likeliest is put out, with a likelihood that
-    forgets over a few periods of the drive: a shorter memory fails as soon as the stiffness is wrong.
+    all; only one of the two keeps obeying the equation of motion. The likeliest is put out, by a likelihood with a
+    memory of a few periods of the drive.
 
     It costs as much as the rest of the bench together, and therefore rests while no one uses it: unless it is the
-    sensor in use or ``always`` is set, its output is 0 and so is the tap ``active``. It starts from rest at zero.
+    sensor in use or ``always`` is set, its output is 0 and so is the tap ``active``. Then only the nominal model goes
+    on under the voltage, so that it can start from where the shuttle should be.
     The text leaves the unit to others (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
     """
 
@@ -224,7 +227,7 @@ class SingleBeam(Sensor):
 
         always: bool = parameter(False, "run even while it is not in use")
         memory_ms: float = parameter(2.8, "memory of the likelihood", "ms", gt=0, le=1e4)
-        reflection_odds: float = parameter(3.0, "logarithm of the odds against a reflection", ge=0, le=100)
+        reflection_odds: float = parameter(8.0, "logarithm of the odds against a reflection", ge=0, le=100)
         drop: float = parameter(40.0, "log-likelihood below the best at which a hypothesis is dropped", gt=0, le=1e4)
         near_um: float = parameter(0.5, "turns this near an extreme are reflected", "um", ge=0, le=100)
 
@@ -252,7 +255,7 @@ class SingleBeam(Sensor):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it runs, the best hypothesis, changes of it, a filter as at the start, the hypotheses."""
+        """Whether it runs, the best hypothesis, changes of it, a filter to start from, the hypotheses."""
         return np.array([0.0, 0.0, 0.0, *tracker.start(params, context), *[0.0] * (MOST * WIDTH)])
 
     step = single_beam_step

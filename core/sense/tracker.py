@@ -31,7 +31,7 @@ class TrackerParams(BlockParams):
 
 
 def pack_model(params: TrackerParams, context: Context) -> list[float]:
-    r"""Return the packed model; the walk has the variance :math:`4000\,\mathrm s^{-1}(0.1\omega_0^2A)^2dt` by default."""
+    r"""Return the packed model; by default the walk has the variance :math:`4000\,s^{-1}(0.1\omega_0^2A)^2dt`."""
     device = context.device
     stiffness = device.stiffness * params.stiffness
     phi = transition(device.mass, device.damping, stiffness, context.dt_ms)
@@ -49,6 +49,15 @@ def start(params: TrackerParams, context: Context) -> list[float]:
     own = params.model_error * square * params.amplitude_um
     speed = 0.1 * math.sqrt(square)
     return [0.0, 0.0, 0.0, 0.01, 0.0, 0.0, speed * speed, 0.0, own * own]
+
+
+@kernel
+def coast(p: Any, at: int, s: Any, b: int, u: float) -> None:
+    """Advance displacement and velocity alone, by the model without the slow force."""
+    x = s[b + X]
+    v = s[b + V]
+    s[b + X] = settled(p[at + PHI11] * x + p[at + PHI12] * v + p[at + GAMMA1] * u)
+    s[b + V] = settled(p[at + PHI21] * x + p[at + PHI22] * v + p[at + GAMMA2] * u)
 
 
 @kernel
