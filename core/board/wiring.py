@@ -155,9 +155,23 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
 
 
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
-    """Tell every controller and every sensor whether it is the one in use."""
+    """Tell every controller whether it drives, and every sensor whether it is needed; the others may rest."""
+    running = {spec.active, *needed(spec)}
     for name in (*spec.controllers, *spec.sensors):
-        w[index[f"{name}.engaged"]] = 1.0 if name in (spec.active, spec.measuring) else 0.0
+        w[index[f"{name}.engaged"]] = 1.0 if name in running else 0.0
+
+
+def needed(spec: Spec) -> set[str]:
+    """Return the sensor in use, those that always run, and all they read from."""
+    found: set[str] = set()
+    always = [name for name, section in spec.sensors.items() if getattr(section.params, "always", False)]
+    waiting = [spec.measuring, *always]
+    while waiting:
+        name = waiting.pop()
+        if name in spec.sensors and name not in found:
+            found.add(name)
+            waiting += [port.source.split(".")[0] for port in spec.sensors[name].block.inputs]
+    return found
 
 
 def ports_of(spec: Spec, instance: Instance, index: dict[str, int]) -> IntArray:

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter
+from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter
 from core.noise import key, normal
-from core.sense.sensor import Sensor
+from core.sense.sensor import ENGAGED_PORT, Sensor, SensorParams, rest
 from core.units import FF_PER_F, UM_PER_M
 
 GRADIENT, OVERLAP, GAP, START, NOISE, FIRST_KEY, SECOND_KEY = range(7)
-TRUE, LATERAL, ROTATION, DISPLACEMENT, SUM, POSITIVE, NEGATIVE, ERROR = range(8)
+ENGAGED, TRUE, LATERAL, ROTATION, DISPLACEMENT, SUM, POSITIVE, NEGATIVE, ERROR = range(9)
 
 NODES = np.array([-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640])
 WEIGHTS = np.array([0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891])
@@ -38,6 +38,9 @@ def squeezed(p: Any, side: float, overlap: float, y: float, theta: float) -> flo
 
 def capacitive_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Read both combs; displacement from the difference."""
+    if w[io[ENGAGED]] == 0.0:
+        rest(w, io, DISPLACEMENT, ERROR)
+        return
     x = w[io[TRUE]]
     y = w[io[LATERAL]]
     theta = w[io[ROTATION]]
@@ -62,6 +65,7 @@ class Capacitive(Sensor):
 
     title = "Capacitive sensor"
     inputs = (
+        ENGAGED_PORT,
         Port("true", "um", "true displacement", source="plant.displacement"),
         Port("lateral", "um", "true lateral displacement, where the plant has one", source="plant.lateral?"),
         Port("rotation", "rad", "true rotation, where the plant has one", source="plant.rotation?"),
@@ -86,7 +90,7 @@ class Capacitive(Sensor):
         Equation("sum", r"C_{sp}+C_{sn}=n\varepsilon_0t\oint\left[\frac{1}{g-\eta}+\frac{1}{g+\eta}\right]d\xi"),
     )
 
-    class Params(BlockParams):
+    class Params(SensorParams):
         """Combs and readout."""
 
         overlap_um: float = parameter(40.0, "overlap of the fingers at rest", "um", gt=0, le=1000)

@@ -15,8 +15,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import BlockParams, Context, kernel, parameter
+from core.block import Context, kernel, parameter
 from core.noise import key, uniform
+from core.sense.sensor import SensorParams
 
 MEAN, WAVE, OFFSET, COUNT, FIRST = range(5)
 """Layout of a packed grating: mean, 2 pi over pitch, offset, number of harmonics, then their amplitudes."""
@@ -24,7 +25,7 @@ HARMONICS = 64
 NEGLIGIBLE = 1e-9
 
 
-class GratingParams(BlockParams):
+class GratingParams(SensorParams):
     """A grating and the beam on it."""
 
     pitch_um: float = parameter(4.0, "pitch of the grating", "um", gt=0, le=1000, equation="2.2.2")

@@ -7,26 +7,32 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import BlockParams, Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, FloatArray, Port, parameter
 from core.sense.doppler import Doppler
 from core.sense.grating import OFFSET, WAVE, level
-from core.sense.sensor import Sensor, calibrated
+from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, SensorParams, calibrated, rest
 from core.sense.through_wafer import ThroughWafer
 
 SOURCE, HYSTERESIS, TOLERANCE, FOLLOW, GRATING = range(5)
-LIGHT, HEIGHT, TRUE, MOVING, DISPLACEMENT, ERROR, EXTREMES, DIRECTION, WRONG_WAY = range(9)
+ENGAGED, LAST, LIGHT, HEIGHT, TRUE, MOVING, DISPLACEMENT, ERROR, EXTREMES, DIRECTION, WRONG_WAY = range(11)
 STARTED, SURE, EVEN, ODD, BEHIND, SENSE, BEST, REST = range(8)
 
 
 def peak_valley_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Count and interpolate."""
+    if w[io[ENGAGED]] == 0.0:
+        s[STARTED] = 0.0
+        rest(w, io, DISPLACEMENT, WRONG_WAY)
+        return
     half = math.pi / p[GRATING + WAVE]  # half a pitch, from one extreme to the next
     if s[STARTED] == 0.0:
         s[STARTED] = 1.0
         s[EVEN] = level(p, GRATING, p[GRATING + OFFSET])
         s[ODD] = level(p, GRATING, p[GRATING + OFFSET] + half)
-        s[BEHIND] = math.floor(-p[GRATING + OFFSET] / half)
+        near = w[io[LAST]] if math.isfinite(w[io[LAST]]) else 0.0
+        s[BEHIND] = math.floor((near - p[GRATING + OFFSET]) / half)
         s[SENSE] = 1.0
+        s[SURE] = 0.0
         s[REST] = -1.0
     value = w[io[LIGHT]] if p[SOURCE] == 0.0 else w[io[HEIGHT]]
     if math.isfinite(value):
@@ -36,7 +42,7 @@ def peak_valley_step(p: Any, s: Any, w: Any, io: Any) -> None:
         end = s[ODD] if even else s[EVEN]
         way = (value - start) / (end - start)
         if s[SURE] == 0.0:
-            # at rest at zero; the first change says which way it goes
+            # the first change says which way it goes
             if s[REST] < 0.0:
                 s[REST] = way
             if abs(way - s[REST]) > p[HYSTERESIS]:
@@ -86,6 +92,8 @@ class PeakValley(Sensor):
 
     title = "Peak and valley counter"
     inputs = (
+        ENGAGED_PORT,
+        LAST_PORT,
         Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
         Port("height", "um", "integrated Doppler signal", source="doppler.height"),
         Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
@@ -106,7 +114,7 @@ class PeakValley(Sensor):
         ),
     )
 
-    class Params(BlockParams):
+    class Params(SensorParams):
         """What it counts, and what it calls an extreme."""
 
         light: Literal["through_wafer", "doppler"] = parameter("through_wafer", "which optical signal it reads")

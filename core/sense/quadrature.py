@@ -7,24 +7,29 @@ from typing import Any
 
 import numpy as np
 
-from core.block import BlockParams, Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, FloatArray, Port, parameter
 from core.sense.dual_beam import DualBeam
-from core.sense.sensor import Sensor, calibrated
+from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, SensorParams, calibrated, rest
 
 MEAN, AMPLITUDE, COSINE, SINE, PITCH, OFFSET = range(6)
-FIRST, SECOND, TRUE, DISPLACEMENT, ERROR, TURN, SLIPS = range(7)
+ENGAGED, LAST, FIRST, SECOND, TRUE, DISPLACEMENT, ERROR, TURN, SLIPS = range(9)
 TWO_PI = 2.0 * math.pi
 
 
 def quadrature_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Take the phase of the pair and unwrap it."""
+    if w[io[ENGAGED]] == 0.0:
+        s[0] = 0.0
+        rest(w, io, DISPLACEMENT, SLIPS)
+        return
     cosine = (w[io[FIRST]] - p[MEAN]) / p[AMPLITUDE]
     # the second beam sees cos(phase - delta)
     sine = ((w[io[SECOND]] - p[MEAN]) / p[AMPLITUDE] - p[COSINE] * cosine) / p[SINE]
     if math.isfinite(cosine) and math.isfinite(sine):
         if s[0] == 0.0:
             s[0] = 1.0
-            s[1] = -p[OFFSET] / p[PITCH]  # at rest at zero
+            near = w[io[LAST]] if math.isfinite(w[io[LAST]]) else 0.0
+            s[1] = (near - p[OFFSET]) / p[PITCH]
         turn = math.atan2(sine, cosine) / TWO_PI
         s[1] = turn + math.floor(s[1] - turn + 0.5)
         w[io[TURN]] = turn
@@ -46,6 +51,8 @@ class Quadrature(Sensor):
 
     title = "Quadrature with unwrap"
     inputs = (
+        ENGAGED_PORT,
+        LAST_PORT,
         Port("first", "1", "light of the first beam", source="dual_beam.first"),
         Port("second", "1", "light of the second beam", source="dual_beam.second"),
         Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
@@ -66,7 +73,7 @@ class Quadrature(Sensor):
         Equation("displacement", r"x=x_0+\frac{\Lambda}{2\pi}\,\mathrm{unwrap}\,\varphi"),
     )
 
-    class Params(BlockParams):
+    class Params(SensorParams):
         """What it assumes of the pair."""
 
         spacing_um: float = parameter(1.0, "distance between the beams it assumes", "um", ge=0.01, le=100)

@@ -7,22 +7,34 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Context, Equation, FloatArray, Port
+from core.block import TICK, Context, Equation, FloatArray, Port
 from core.sense import tracker
 from core.sense.dual_beam import DualBeam
-from core.sense.sensor import Sensor, calibrated
-from core.sense.tracker import TrackerParams, correct, predict
+from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, calibrated, rest
+from core.sense.tracker import FILTER, TrackerParams, coast, correct, predict
 
 PITCH, OFFSET, NOISE, MODEL = range(4)
-TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(7)
-STARTED, OWN = range(2)
+ENGAGED, LAST, TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(9)
+RUNNING, FRESH, OWN = 0, 1, 1 + FILTER
+"""State: whether it runs, a filter to start from, the filter."""
 
 
 def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, unwrap the phase about the prediction, correct."""
-    if s[STARTED] != 0.0:
+    if w[TICK] > 0.0:
+        coast(p, MODEL, s, FRESH, w[io[APPLIED]])
+    if w[io[ENGAGED]] == 0.0:
+        s[RUNNING] = 0.0
+        rest(w, io, DISPLACEMENT, SLIPS)
+        return
+    if s[RUNNING] == 0.0:
+        s[RUNNING] = 1.0
+        for j in range(FILTER):
+            s[OWN + j] = s[FRESH + j]
+        if math.isfinite(w[io[LAST]]):
+            s[OWN + tracker.X] = w[io[LAST]]
+    else:
         predict(p, MODEL, s, OWN, w[io[APPLIED]])
-    s[STARTED] = 1.0
     x = s[OWN + tracker.X]
     ahead = (x - p[OFFSET]) / p[PITCH] - w[io[TURN]]
     residual = p[PITCH] * (math.floor(ahead + 0.5) - ahead) if math.isfinite(ahead) else 0.0
@@ -42,6 +54,8 @@ class QuadratureKalman(Sensor):
 
     title = "Quadrature with Kalman filter"
     inputs = (
+        ENGAGED_PORT,
+        LAST_PORT,
         Port("turn", "1", "phase of the pair, in turns", source="quadrature.turn"),
         Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage"),
         Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
@@ -77,7 +91,7 @@ class QuadratureKalman(Sensor):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it has run, and the filter."""
-        return np.array([0.0, *tracker.start(params, context)])
+        """Whether it runs, a filter to start from, the filter."""
+        return np.array([0.0, *tracker.start(params, context), *[0.0] * FILTER])
 
     step = quadrature_kalman_step

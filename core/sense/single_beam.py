@@ -10,13 +10,13 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter
 from core.sense import tracker
 from core.sense.grating import COUNT, FIRST, MEAN, OFFSET, WAVE
-from core.sense.sensor import Sensor, calibrated
+from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, calibrated, rest
 from core.sense.through_wafer import ThroughWafer
 from core.sense.tracker import FILTER, P11, TrackerParams, V, X, coast, correct, predict
 
-ALWAYS, NOISE, FORGET, PENALTY, DROP, NEAR, SAME_X, SAME_V, MODEL = range(9)
+NOISE, FORGET, PENALTY, DROP, NEAR, SAME_X, SAME_V, MODEL = range(8)
 GRATING = MODEL + tracker.MODEL
-LIGHT, APPLIED, ENGAGED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(10)
+ENGAGED, LAST, LIGHT, APPLIED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(11)
 MOST = 10
 SCORE, USED, WIDTH = FILTER, FILTER + 1, FILTER + 2
 NO, YES, NEW = 0.0, 1.0, 2.0
@@ -145,10 +145,9 @@ def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Follow every hypothesis and put out the likeliest."""
     if w[TICK] > 0.0:
         coast(p, MODEL, s, FRESH, w[io[APPLIED]])
-    if w[io[ENGAGED]] == 0.0 and p[ALWAYS] == 0.0:
+    if w[io[ENGAGED]] == 0.0:
         s[RUNNING] = 0.0
-        for port in range(DISPLACEMENT, SLIPS + 1):
-            w[io[port]] = 0.0
+        rest(w, io, DISPLACEMENT, SLIPS)
         return
     first = s[RUNNING] == 0.0
     if first:
@@ -159,6 +158,8 @@ def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
             s[OWN + j] = 0.0
         for j in range(FILTER):
             s[OWN + j] = s[FRESH + j]
+        if math.isfinite(w[io[LAST]]):
+            s[OWN + X] = w[io[LAST]]
         s[OWN + USED] = YES
     z = w[io[LIGHT]]
     for i in range(MOST):
@@ -193,15 +194,16 @@ class SingleBeam(Sensor):
 
     It costs as much as the rest of the bench together, and therefore rests while no one uses it: unless it is the
     sensor in use or ``always`` is set, its output is 0 and so is the tap ``active``. Then only the nominal model goes
-    on under the voltage, so that it can start from where the shuttle should be.
+    on under the voltage: the speed to start with. The displacement to start with is what was measured last.
     The text leaves the unit to others (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
     """
 
     title = "Single beam, several hypotheses"
     inputs = (
+        ENGAGED_PORT,
+        LAST_PORT,
         Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
         Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage"),
-        Port("engaged", "1", "1 while this sensor is in use", source="@engaged"),
         Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
     )
     outputs = (Port("displacement", "um", "recovered displacement"),)
@@ -225,7 +227,6 @@ class SingleBeam(Sensor):
     class Params(TrackerParams):
         """What it assumes of the shuttle, and how it treats hypotheses."""
 
-        always: bool = parameter(False, "run even while it is not in use")
         memory_ms: float = parameter(2.8, "memory of the likelihood", "ms", gt=0, le=1e4)
         reflection_odds: float = parameter(8.0, "logarithm of the odds against a reflection", ge=0, le=100)
         drop: float = parameter(40.0, "log-likelihood below the best at which a hypothesis is dropped", gt=0, le=1e4)
@@ -242,7 +243,6 @@ class SingleBeam(Sensor):
         beam = calibrated(context, "through_wafer", ThroughWafer.Params)
         noise = max(beam.noise, 1e-4 * abs(beam.harmonics[0]), 1e-30)
         own = [
-            params.always,
             noise * noise,
             math.exp(-context.dt_ms / params.memory_ms),
             params.reflection_odds,

@@ -9,14 +9,18 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Port
 from core.noise import key, normal
 from core.sense.grating import BeamParams, level
-from core.sense.sensor import Sensor
+from core.sense.sensor import ENGAGED_PORT, Sensor
 
 NOISE, KEY, GRATING = range(3)
+ENGAGED, TRUE, INTENSITY = range(3)
 
 
 def through_wafer_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Let the light through and detect it."""
-    w[io[1]] = level(p, GRATING, w[io[0]]) + p[NOISE] * normal(p[KEY], w[TICK])
+    if w[io[ENGAGED]] == 0.0:
+        w[io[INTENSITY]] = 0.0
+        return
+    w[io[INTENSITY]] = level(p, GRATING, w[io[TRUE]]) + p[NOISE] * normal(p[KEY], w[TICK])
 
 
 class ThroughWafer(Sensor):
@@ -30,7 +34,7 @@ class ThroughWafer(Sensor):
     """
 
     title = "Through-wafer intensity"
-    inputs = (Port("true", "um", "true displacement", source="plant.displacement"),)
+    inputs = (ENGAGED_PORT, Port("true", "um", "true displacement", source="plant.displacement"))
     outputs = (Port("intensity", "1", "detected light, full light being 1"),)
     equations = (
         Equation(

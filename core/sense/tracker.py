@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import BlockParams, Context, kernel, parameter, settled
+from core.block import Context, kernel, parameter, settled
 from core.device.oscillator import transition
+from core.sense.sensor import SensorParams
 
 PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, FORCE1, FORCE2, WALK, MODEL = range(10)
 """Layout of a packed model, and its length."""
@@ -19,7 +20,7 @@ X, V, F, P11, P12, P13, P22, P23, P33, FILTER = range(10)
 """Layout of a filter's state, and its length."""
 
 
-class TrackerParams(BlockParams):
+class TrackerParams(SensorParams):
     """What a tracker assumes of the shuttle."""
 
     amplitude_um: float = parameter(4.0, "amplitude of the motion it is tuned for", "um", gt=0, le=100)
@@ -44,16 +45,16 @@ def pack_model(params: TrackerParams, context: Context) -> list[float]:
 
 
 def start(params: TrackerParams, context: Context) -> list[float]:
-    """Return a filter at rest at zero, uncertain by a tenth of a micrometre and by the force the model may lack."""
+    """Return a filter at rest at zero, uncertain by 0.1 um, by a tenth of the speed and by the force it may lack."""
     square = context.device.stiffness / context.device.mass
     own = params.model_error * square * params.amplitude_um
-    speed = 0.1 * math.sqrt(square)
+    speed = 0.1 * params.amplitude_um * math.sqrt(square)
     return [0.0, 0.0, 0.0, 0.01, 0.0, 0.0, speed * speed, 0.0, own * own]
 
 
 @kernel
 def coast(p: Any, at: int, s: Any, b: int, u: float) -> None:
-    """Advance displacement and velocity alone, by the model without the slow force."""
+    """Advance displacement and velocity alone, by the nominal model: where to start from."""
     x = s[b + X]
     v = s[b + V]
     s[b + X] = settled(p[at + PHI11] * x + p[at + PHI12] * v + p[at + GAMMA1] * u)
