@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+import numpy as np
+
+from core.sense.doppler import Doppler
+from core.sense.grating import slope
+from tests.core.sense.bench import make, play
+
+BOTH = {
+    "sensors.doppler.always": True,
+    "sensors.doppler.noise_um_ms": 0.0,
+    "sensors.doppler.leak_ms": 1e6,
+    "sensors.through_wafer.always": True,
+    "sensors.through_wafer.snr_db": 200.0,
+}
+
+
+def test_integral_of_the_signal_is_the_intensity():
+    # h = d (1 - o) and I = T + (1 - T) o: both are the same function of displacement
+    board = make(BOTH)
+    trace = play(board, 3000)
+    signal, light = trace["doppler.velocity"], trace["through_wafer.intensity"]
+    integral = np.concatenate([[0.0], np.cumsum(0.5 * (signal[1:] + signal[:-1]))]) * board.dt_ms
+    expected = -2.0 / 0.5 * (light - light[0])
+    np.testing.assert_allclose(integral, expected, atol=2e-3)
+    assert np.ptp(expected) > 1.2
+    np.testing.assert_allclose(trace["doppler.height"] - trace["doppler.height"][0], expected, atol=2e-3)
+
+
+def test_reflected_motion_gives_the_same_signal():
+    p = np.array(Doppler.Params(grating_offset_um=0.3).packed(make().spec.context()))
+    for x in np.linspace(-3, 3, 13):
+        for extreme in (0.3, 2.3):
+            assert abs(slope(p, 0, x) * 7.0 - slope(p, 0, 2 * extreme - x) * -7.0) < 1e-12
+
+
+def test_eight_pulses_a_cycle_as_high_as_the_shuttle_is_fast():
+    trace = play(make({**BOTH, "sensors.doppler.grating_offset_um": 0.0}))
+    cycle = slice(TICKS_LAST_CYCLE, None)
+    signal = trace["doppler.velocity"][cycle]
+    pulses = np.sum((np.diff(np.sign(np.diff(signal))) != 0) & (np.abs(signal[1:-1]) > 5.0))
+    assert pulses == 8
+    # the fundamental alone: d (2/pi) exp(-(pi w/L)^2/2) (2 pi/L) at the full speed of 50 um/ms
+    peak = (
+        2.0
+        * 2
+        / np.pi
+        * np.exp(-((np.pi * 1.5 / 4) ** 2) / 2)
+        * np.pi
+        / 2
+        * np.abs(trace["plant.velocity"][cycle]).max()
+    )
+    assert 0.8 * peak < np.abs(signal).max() <= 1.02 * peak
+
+
+TICKS_LAST_CYCLE = -259

@@ -1,0 +1,56 @@
+"""How sensors are wired: what runs, in which order, and what others are told of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.board.wiring import needed
+from core.errors import InputError
+from tests.core.sense.bench import apply, make, play
+
+
+def test_only_what_the_sensor_in_use_needs_is_engaged():
+    assert needed(make({"sensor.kind": "ideal"}).spec) == {"ideal"}
+    assert needed(make({"sensor.kind": "quadrature_kalman"}).spec) == {"quadrature_kalman", "quadrature", "dual_beam"}
+    both = make({"sensor.kind": "quadrature", "sensors.single_beam.always": True}).spec
+    assert needed(both) == {"quadrature", "dual_beam", "single_beam", "through_wafer"}
+
+
+def test_engagement_follows_a_change_while_running():
+    board = make({"sensor.kind": "ideal"})
+    play(board, 100)
+    assert board.value("quadrature.engaged") == 0.0
+    apply(board, {"kind": "set", "values": {"sensor.kind": "quadrature"}})
+    assert [board.value(f"{name}.engaged") for name in ("quadrature", "dual_beam", "ideal")] == [1.0, 1.0, 0.0]
+    apply(board, {"kind": "set", "values": {"sensor.kind": "ideal"}})
+    trace = play(board, 10)
+    assert not trace["dual_beam.first"].any() and trace["sensor.displacement"].any()
+
+
+def test_recovery_sees_the_light_of_the_same_tick():
+    keys = [instance.key for instance in make().wiring.instances]
+    for recovery in ("peak_valley", "single_beam", "quadrature"):
+        for light in ("through_wafer", "doppler", "dual_beam"):
+            assert keys.index(light) < keys.index(recovery)
+
+
+def test_light_cannot_be_fed_to_a_controller():
+    with pytest.raises(InputError, match="puts out no displacement"):
+        make({"sensor.kind": "through_wafer"})
+
+
+def test_one_sensor_does_not_disturb_the_noise_of_another():
+    alone = play(make({"sensor.kind": "quadrature"}), 500)
+    beside = play(make({"sensor.kind": "quadrature", "sensors.single_beam.always": True}), 500)
+    np.testing.assert_array_equal(alone["dual_beam.first"], beside["dual_beam.first"])
+
+
+@pytest.mark.parametrize("kind", ["capacitive", "peak_valley", "quadrature", "quadrature_kalman", "single_beam"])
+def test_a_loop_can_be_closed_on_any_sensor(kind):
+    board = make(
+        {"sensor.kind": kind, "controller.kind": "pid", "reference.amplitude_v": 1.0, "guard.travel_um": 1000.0}
+    )
+    trace = play(board, 2000)
+    assert all(np.isfinite(values).all() for values in trace.values())
+    assert trace["sensor.displacement"].any()
