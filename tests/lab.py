@@ -64,7 +64,11 @@ STORY: list[dict[str, Any]] = [
         "at_sample": 41,
     },
     {"kind": "switch", "controller": "mrac", "at_sample": 60},
-    {"kind": "set", "values": {"reference.amplitude_v": 4.0, "sensor.noise_um": 0.05}, "when": "plant.velocity > 5"},
+    {
+        "kind": "set",
+        "values": {"reference.amplitude_v": 4.0, "sensors.ideal.noise_um": 0.05},
+        "when": "plant.velocity > 5",
+    },
     {"kind": "switch", "controller": "pid", "at_sample": 90},
     {"kind": "heal", "faults": ["added_mass"], "at_sample": 97},
     {"kind": "switch", "controller": "open_loop", "at_sample": 110},

@@ -17,7 +17,7 @@ from core.board.spec import Spec
 from core.faults.fault import Fault
 from core.signals import Signal, SignalTable
 
-NOTHING = "nothing"
+NOTHING = "@nothing"
 """A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
 
 

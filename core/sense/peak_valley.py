@@ -84,7 +84,8 @@ class PeakValley(Sensor):
 
     An extreme of full swing is a fringe and the motion goes on; one that is not is a turn. A turn near a fringe
     extreme looks like a fringe, so the direction gets lost there: for a sine of 4 um in 4 of 10 positions of the
-    grating, with the transient at its start in 9 of 10, whatever the noise. It is shown because the text has no more than this to say of its unit.
+    grating, with the transient at its start in 9 of 10, whatever the noise. It is shown because the text has no more
+    than this to say of its unit.
 
     Linear interpolation alone errs by :math:`\tfrac\Lambda2\sqrt{\tfrac1{12}+\tfrac18-\tfrac2{\pi^2}}`, 151 nm at
     4 um.

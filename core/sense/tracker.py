@@ -23,7 +23,7 @@ X, V, F, P11, P12, P13, P22, P23, P33, FILTER = range(10)
 class TrackerParams(SensorParams):
     """What a tracker assumes of the shuttle."""
 
-    amplitude_um: float = parameter(4.0, "amplitude of the motion it is tuned for", "um", gt=0, le=100)
+    stroke_um: float = parameter(4.0, "amplitude of the motion it is tuned for", "um", gt=0, le=100)
     stiffness: float = parameter(1.0, "stiffness it assumes over the nominal one", gt=0.01, le=100)
     model_error: float = parameter(
         0.1, "force the model may lack, over the spring force at that amplitude", ge=0.001, le=10
@@ -38,7 +38,7 @@ def pack_model(params: TrackerParams, context: Context) -> list[float]:
     phi = transition(device.mass, device.damping, stiffness, context.dt_ms)
     square = stiffness / device.mass
     volt = device.force / stiffness
-    own = params.model_error * square * params.amplitude_um
+    own = params.model_error * square * params.stroke_um
     walk = params.force_rate_per_ms * own * own * context.dt_ms
     held = (1.0 - phi[0], -phi[2])
     return [*phi, held[0] * volt, held[1] * volt, held[0] / square, held[1] / square, walk]
@@ -47,8 +47,8 @@ def pack_model(params: TrackerParams, context: Context) -> list[float]:
 def start(params: TrackerParams, context: Context) -> list[float]:
     """Return a filter at rest at zero, uncertain by 0.1 um, by a tenth of the speed and by the force it may lack."""
     square = context.device.stiffness / context.device.mass
-    own = params.model_error * square * params.amplitude_um
-    speed = 0.1 * params.amplitude_um * math.sqrt(square)
+    own = params.model_error * square * params.stroke_um
+    speed = 0.1 * params.stroke_um * math.sqrt(square)
     return [0.0, 0.0, 0.0, 0.01, 0.0, 0.0, speed * speed, 0.0, own * own]
 
 

@@ -37,11 +37,15 @@ def path_of(entry: type[Block]) -> str:
         return "diagnosers.kalman"
     if entry.family == "board":
         return entry.name
+    if entry.family == "sense":
+        return f"sensors.{entry.name}"
     return SECTION[entry.family]
 
 
 def chosen(entry: type[Block]) -> dict[str, Any]:
     """Return the values that put a block on the rich bench."""
+    if entry.family == "sense" and all(port.name != "displacement" for port in entry.outputs):
+        return {f"{path_of(entry)}.always": True}
     if entry.family in SECTION:
         table = {KIND.get(entry.family, "kind"): entry.name}
         if entry.family == "reference":

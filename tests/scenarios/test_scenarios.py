@@ -124,7 +124,9 @@ def leaves() -> list[Any]:
     for block in registry.blocks("plant").values():
         add("plant", block, {"plant": {"model": block.name}})
     for block in registry.blocks("sense").values():
-        add("sensor", block, {"sensor": {"kind": block.name}})
+        add(f"sensors.{block.name}", block, {})
+        if any(port.name == "displacement" for port in block.outputs):
+            add("sensor", block, {"sensor": {"kind": block.name}})
     for block in registry.blocks("control").values():
         add("controller", block, {"controller": {"kind": block.name}})
         add(f"controllers.{block.name}", block, {})
@@ -144,6 +146,8 @@ def test_set_reaches_every_parameter(base, table, name, value):
         section = spec.controllers[spec.active]
     elif table.startswith("controllers."):
         section = spec.controllers[table.removeprefix("controllers.")]
+    elif table.startswith("sensors."):
+        section = spec.sensors[table.removeprefix("sensors.")]
     elif table.startswith("diagnosers."):
         section = spec.diagnosers["bank"]
     elif table == "sensor":

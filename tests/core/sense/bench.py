@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.board.board import Board
-from core.board.commands import parse_command
-from core.board.spec import with_values
+from tests import lab
+from tests.lab import do, play
 
 TICKS = 10_360
 DOCUMENT: dict[str, Any] = {
@@ -22,31 +21,17 @@ DOCUMENT: dict[str, Any] = {
 
 
 def make(values: dict[str, Any] | None = None, *, seed: int = 1, stiffness: float = 0.0) -> Board:
-    board = Board(with_values(DOCUMENT, {"seed": seed, **(values or {})}))
+    board = lab.make({"seed": seed, **(values or {})}, base=DOCUMENT)
     if stiffness:
-        apply(board, {"kind": "inject", "fault": "stiffness", "severity": stiffness})
+        do(board, {"kind": "inject", "fault": "stiffness", "severity": stiffness})
     return board
-
-
-def apply(board: Board, command: dict[str, Any]) -> None:
-    board.apply(parse_command(command), "test")
-
-
-def play(board: Board, ticks: int = TICKS) -> dict[str, np.ndarray]:
-    parts = []
-    end = board.tick + ticks
-    while board.tick < end:
-        rows = board.advance(end - board.tick)
-        parts.append(np.hstack([rows.outputs, rows.taps]))
-    whole = np.vstack(parts)
-    return {name: whole[:, i] for i, name in enumerate(board.signals.names)}
 
 
 def errors(values: dict[str, Any], seeds: range, *, stiffness: float = 0.0) -> np.ndarray:
     """Return the error of the sensor in use, um, one row a seed."""
     rows = []
     for seed in seeds:
-        trace = play(make(values, seed=seed, stiffness=stiffness))
+        trace = play(make(values, seed=seed, stiffness=stiffness), TICKS)
         rows.append(trace["sensor.displacement"] - trace["plant.displacement"])
     return np.array(rows)
 

@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 from core.sense.capacitive import Capacitive, squeezed
-from tests.core.sense.bench import make, play
+from tests.core.sense.bench import TICKS, make
+from tests.lab import play
 
 QUIET = {"sensor.kind": "capacitive", "sensor.noise_af_rthz": 0.0}
 GRADIENT = 2 * 87 * 8.8541878128e-12 * 2.0 / 2.1 * 1e9  # fF/um, one side
@@ -51,5 +52,5 @@ def test_noise_has_the_density_asked_for_and_filters_are_told():
     board = make({"sensor.kind": "capacitive", "sensor.noise_af_rthz": 1.0})
     expected = 0.34e-3 * math.sqrt(259e3)
     assert board.spec.context().sensor_noise_um == pytest.approx(expected, rel=0.01)
-    trace = play(board)
+    trace = play(board, TICKS)
     assert np.std(trace["capacitive.error"]) == pytest.approx(expected, rel=0.03)

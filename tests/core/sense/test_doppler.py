@@ -4,7 +4,8 @@ import numpy as np
 
 from core.sense.doppler import Doppler
 from core.sense.grating import slope
-from tests.core.sense.bench import make, play
+from tests.core.sense.bench import TICKS, make
+from tests.lab import play
 
 BOTH = {
     "sensors.doppler.always": True,
@@ -35,7 +36,7 @@ def test_reflected_motion_gives_the_same_signal():
 
 
 def test_eight_pulses_a_cycle_as_high_as_the_shuttle_is_fast():
-    trace = play(make({**BOTH, "sensors.doppler.grating_offset_um": 0.0}))
+    trace = play(make({**BOTH, "sensors.doppler.grating_offset_um": 0.0}), TICKS)
     cycle = slice(TICKS_LAST_CYCLE, None)
     signal = trace["doppler.velocity"][cycle]
     pulses = np.sum((np.diff(np.sign(np.diff(signal))) != 0) & (np.abs(signal[1:-1]) > 5.0))

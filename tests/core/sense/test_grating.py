@@ -7,7 +7,8 @@ import pytest
 from scipy.special import erf
 
 from core.sense.grating import BeamParams, level, pack_grating, slope
-from tests.core.sense.bench import make, play
+from tests.core.sense.bench import TICKS, make
+from tests.lab import play
 
 
 def smoothed(x: np.ndarray, spot: float, x0: float = 0.0, transmission: float = 0.5) -> np.ndarray:
@@ -66,7 +67,7 @@ def test_eight_extremes_and_two_turns_a_cycle_at_four_um():
 
 def test_extremes_of_the_signal_lie_two_um_apart():
     values = {"sensors.through_wafer.always": True, "sensors.through_wafer.snr_db": 200.0}
-    trace = play(make({**values, "sensors.through_wafer.grating_offset_um": 0.9}))
+    trace = play(make({**values, "sensors.through_wafer.grating_offset_um": 0.9}), TICKS)
     x, light = trace["plant.displacement"][5180:], trace["through_wafer.intensity"][5180:]
     turn = np.abs(trace["plant.velocity"][5180:][1:-1]) < 10.0
     at = x[1:-1][(np.diff(np.sign(np.diff(light))) != 0) & ~turn]
@@ -78,7 +79,7 @@ def test_extremes_of_the_signal_lie_two_um_apart():
 def test_noise_has_the_signal_to_noise_ratio_asked_for():
     values = {"sensors.through_wafer.always": True, "sensors.through_wafer.snr_db": 20.0}
     quiet = {**values, "sensors.through_wafer.snr_db": 200.0}
-    noise = play(make(values))["through_wafer.intensity"] - play(make(quiet))["through_wafer.intensity"]
+    noise = play(make(values), TICKS)["through_wafer.intensity"] - play(make(quiet), TICKS)["through_wafer.intensity"]
     amplitude = BeamParams().harmonics[0]
     assert 20 * math.log10(amplitude / math.sqrt(2) / np.std(noise)) == pytest.approx(20.0, abs=0.15)
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tests.core.sense.bench import errors, make, play, rms_nm
+from tests.core.sense.bench import errors, make, rms_nm
+from tests.lab import do, play
 
 PAIR = {"sensor.kind": "quadrature"}
 
@@ -52,9 +53,7 @@ def test_taking_over_keeps_the_fringe():
     board = make({"sensor.kind": "ideal"})
     play(board, 3210)
     assert abs(board.value("plant.displacement")) > 2.5
-    from tests.core.sense.bench import apply
-
-    apply(board, {"kind": "set", "values": {"sensor.kind": "quadrature"}})
+    do(board, {"kind": "set", "values": {"sensor.kind": "quadrature"}})
     trace = play(board, 1000)
     assert np.abs(trace["sensor.displacement"] - trace["plant.displacement"]).max() < 0.1
 

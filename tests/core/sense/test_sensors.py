@@ -7,7 +7,8 @@ import pytest
 
 from core.board.wiring import needed
 from core.errors import InputError
-from tests.core.sense.bench import apply, make, play
+from tests.core.sense.bench import make
+from tests.lab import do, play
 
 
 def test_only_what_the_sensor_in_use_needs_is_engaged():
@@ -21,9 +22,9 @@ def test_engagement_follows_a_change_while_running():
     board = make({"sensor.kind": "ideal"})
     play(board, 100)
     assert board.value("quadrature.engaged") == 0.0
-    apply(board, {"kind": "set", "values": {"sensor.kind": "quadrature"}})
+    do(board, {"kind": "set", "values": {"sensor.kind": "quadrature"}})
     assert [board.value(f"{name}.engaged") for name in ("quadrature", "dual_beam", "ideal")] == [1.0, 1.0, 0.0]
-    apply(board, {"kind": "set", "values": {"sensor.kind": "ideal"}})
+    do(board, {"kind": "set", "values": {"sensor.kind": "ideal"}})
     trace = play(board, 10)
     assert not trace["dual_beam.first"].any() and trace["sensor.displacement"].any()
 

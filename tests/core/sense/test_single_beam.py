@@ -6,7 +6,8 @@ from filterpy.kalman import KalmanFilter
 
 from core.sense import tracker
 from core.sense.tracker import TrackerParams
-from tests.core.sense.bench import apply, errors, lost, make, play, rms_nm
+from tests.core.sense.bench import errors, lost, make, rms_nm
+from tests.lab import do, play
 
 UNIT = {"sensor.kind": "single_beam"}
 
@@ -46,7 +47,7 @@ def test_takes_over_in_full_motion():
     for seed in range(1, 6):
         board = make({"sensor.kind": "ideal"}, seed=seed, stiffness=0.3)
         play(board, 3000 + 37 * seed)
-        apply(board, {"kind": "set", "values": {"sensor.kind": "single_beam"}})
+        do(board, {"kind": "set", "values": {"sensor.kind": "single_beam"}})
         trace = play(board, 4000)
         gone.append(np.mean(np.abs(trace["single_beam.error"]) > 2.0))
     assert max(gone) < 0.02
