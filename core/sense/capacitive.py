@@ -43,7 +43,7 @@ def capacitive_step(p: Any, s: Any, w: Any, io: Any) -> None:
         return
     x = w[io[TRUE]]
     y = w[io[LATERAL]]
-    theta = w[io[ROTATION]]
+    theta = 1e-3 * w[io[ROTATION]]
     gradient = p[GRADIENT]
     positive = gradient * squeezed(p, 1.0, p[OVERLAP] + x, y, theta) + p[NOISE] * normal(p[FIRST_KEY], w[TICK])
     negative = gradient * squeezed(p, -1.0, p[OVERLAP] - x, y, theta) + p[NOISE] * normal(p[SECOND_KEY], w[TICK])
@@ -67,8 +67,8 @@ class Capacitive(Sensor):
     inputs = (
         ENGAGED_PORT,
         Port("true", "um", "true displacement", source="plant.displacement"),
-        Port("lateral", "um", "true lateral displacement, where the plant has one", source="plant.lateral?"),
-        Port("rotation", "rad", "true rotation, where the plant has one", source="plant.rotation?"),
+        Port("lateral", "um", "true lateral displacement, where the plant has one", source="plant.shift?"),
+        Port("rotation", "mrad", "true rotation, where the plant has one", source="plant.rotation?"),
     )
     outputs = (
         Port("displacement", "um", "measured displacement"),

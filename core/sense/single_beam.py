@@ -82,7 +82,8 @@ class SingleBeam(Sensor):
     The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`. So whenever a hypothesis
     passes an extreme, or turns near one, its reflection :math:`(2x_e-x,-\dot x)` is followed as well, at most ten in
     all; only one of the two keeps obeying the equation of motion. The likeliest is put out, by a likelihood with a
-    memory of a few periods of the drive.
+    memory of a few periods of the drive. While the stiffness is known to 30 % one filter would do; beyond that it
+    slips, and the reflections bring it back.
 
     It costs as much as the rest of the bench together, and therefore rests while no one uses it: unless it is the
     sensor in use or ``always`` is set, its output is 0 and so is the tap ``active``. Then only the nominal model goes
@@ -120,7 +121,7 @@ class SingleBeam(Sensor):
         """What it assumes of the shuttle, and how it treats hypotheses."""
 
         memory_ms: float = parameter(2.8, "memory of the likelihood", "ms", gt=0, le=1e4)
-        reflection_odds: float = parameter(8.0, "logarithm of the odds against a reflection", ge=0, le=100)
+        reflection_odds: float = parameter(25.0, "logarithm of the odds against a reflection", ge=0, le=100)
         drop: float = parameter(40.0, "log-likelihood below the best at which a hypothesis is dropped", gt=0, le=1e4)
         near_um: float = parameter(0.5, "turns this near an extreme are reflected", "um", ge=0, le=100)
 

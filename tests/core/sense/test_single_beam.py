@@ -37,9 +37,22 @@ def test_bears_a_wrong_stiffness(stiffness):
     check(errors(UNIT, range(1, 11), stiffness=stiffness), 30.0, 0.10)
 
 
-def test_a_memory_of_a_tenth_of_a_period_loses_a_wrong_stiffness():
-    error = errors({**UNIT, "sensor.memory_ms": 0.05}, range(1, 21), stiffness=-0.10)
-    assert lost(error).mean() > 0.1
+def test_reflections_are_what_bears_a_model_far_off():
+    noisy = {**UNIT, "sensors.through_wafer.snr_db": 20.0}
+    without = {**noisy, "sensor.reflection_odds": 100.0}
+    assert lost(errors(without, range(1, 21), stiffness=0.5)).mean() > 0.2
+    assert not lost(errors(noisy, range(1, 21), stiffness=0.5)).any()
+
+
+def test_reflections_do_no_harm_near_resonance():
+    # with 20 % less stiffness the resonance comes down to 2.2 kHz, and the stroke is twice what it is tuned for
+    noisy = {**UNIT, "sensors.through_wafer.snr_db": 20.0}
+    error = errors(noisy, range(1, 11), stiffness=-0.2)
+    assert not lost(error).any()
+    # in a third of the runs a wrong reflection leads for a few samples, some 10 um away
+    astray = np.abs(error) > 2.0
+    assert astray.mean() < 0.001
+    assert rms_nm(error[~astray]) < 80.0
 
 
 def test_takes_over_in_full_motion():
