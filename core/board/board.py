@@ -36,19 +36,26 @@ class Rows:
 
 @dataclass
 class Pending:
-    """A command that waits for its moment."""
+    """A command that waits for its moment: a tick, or a condition watched from a tick on."""
 
     command: Command
     actor: str
-    tick: int | None = None
+    tick: int | None
     condition: Condition | None = None
+    since: int = 0
+
+    @property
+    def watched(self) -> Condition | None:
+        """The condition, once it is watched."""
+        return self.condition if self.tick is None else None
 
     def event(self) -> Document:
         """Return it as an event of a scenario."""
         document = changes.event(self.command.model_dump(exclude_none=True, mode="json"))
-        if self.tick is not None:
-            document = {key: value for key, value in document.items() if key not in ("at_ms", "when")}
-            document["at_sample"] = self.tick
+        document.pop("at_ms", None)
+        if self.condition is None:
+            document.pop("when", None)  # met already, or never asked for
+        document["at_sample"] = self.since if self.tick is None else self.tick
         return document
 
 
@@ -142,22 +149,22 @@ class Board:
                 self._note("board", **finding)
             done += ran
             self.tick += ran
+            if why != program.DONE:
+                self._meet()
             if why == program.TRIPPED:
                 self._trip()
-            elif why == program.WATCHED:
-                self._meet()
         self._sha.update(self._outputs[:done].data)
         return Rows(first, done, self._outputs[:done], self._taps[:done])
 
     def _meet(self) -> None:
         """Let every command whose condition holds after this tick take effect at the next."""
         for entry in self.pending:
-            if entry.condition is not None and entry.condition.holds(self.value(entry.condition.signal)):
+            if entry.watched is not None and entry.watched.holds(self.value(entry.watched.signal)):
                 entry.condition, entry.tick = None, self.tick
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
         wiring = self.wiring
-        conditions = [entry.condition for entry in self.pending if entry.condition is not None]
+        conditions = [entry.watched for entry in self.pending if entry.watched is not None]
         watches = np.array(
             [[wiring.index[c.signal], c.sign, c.threshold] for c in conditions], dtype=np.float64
         ).reshape(-1, 3)
@@ -220,27 +227,30 @@ class Board:
         InputError
             When the command is not allowed; nothing has changed then.
         """
-        if command.when is not None:
-            condition = parse_condition(command.when, self.wiring.index)
-            return self._wait(command, actor, None, condition)
         moment = command.at_sample
         if command.at_ms is not None:
             moment = round(command.at_ms / self.dt_ms)
-        if moment is not None and moment > self.tick:
-            return self._wait(command, actor, moment, None)
         if moment is not None and moment < self.tick:
             raise InputError(f"sample {moment} has passed, the board is at {self.tick}", "at_sample")
+        condition = parse_condition(command.when, self.wiring.index) if command.when is not None else None
+        later = moment is not None and moment > self.tick
+        if later or condition is not None:
+            return self._wait(command, actor, moment if later else None, condition)
         return self._do(command, actor)
 
     def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
         changes.check(self, command)
-        self.pending.append(Pending(command, actor, tick, condition))
+        self.pending.append(Pending(command, actor, tick, condition, self.tick))
         return self._note(actor, "scheduled", f"waiting: {changes.describe(command)}", command=command)
 
     def _apply_due(self) -> None:
         due = [entry for entry in self.pending if entry.tick is not None and entry.tick <= self.tick]
         self.pending = [entry for entry in self.pending if entry not in due]
         for entry in due:
+            if entry.condition is not None:  # from now on it is watched
+                entry.tick, entry.since = None, self.tick
+                self.pending.append(entry)
+                continue
             try:
                 self._do(entry.command, entry.actor)
             except InputError as error:

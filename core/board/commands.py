@@ -19,12 +19,14 @@ class Timed(_Command):
 
     at_sample: int | None = Field(None, ge=0, description="sample at which it takes effect")
     at_ms: float | None = Field(None, ge=0, description="device time at which it takes effect")
-    when: str | None = Field(None, max_length=200, description="'<signal> > <value>' or '<signal> < <value>'")
+    when: str | None = Field(
+        None, max_length=200, description="'<signal> > <value>' or '<signal> < <value>', watched from at_sample on"
+    )
 
     @model_validator(mode="after")
     def _one_moment(self) -> Self:
-        if sum(value is not None for value in (self.at_sample, self.at_ms, self.when)) > 1:
-            raise ValueError("takes one of at_sample, at_ms and when")
+        if self.at_ms is not None and (self.at_sample is not None or self.when is not None):
+            raise ValueError("takes one of at_sample, at_ms and when; only at_sample and when go together")
         return self
 
 

@@ -149,11 +149,11 @@ class History:
     signals : int
         Number of signals.
     capacity : int
-        Ticks kept, rounded up to a multiple of the widest bucket.
+        Ticks kept at least; one of the widest buckets more is held, because it is overwritten whole.
     """
 
     def __init__(self, signals: int, capacity: int = 200_000) -> None:
-        self.capacity = -(-capacity // WIDEST) * WIDEST
+        self.capacity = (-(-capacity // WIDEST) + 1) * WIDEST
         self._sizes = np.array([self.capacity // FACTOR ** (level + 1) for level in range(LEVELS)], dtype=np.int64)
         self._offsets = np.concatenate([[0], np.cumsum(self._sizes)[:-1]]).astype(np.int64)
         self._ring = _untouched(signals, self.capacity)

@@ -28,6 +28,9 @@ PARKED = {"controller": ("controllers", "control", "open_loop"), "sensor": ("sen
 EXCHANGED = {"reference.kind": ("reference", "kind", ()), "plant.model": ("plant", "model", ("drive", "every"))}
 """Paths that name a block which is alone in its table: the table, the key, and what else may stand there."""
 
+ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_um": "amplitude_v"}
+"""An amplitude is given in volts or in micrometres; setting one drops the other."""
+
 DEFAULTS: Document = {
     "device": {"id": "ch3"},
     "plant": {"model": "linear"},
@@ -231,6 +234,8 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
             table[_position(parts[-1], table, path)] = copy.deepcopy(value)
             continue
         table[parts[-1]] = copy.deepcopy(value)
+        if path in ONE_AMPLITUDE:
+            table.pop(ONE_AMPLITUDE[path], None)
         if path in EXCHANGED:
             # a new kind keeps what it shares with the old one
             section, key, own = EXCHANGED[path]

@@ -191,7 +191,9 @@ class Mrac(Block):
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(0.0, "bound of the gains (projection), 0 for none", ge=0)
         normalise: bool = parameter(True, "divide by 1 + w'Gw + eta^2")
-        augment: bool = parameter(True, "adapt on the augmented error; off is the law that fails", equation="3.1.2.12")
+        augment: bool = parameter(
+            True, "adapt on the augmented error; off adapts on the plain one", equation="3.1.2.14"
+        )
         adapt_alpha: bool = parameter(True, "adapt alpha as well")
 
     @classmethod

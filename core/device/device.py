@@ -59,7 +59,7 @@ class Device(BlockParams):
         None, "bias of the second stator; the negative of the first unless given", "V", live=False
     )
     force_n_per_v: float | None = parameter(
-        None, "force per volt at the bias, magnitude; from the comb unless given", "N/V", gt=0, live=False
+        None, "force per volt at the bias, magnitude; wins over the comb", "N/V", gt=0, live=False
     )
     fingers: int | None = parameter(None, "rotor fingers per side", ge=1, live=False)
     thickness_um: float | None = parameter(None, "structural thickness", "um", gt=0, live=False)
@@ -114,10 +114,11 @@ class Device(BlockParams):
         """dC/dx of one comb, F/m."""
         if self.force_n_per_v is not None:
             return self.force_n_per_v / (2.0 * abs(self.bias_v))
-        if self.fingers is not None and self.thickness_um is not None and self.finger_gap_um is not None:
-            return 2.0 * self.fingers * EPSILON_0 * self.thickness_um / self.finger_gap_um
-        assert self.geometry is not None  # _complete has seen to it
-        return self.geometry.capacitance_gradient()
+        drawn = self.geometry
+        fingers = self.fingers or (drawn.fingers if drawn else 0)
+        thickness = self.thickness_um or (drawn.thickness_um if drawn else 0.0)
+        gap = self.finger_gap_um or (drawn.gap_um if drawn else 1.0)
+        return 2.0 * fingers * EPSILON_0 * thickness / gap
 
     @property
     def signed_force_n_per_v(self) -> float:

@@ -44,6 +44,7 @@ export function instances(bench: Pick<Bench, "parameters" | "controllers" | "con
       ...single(`controllers.${name}`, "Controller", "control", name),
       also: name === bench.controller ? ["controller"] : [],
     })),
+    single("environment", "Environment", "board", "environment"),
     single("drive", "Drive", "board", "drive"),
     single("plant", "Device", "plant", text("plant", "model", "linear")),
     { ...single("sensor", "Sensor", "sense", sensor), also: [`sensors.${sensor}`] },
