@@ -933,7 +933,7 @@ export interface components {
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>'
+             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
             /**
@@ -977,7 +977,7 @@ export interface components {
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>'
+             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
             /**
@@ -999,6 +999,14 @@ export interface components {
              *     }
              */
             profile?: components["schemas"]["Profile"];
+            /**
+             * Parameters
+             * @description what else the fault lets one choose
+             * @default {}
+             */
+            parameters?: {
+                [key: string]: unknown;
+            };
         };
         /**
          * NewBench
@@ -1265,7 +1273,7 @@ export interface components {
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>'
+             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
             /**
@@ -1412,7 +1420,7 @@ export interface components {
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>'
+             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
             /**
@@ -1533,7 +1541,7 @@ export interface components {
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>'
+             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
             /**
