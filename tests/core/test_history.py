@@ -70,7 +70,7 @@ def test_read_is_exact_after_wrapping(n):
     history = History(SIGNALS, 8192)
     data = signal(n)
     feed(history, data, [512])
-    assert history.first_tick == max(0, n - 4096)
+    assert history.first_tick == max(0, n - 8192)
     found = history.read([2, 0], 0, n + 50)
     np.testing.assert_array_equal(found, data[history.first_tick :, [2, 0]].T.astype(np.float32))
     assert history.read([1], n - 5, n - 2).shape == (1, 3)
