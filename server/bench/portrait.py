@@ -96,7 +96,7 @@ def document_of(session: Session) -> dict[str, Any]:
     }
     document = {**head, **session.board.save()}
     if session.board.tick == 0:  # nothing has happened yet: what is saved is what would
-        del document["samples"]
+        document.pop("samples", None)
         if session.scenario.samples is not None:
             document["samples"] = session.scenario.samples
     return document
