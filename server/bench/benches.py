@@ -148,9 +148,7 @@ class Benches:
         about = {"version": VERSION, "scenario": session.scenario.id, "bench": session.id}
         schema = schema_of({signal.name: signal.unit for signal in session.signals}, about)
         title = session.scenario.head.title or session.scenario.id
-        recording, file = await self._recordings.open(
-            session.id, name, title, session.board.tick, session.dt_ms, schema
-        )
+        recording, file = await self._recordings.open(session.id, name, title, session.dt_ms, schema)
         recorder = Recorder(
             recording.id,
             file,
@@ -159,8 +157,12 @@ class Benches:
             self._settings.max_recording_ticks,
             self._recordings.closer(recording.id),
         )
-        await self._engine.call(session.record, recorder, name, actor)
-        return recording
+        try:
+            tick = await self._engine.call(session.record, recorder, name, actor)
+        except BaseException:
+            recorder.stop("the bench was closed")
+            raise
+        return await self._recordings.begin(recording.id, tick)
 
     async def stop_recording(self, session: Session, recording_id: str) -> Recording:
         """End a recording and wait until its file is whole."""

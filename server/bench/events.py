@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-KEPT = 10_000
+KEPT = 4000
 
 
 class Event(BaseModel):

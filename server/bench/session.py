@@ -231,11 +231,14 @@ class Session:
             raise not_found("snapshot", snapshot_id)
         return self.snapshots[snapshot_id]
 
-    def record(self, recorder: Recorder, name: str, actor: str) -> None:
-        """Begin a recording here."""
+    def record(self, recorder: Recorder, name: str, actor: str) -> int:
+        """Begin a recording here; returns its first tick."""
+        if self._closed:
+            raise not_found("bench", self.id)
         self.recorders[recorder.id] = recorder
         self._note(actor, "recording_started", f"recording {name} began")
         self.status = self._look()
+        return self.board.tick
 
     def stop_recording(self, recording_id: str, reason: str = "stopped") -> Recorder:
         """End a recording here."""

@@ -60,7 +60,7 @@ class Recordings:
         return self._folder / f"{recording_id}.parquet"
 
     async def open(
-        self, bench_id: str, name: str, title: str, start_tick: int, dt_ms: float, schema: pa.Schema
+        self, bench_id: str, name: str, title: str, dt_ms: float, schema: pa.Schema
     ) -> tuple[Recording, RecordingFile]:
         """Make the row and the growing file of a new recording."""
         row = RecordingRow(
@@ -70,7 +70,7 @@ class Recordings:
             title=title,
             state="recording",
             dt_ms=dt_ms,
-            start_tick=start_tick,
+            start_tick=0,
             signals=[
                 {"name": field.name, "unit": (field.metadata or {}).get(b"unit", b"").decode()}
                 for field in list(schema)[2:]
@@ -83,6 +83,12 @@ class Recordings:
             raise ApiError(507, "no_space", text) from None
         await self._database.run(lambda session: session.add(row))
         return Recording.model_validate(row), file
+
+    async def begin(self, recording_id: str, start_tick: int) -> Recording:
+        """Note the first tick, which is known once the engine has begun."""
+        statement = update(RecordingRow).where(RecordingRow.id == recording_id).values(start_tick=start_tick)
+        await self._database.run(lambda session: session.execute(statement))
+        return await self.get(recording_id)
 
     def closer(self, recording_id: str) -> Callable[[int, str], None]:
         """Return the function that closes the row; called on the recorder's thread."""

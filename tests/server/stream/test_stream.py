@@ -158,7 +158,7 @@ def test_a_page_that_reads_nothing_at_all_is_cut_off(live: Any, monkeypatch: pyt
     names = [signal["name"] for signal in live.bench()["signals"]][:32]
     bench = live.bench(time_scale=0.05)
     before = len(live.server.server_state.connections)
-    with live.stream(bench["id"], max_queue=1) as stream:
+    with live.stream(bench["id"], max_queue=1, close_timeout=0.5) as stream:
         for panel in range(6):
             stream.send(type="subscribe", panel=panel, signals=names, window_ms=50.0, width=1300)
         deadline = time.monotonic() + 15
