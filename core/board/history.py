@@ -15,6 +15,8 @@ Float32Array = NDArray[np.float32]
 FACTOR = 16
 """Ticks under a bucket of the first level, and buckets under a bucket of the next."""
 LEVELS = 3
+TILE = 64
+"""Ticks written at a time."""
 WIDEST = 4096
 """Ticks under a bucket of the last level, FACTOR ** LEVELS."""
 
@@ -28,7 +30,16 @@ def _put(rows: Any, row: int, place: int, value: Any) -> None:
 
 @kernel
 def _append(
-    ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, first: int, rows: FloatArray, at: int
+    ring: Any,
+    low: Any,
+    high: Any,
+    offsets: IntArray,
+    sizes: IntArray,
+    steady: IntArray,
+    last: Any,
+    first: int,
+    rows: FloatArray,
+    at: int,
 ) -> None:
     """Write rows (ticks by signals) into the ring of some signals and fold them into the pyramid."""
     capacity = ring.shape[1]
@@ -36,6 +47,15 @@ def _append(
     end = first + count
     for c in range(rows.shape[1]):
         signal = at + c
+        constant = rows[0, c] == np.float64(last[signal])
+        for i in range(count):
+            if rows[i, c] != rows[0, c]:
+                constant = False
+                break
+        if constant and steady[signal] >= capacity:
+            continue  # the whole ring holds this value already
+        steady[signal] = steady[signal] + count if constant else 0
+        last[signal] = np.float32(rows[count - 1, c])
         place = first % capacity
         for i in range(count):
             _put(ring, signal, place, np.float32(rows[i, c]))
@@ -66,6 +86,24 @@ def _append(
                 _put(low, signal, offsets[level] + bucket % sizes[level], least)
                 _put(high, signal, offsets[level] + bucket % sizes[level], most)
             span *= FACTOR
+
+
+@kernel
+def _append_tiles(
+    ring: Any,
+    low: Any,
+    high: Any,
+    offsets: IntArray,
+    sizes: IntArray,
+    steady: IntArray,
+    last: Any,
+    first: int,
+    rows: FloatArray,
+    at: int,
+) -> None:
+    """Append in tiles that fit the nearest cache: signals are columns of the rows, and rows of the ring."""
+    for start in range(0, rows.shape[0], TILE):
+        _append(ring, low, high, offsets, sizes, steady, last, first + start, rows[start : start + TILE], at)
 
 
 @kernel
@@ -159,6 +197,10 @@ class History:
         self._ring = _untouched(signals, self.capacity)
         self._low = _untouched(signals, int(self._sizes.sum()))
         self._high = _untouched(signals, int(self._sizes.sum()))
+        # ticks in a row each signal has been at its last value; memory starts as zeros throughout
+        self._steady = np.full(signals, self.capacity, dtype=np.int64)
+        self._last = np.zeros(signals, dtype=np.float32)
+        self._written = 0
         self._begin = 0
         self.end_tick = 0
 
@@ -176,11 +218,22 @@ class History:
         """Add ticks that follow the last; ticks that do not start a new history there."""
         if rows.first_tick != self.end_tick:
             self._begin = self.end_tick = rows.first_tick
+        if rows.first_tick != self._written:  # a jump: only what fills the ring is known to be steady
+            self._steady[self._steady < self.capacity] = 0
         outputs = rows.outputs.shape[1]
-        args = (self._ring, self._low, self._high, self._offsets, self._sizes, rows.first_tick)
-        _append(*args, rows.outputs, 0)
-        _append(*args, rows.taps, outputs)
-        self.end_tick = rows.first_tick + rows.count
+        args = (
+            self._ring,
+            self._low,
+            self._high,
+            self._offsets,
+            self._sizes,
+            self._steady,
+            self._last,
+            rows.first_tick,
+        )
+        _append_tiles(*args, rows.outputs, 0)
+        _append_tiles(*args, rows.taps, outputs)
+        self.end_tick = self._written = rows.first_tick + rows.count
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:
         """Return minima and maxima, shape (signals, 2, columns); NaN where there is no data."""
