@@ -1,42 +1,53 @@
-"""How late the event loop is: the age everything on it inherits."""
+"""How late things are: the event loop's timers, the engine's rounds."""
 
 from __future__ import annotations
 
 import asyncio
 import time
-from collections import deque
 
 import numpy as np
-
-from server.metrics import Metrics
+from prometheus_client import Histogram
 
 PERIOD_S = 0.02
-KEPT = 3000
-"""Probes kept: one minute."""
+KEPT = 4096
+"""Measurements kept: about a minute."""
+
+FRESH_S = 1.0
 
 
-class LagProbe:
-    """A timer that measures by how much it is late.
+class Lateness:
+    """The last measurements of one kind; one thread adds, another asks.
 
     Parameters
     ----------
-    metrics : Metrics
-        Where each measurement is observed.
+    histogram : Histogram
+        Where each measurement is observed as well.
     """
 
-    def __init__(self, metrics: Metrics) -> None:
-        self._metrics = metrics
-        self._lags: deque[float] = deque(maxlen=KEPT)
+    def __init__(self, histogram: Histogram) -> None:
+        self._histogram = histogram
+        self._ring = np.zeros(KEPT)
+        self._count = 0
+        self._p99_ms, self._asked_at = 0.0, -1e9
 
-    async def run(self) -> None:
-        """Measure until cancelled."""
-        while True:
-            due = time.perf_counter() + PERIOD_S
-            await asyncio.sleep(PERIOD_S)
-            lag = max(0.0, time.perf_counter() - due)
-            self._lags.append(lag)
-            self._metrics.loop_lag.observe(lag)
+    def add(self, seconds: float) -> None:
+        """Add a measurement."""
+        self._ring[self._count % KEPT] = seconds
+        self._count += 1
+        self._histogram.observe(seconds)
 
     def p99_ms(self) -> float:
-        """Return the 99th percentile over the last minute."""
-        return float(np.percentile(list(self._lags), 99)) * 1e3 if self._lags else 0.0
+        """Return the 99th percentile of the last minute; at most a second old."""
+        now = time.monotonic()
+        if now - self._asked_at > FRESH_S and self._count:
+            self._asked_at = now
+            self._p99_ms = float(np.percentile(self._ring[: min(self._count, KEPT)], 99)) * 1e3
+        return self._p99_ms
+
+
+async def probe(lateness: Lateness) -> None:
+    """Measure by how much a timer of the event loop is late, until cancelled."""
+    while True:
+        due = time.perf_counter() + PERIOD_S
+        await asyncio.sleep(PERIOD_S)
+        lateness.add(max(0.0, time.perf_counter() - due))

@@ -20,7 +20,7 @@ from server.bench.engine import Engine
 from server.bench.portrait import bench_of
 from server.bench.session import Session
 from server.bench.status import Bench
-from server.lag import LagProbe
+from server.lag import Lateness, probe
 from server.metrics import Metrics
 from server.runs.jobs import Jobs
 from server.security.limits import Buckets
@@ -48,8 +48,8 @@ class Service:
         self.settings = settings
         self.id = secrets.token_hex(8)
         self.metrics = Metrics()
-        self.lag = LagProbe(self.metrics)
-        self.hub = Hub(settings, self.metrics, self.lag)
+        self.lag = Lateness(self.metrics.loop_lag)
+        self.hub = Hub(settings, self.metrics, self._lateness)
         self.engine = Engine(self.metrics, self._after_round)
         self.database = Database(settings.data / "combbench.sqlite3")
         self.recordings = Recordings(self.database, settings.data / "recordings")
@@ -57,6 +57,7 @@ class Service:
         self.jobs = Jobs(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
         self.theatre = _theatre()
+        self.file_turn = asyncio.Semaphore(1)
         self.is_ready = self.has_kernels = False
         self.cut: Callable[[HTTPConnection], None] = lambda _connection: None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -71,7 +72,7 @@ class Service:
         self.engine.start()
         await asyncio.to_thread(warm_up)
         self.has_kernels = True
-        tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(self.lag.run())]
+        tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         self.is_ready = True
         try:
             yield
@@ -90,7 +91,7 @@ class Service:
     def view(self, session: Session) -> Bench:
         """Describe a bench in full."""
         view3d = f"/benches/{session.id}/3d/" if self.theatre is not None else None
-        return bench_of(session, self.hub.watchers(session.id), self.lag.p99_ms(), view3d)
+        return bench_of(session, self.hub.around(session), view3d)
 
     async def close_bench(self, session: Session) -> None:
         """Close a bench and everything that shows it."""
@@ -103,6 +104,10 @@ class Service:
         """Tell every page that the server goes, and close its stream."""
         self.hub.close_all("the server is stopping")
         await asyncio.sleep(0.1)
+
+    def _lateness(self) -> dict[str, float]:
+        """Say how late the event loop and the engine are."""
+        return {"loop_lag_ms": self.lag.p99_ms(), "wake_late_ms": self.engine.lateness.p99_ms()}
 
     def _after_round(self) -> None:
         """Let the loop publish what the engine did; called on the engine thread."""

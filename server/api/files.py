@@ -1,26 +1,28 @@
-"""Traces as downloads: made in a temporary file, one at a time, gone when sent."""
+"""Traces as downloads: made in a file without a name, one at a time, gone when sent."""
 
 from __future__ import annotations
 
 import asyncio
+import io
 import re
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-from fastapi.responses import FileResponse
-from starlette.background import BackgroundTask
+from fastapi.responses import FileResponse, Response, StreamingResponse
 
 from server.errors import ApiError
+from server.service import Service
 from server.store.traces import MEDIA_TYPES, Format, write
 
 FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {"content": {media: {} for media in MEDIA_TYPES.values()}, "description": "The trace as a file"}
 }
 
-_one_at_a_time = asyncio.Semaphore(1)
+PIECE = 1 << 16
 
 
 def file_name(name: str, kind: Format) -> str:
@@ -28,22 +30,36 @@ def file_name(name: str, kind: Format) -> str:
     return (re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip("-.") or "trace") + f".{kind}"
 
 
-async def table_response(table: pa.Table, name: str, kind: Format) -> FileResponse:
+async def table_response(service: Service, table: pa.Table, name: str, kind: Format) -> StreamingResponse:
     """Send a table in the format asked for."""
-    async with _one_at_a_time:
-        path = await asyncio.to_thread(_temporary, table, kind)
-    return FileResponse(
-        path,
-        media_type=MEDIA_TYPES[kind],
-        filename=file_name(name, kind),
-        background=BackgroundTask(path.unlink, missing_ok=True),
-    )
+    file = tempfile.TemporaryFile(prefix="combbench-")
+    try:
+        async with service.file_turn:
+            await asyncio.to_thread(write, table, file, kind)
+        size = file.seek(0, io.SEEK_END)
+        file.seek(0)
+    except BaseException:
+        file.close()
+        raise
+    headers = {
+        "Content-Disposition": f'attachment; filename="{file_name(name, kind)}"',
+        "Content-Length": str(size),
+    }
+    return StreamingResponse(_pieces(file), media_type=MEDIA_TYPES[kind], headers=headers)
 
 
-async def stored_trace(path: Path, name: str, kind: Format, most: int) -> FileResponse:
+def _pieces(file: BinaryIO) -> Iterator[bytes]:
+    """Read a file to its end and close it."""
+    with file:
+        while piece := file.read(PIECE):
+            yield piece
+
+
+async def stored_trace(service: Service, path: Path, name: str, kind: Format) -> Response:
     """Send a stored Parquet file as it is, or converted if it is not too long for that."""
     if kind == "parquet":
         return FileResponse(path, media_type=MEDIA_TYPES[kind], filename=file_name(name, kind))
+    most = service.settings.max_trace_ticks
     ticks = await asyncio.to_thread(lambda: pq.read_metadata(path).num_rows)
     if ticks > most:
         raise ApiError(
@@ -53,17 +69,4 @@ async def stored_trace(path: Path, name: str, kind: Format, most: int) -> FileRe
             "format",
             "take parquet",
         )
-    return await table_response(await asyncio.to_thread(pq.read_table, path), name, kind)
-
-
-def _temporary(table: pa.Table, kind: Format) -> Path:
-    """Write a table to a temporary file."""
-    handle, name = tempfile.mkstemp(prefix="combbench-", suffix=f".{kind}")
-    path = Path(name)
-    try:
-        open(handle, "wb").close()
-        write(table, path, kind)
-    except BaseException:
-        path.unlink(missing_ok=True)
-        raise
-    return path
+    return await table_response(service, await asyncio.to_thread(pq.read_table, path), name, kind)

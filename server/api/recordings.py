@@ -70,4 +70,4 @@ async def get_recording_trace(
     path = service.recordings.path(recording.id)
     if recording.state == "recording" or not path.is_file():
         raise not_found("finished trace of recording", recording_id, "stop the recording first")
-    return await stored_trace(path, recording.name, kind, service.settings.max_trace_ticks)
+    return await stored_trace(service, path, recording.name, kind)

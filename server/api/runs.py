@@ -77,4 +77,4 @@ async def get_run_trace(
     """Download the trace of a run (of its first seed)."""
     run = await service.jobs.get(run_id)
     path = service.jobs.trace_path(run.id)
-    return await stored_trace(path, run.scenario_id, kind, service.settings.max_trace_ticks)
+    return await stored_trace(service, path, run.scenario_id, kind)

@@ -82,7 +82,7 @@ async def get_trace(
         most = service.settings.max_trace_ticks
         raise ApiError(422, "too_long", f"{end - start} ticks; at most {most} at once", "end_tick")
     table = await asyncio.to_thread(_table, session, names, indices, start, end)
-    return await table_response(table, f"{session.scenario.id}-{start}-{end}", kind)
+    return await table_response(service, table, f"{session.scenario.id}-{start}-{end}", kind)
 
 
 def _table(session: Session, names: list[str], indices: list[int], start: int, end: int) -> object:

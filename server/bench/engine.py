@@ -16,6 +16,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
+from server.lag import Lateness
 from server.metrics import Metrics
 
 log = logging.getLogger(__name__)
@@ -73,6 +74,7 @@ class Engine:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._metrics, self._on_round, self.clock = metrics, on_round, clock
+        self.lateness = Lateness(metrics.wake_lateness)
         self._work: dict[str, Workload] = {}
         self._jobs: deque[Callable[[], None]] = deque()
         self._wake = threading.Condition()
@@ -148,7 +150,7 @@ class Engine:
             if not running:
                 deadline = now
             elif now >= deadline:
-                self._metrics.wake_lateness.observe(now - deadline)
+                self.lateness.add(now - deadline)
                 if now - deadline > LATE_S:
                     log.warning("the engine woke %.0f ms late", 1e3 * (now - deadline))
                 whole = self._round(now, deadline + PERIOD_S)

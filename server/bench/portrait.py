@@ -55,11 +55,21 @@ def status_of(session: Session) -> BenchStatus:
     )
 
 
-def bench_of(session: Session, watchers: int, loop_lag_ms: float, view3d: str | None) -> Bench:
-    """Describe a bench in full."""
+def bench_of(session: Session, around: dict[str, Any], view3d: str | None) -> Bench:
+    """Describe a bench in full.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    around : dict
+        Fields of the status that the bench itself does not know.
+    view3d : str or None
+        Path of its 3D page.
+    """
     spec, last = session.board.spec, session.events.last
     return Bench(
-        **{**dict(session.status), "watchers": watchers, "loop_lag_ms": loop_lag_ms, "last_event": last},
+        **{**dict(session.status), **around, "last_event": last},
         id=session.id,
         title=session.scenario.head.title or session.scenario.id,
         scenario_id=session.scenario.id,

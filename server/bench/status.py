@@ -61,6 +61,7 @@ class BenchStatus(BaseModel):
     recording: list[str] = Field(description="Recordings under way")
     watchers: int = 0
     loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")
+    wake_late_ms: float = Field(0.0, description="99th percentile of the engine's lateness, last minute")
 
 
 class DiagnoserInfo(BaseModel):

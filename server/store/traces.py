@@ -1,12 +1,10 @@
-"""Traces as files: Parquet, CSV, NPZ, MAT; written under a temporary name and renamed."""
+"""Traces as files: Parquet, CSV, NPZ, MAT."""
 
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, BinaryIO, Literal, cast
 
 import numpy as np
 import pyarrow as pa
@@ -47,25 +45,20 @@ def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[
     return pa.Table.from_arrays(columns, schema=schema)
 
 
-def write(table: pa.Table, path: Path, kind: Format) -> None:
-    """Write a table; the file appears whole or not at all."""
+def write(table: pa.Table, file: BinaryIO, kind: Format) -> None:
+    """Write a table into an open file."""
+    if kind == "parquet":
+        pq.write_table(table, file, compression="zstd")
+        return
+    if kind == "csv":
+        pyarrow.csv.write_csv(table, file)
+        return
+    arrays = {name: table.column(name).to_numpy() for name in table.column_names}
+    if kind == "npz":
+        np.savez_compressed(file, **arrays)
+        return
     from scipy.io import savemat  # loads half of scipy
 
-    part = path.with_name(path.name + ".part")
-    with part.open("wb") as file:
-        if kind == "parquet":
-            pq.write_table(table, file, compression="zstd")
-        elif kind == "csv":
-            pyarrow.csv.write_csv(table, file)
-        else:
-            arrays = {name: table.column(name).to_numpy() for name in table.column_names}
-            if kind == "npz":
-                np.savez_compressed(file, **arrays)
-            else:
-                # MATLAB knows no dots in a name.
-                savemat(
-                    cast(Any, file), {name.replace(".", "_"): array for name, array in arrays.items()}, oned_as="column"
-                )
-        file.flush()
-        os.fsync(file.fileno())
-    part.rename(path)
+    # MATLAB knows no dots in a name.
+    named = {name.replace(".", "_"): array for name, array in arrays.items()}
+    savemat(cast(Any, file), named, oned_as="column")

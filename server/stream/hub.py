@@ -5,12 +5,13 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import defaultdict
+from collections.abc import Callable
 from itertools import count
+from typing import Any
 
 from server.bench.session import Session
 from server.bench.status import BenchStatus
 from server.errors import ApiError
-from server.lag import LagProbe
 from server.metrics import Metrics
 from server.settings import Settings
 from server.stream.client import Client
@@ -30,12 +31,12 @@ class Hub:
         Limits and frame rate.
     metrics : Metrics
         Where streams are counted.
-    lag : LagProbe
-        Knows how late the loop is.
+    lateness : callable
+        Returns the fields of a status that say how late the service is.
     """
 
-    def __init__(self, settings: Settings, metrics: Metrics, lag: LagProbe) -> None:
-        self._settings, self._metrics, self._lag = settings, metrics, lag
+    def __init__(self, settings: Settings, metrics: Metrics, lateness: Callable[[], dict[str, Any]]) -> None:
+        self._settings, self._metrics, self._lateness = settings, metrics, lateness
         self._texts: dict[tuple[str, bool], tuple[BenchStatus, str]] = {}
         self._numbers = count(1)
         self._clients: dict[str, set[Client]] = defaultdict(set)
@@ -118,13 +119,17 @@ class Hub:
                 client.post(Notice(code="shutdown", message=reason))
                 client.close(CLOSE_GONE, reason)
 
+    def around(self, session: Session) -> dict[str, Any]:
+        """Return the fields of a status that the bench itself does not know."""
+        return {"watchers": self.watchers(session.id), **self._lateness()}
+
     def describe(self, session: Session, with_parameters: bool, dropped: int) -> str:
         """Return the status message of a bench; all its watchers share all but one number."""
         key, status = (session.id, with_parameters), session.status
         known = self._texts.get(key)
         if known is None or known[0] is not status:
             message = Status(
-                **{**dict(status), "watchers": self.watchers(session.id), "loop_lag_ms": self._lag.p99_ms()},
+                **{**dict(status), **self.around(session)},
                 parameters=session.board.spec.document if with_parameters else None,
                 dropped_frames=-1,
             )

@@ -40,19 +40,20 @@ def _columns(table: Any) -> tuple[list[str], list[Any]]:
 @pytest.mark.parametrize("kind", list(MEDIA_TYPES))
 def test_every_format_holds_the_same_numbers(tmp_path: Path, kind: Any) -> None:
     path = tmp_path / f"trace.{kind}"
-    write(table_of(SCHEMA, 100, DT, SAMPLES), path, kind)
+    with path.open("wb") as file:
+        write(table_of(SCHEMA, 100, DT, SAMPLES), file, kind)
     found = read(path, kind)
     assert list(found) == ["tick", "time_ms", "plant.displacement", "drive.voltage"]
     assert found["tick"].tolist() == [100, 101, 102]
     np.testing.assert_allclose(found["time_ms"], [1.0, 1.01, 1.02])
     np.testing.assert_array_equal(np.float32(found["plant.displacement"]), SAMPLES[0])
     np.testing.assert_array_equal(np.float32(found["drive.voltage"]), SAMPLES[1])
-    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_units_and_origin_are_kept_in_the_file(tmp_path: Path) -> None:
     path = tmp_path / "trace.parquet"
-    write(table_of(SCHEMA, 0, DT, SAMPLES), path, "parquet")
+    with path.open("wb") as file:
+        write(table_of(SCHEMA, 0, DT, SAMPLES), file, "parquet")
     schema = pq.read_schema(path)
     assert schema.field("plant.displacement").metadata == {b"unit": b"um"}
     assert json.loads(schema.metadata[b"combbench"]) == {"scenario": "mine"}
@@ -167,8 +168,7 @@ def test_a_disk_that_fails_ends_the_recording_and_not_the_bench(
     one.append(0, np.zeros((2, 10), np.float32))  # taken by nobody, harms nobody
 
 
-def test_in_memory_csv_has_a_header(tmp_path: Path) -> None:
-    path = tmp_path / "t.csv"
-    write(table_of(SCHEMA, 0, DT, SAMPLES), path, "csv")
-    first = io.StringIO(path.read_text()).readline().strip()
-    assert first == '"tick","time_ms","plant.displacement","drive.voltage"'
+def test_a_table_of_text_has_a_header() -> None:
+    file = io.BytesIO()
+    write(table_of(SCHEMA, 0, DT, SAMPLES), file, "csv")
+    assert file.getvalue().decode().splitlines()[0] == '"tick","time_ms","plant.displacement","drive.voltage"'

@@ -196,6 +196,17 @@ def test_events_come_in_order_and_are_replayed_after_a_reconnect(live: Any) -> N
     assert [event["seq"] for event in everything["events"]] == list(range(1, everything["last"] + 1))
 
 
+def test_a_long_backlog_is_replayed_whole(live: Any) -> None:
+    bench = live.bench(paused=True)
+    for number in range(250):
+        live.command(bench["id"], "time_scale", value=0.001 + 0.001 * (number % 2))
+    with live.stream(bench["id"]) as stream:
+        last = stream.step()["last_event"]
+        stream.send(type="resume", after=0)
+        stream.until(lambda m: isinstance(m, dict) and m.get("event", {}).get("seq") == last)
+        assert [m["event"]["seq"] for m in stream.messages if m["type"] == "event"] == list(range(1, last + 1))
+
+
 def test_a_new_page_gets_only_what_is_new(live: Any) -> None:
     bench = live.bench(set={"events": []})
     live.command(bench["id"], "inject", fault="added_mass", severity=0.05)

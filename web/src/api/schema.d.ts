@@ -668,6 +668,12 @@ export interface components {
              * @default 0
              */
             loop_lag_ms?: number;
+            /**
+             * Wake Late Ms
+             * @description 99th percentile of the engine's lateness, last minute
+             * @default 0
+             */
+            wake_late_ms?: number;
             /** Id */
             id: string;
             /** Title */
@@ -1958,6 +1964,12 @@ export interface components {
              * @default 0
              */
             loop_lag_ms?: number;
+            /**
+             * Wake Late Ms
+             * @description 99th percentile of the engine's lateness, last minute
+             * @default 0
+             */
+            wake_late_ms?: number;
             /**
              * Type
              * @default status
