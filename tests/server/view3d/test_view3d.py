@@ -25,7 +25,8 @@ def join(live: Any, bench: dict[str, Any]) -> Any:
         subprotocols=[VISER],
         proxy=None,
         max_size=None,
-        compression=None,  # type: ignore[list-item]
+        compression=None,
+        close_timeout=0.5,  # type: ignore[list-item]
     )
 
 
