@@ -9,14 +9,16 @@ import numpy as np
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.device.oscillator import transition
 
-PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT = range(6)
+PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT, DT = range(7)
 X, V, HELD, STARTED = range(4)
 
 
 def model_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Advance the model over the interval that ends now."""
     if p[DIRECT] != 0.0:
+        w[io[3]] = (p[STATIC] * w[io[0]] - w[io[2]]) / p[DT] if s[STARTED] != 0.0 else 0.0
         w[io[2]] = p[STATIC] * w[io[0]]
+        s[STARTED] = 1.0
         return
     if s[STARTED] != 0.0:
         rest = p[STATIC] * s[HELD]
@@ -28,6 +30,7 @@ def model_step(p: Any, s: Any, w: Any, io: Any) -> None:
     # half a sample later is the mean of an analogue drive, and the same as now for a held one
     s[HELD] = w[io[1]]
     w[io[2]] = s[X]
+    w[io[3]] = s[V]
 
 
 class Model(Block):
@@ -39,6 +42,7 @@ class Model(Block):
         Port("middle", "V", "reference half a sample later", source="reference.middle"),
     )
     outputs = (Port("displacement", "um", "where the shuttle should be"),)
+    taps = (Port("velocity", "um/ms", "how fast it should move"),)
     equations = (Equation("model", r"\ddot y_m+a_{m1}\dot y_m+a_{m2}y_m=k_mr", "3.1.2.4"),)
 
     class Params(BlockParams):
@@ -64,7 +68,7 @@ class Model(Block):
         """Pack the parameters for the step."""
         model = context.model
         phi = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
-        return np.array([*phi, model.static_gain, float(params.kind == "direct")])
+        return np.array([*phi, model.static_gain, float(params.kind == "direct"), context.dt_ms])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
