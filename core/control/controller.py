@@ -15,6 +15,8 @@ INPUTS = (
     Port("engaged", "1", "1 while this controller drives", source="@engaged"),
 )
 OUTPUT = Port("voltage", "V", "voltage this controller asks for")
+FIRST_ORDER = "is for plants of second order, and this device is of first order"
+"""Why many controllers cannot be on a bench with a plant that has no mass."""
 
 
 def normalised(oscillator: Oscillator, frequency: float) -> tuple[float, float, float]:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter, settled
-from core.control.controller import APPLIED, INPUTS, MEASURED, MODEL, OUTPUT, REFERENCE, normalised
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, kernel, parameter, settled
+from core.control.controller import APPLIED, FIRST_ORDER, INPUTS, MEASURED, MODEL, OUTPUT, REFERENCE, normalised
 from core.device.oscillator import transition
 
 H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
@@ -195,6 +195,11 @@ class Mrac(Block):
             True, "adapt on the augmented error; off adapts on the plain one", equation="3.1.2.14"
         )
         adapt_alpha: bool = parameter(True, "adapt alpha as well")
+
+    @classmethod
+    def unsuited(cls, device: Oscillator) -> str:
+        """Refuse plants of first order."""
+        return FIRST_ORDER if device.mass == 0.0 else ""
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
