@@ -100,7 +100,8 @@ class Environment(Block):
                 1e3 * adhesion_j_m2(params.humidity_pct),
                 *context.film,
                 1e3 * device.natural_frequency,
-                structural_share(0.5 / device.damping_ratio),
+                # what is no resonator has no air around it either
+                structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0,
             ]
         )
 

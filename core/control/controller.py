@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Oscillator, Port, kernel
+from core.block import Context, Oscillator, Port, kernel, settled
+from core.device.oscillator import held
 
 REFERENCE, MODEL, MEASURED, APPLIED, ENGAGED, VOLTAGE = range(6)
 """Ports of every controller: five inputs, then its own would-be voltage; one with inputs of its own counts on."""
@@ -17,6 +18,8 @@ INPUTS = (
     Port("engaged", "1", "1 while this controller drives", source="@engaged"),
 )
 OUTPUT = Port("voltage", "V", "voltage this controller asks for")
+FIRST_ORDER = "is for plants of second order, and this device is of first order"
+"""Why many controllers cannot be on a bench with a plant that has no mass."""
 
 TRUTH = (
     Port("mass_scale", "1", "true mass over nominal, for the ideal values", source="effects.mass_scale"),
@@ -32,11 +35,6 @@ VELOCITY_INPUTS = (
 )
 
 
-def pace(oscillator: Oscillator) -> float:
-    """Return the rate that time is counted in, rad/ms: the resonance, or 1 for a plant that has none."""
-    return oscillator.natural_frequency if oscillator.stiffness > 0.0 else 1.0
-
-
 def normalised(oscillator: Oscillator, frequency: float) -> tuple[float, float, float]:
     r"""Return :math:`a_1, a_2, k` of :math:`x''+a_1x'+a_2x=ku` with time in units of 1/frequency.
 
@@ -46,13 +44,50 @@ def normalised(oscillator: Oscillator, frequency: float) -> tuple[float, float, 
         Plant or model.
     frequency : float
         rad/ms; the nominal device's :math:`\omega_0` makes :math:`a_2=1` there.
+
+    A model of first order is given a second pole, ten times as fast as time is counted: nothing of second order
+    follows it exactly.
     """
-    m = oscillator.mass
+    m = oscillator.mass or oscillator.damping / (10.0 * frequency)
     return (
         oscillator.damping / (m * frequency),
         oscillator.stiffness / (m * frequency * frequency),
         oscillator.force / (m * frequency * frequency),
     )
+
+
+def first_order(oscillator: Oscillator, frequency: float) -> tuple[float, float, float]:
+    r"""Return 0, a and k of :math:`x'+ax=ku` with time in units of 1/frequency; of a second order, its slow end."""
+    inverse = 1.0 / (oscillator.damping * frequency)
+    return 0.0, oscillator.stiffness * inverse, oscillator.force * inverse
+
+
+def coefficients(context: Context) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return the coefficients of device and model, both of the order of the device, with gains that are not 0."""
+    rate = context.device.natural_frequency
+    of = normalised if context.device.mass > 0.0 else first_order
+    (a1, a2, gain), (m1, m2, model_gain) = of(context.device, rate), of(context.model, rate)
+    return (a1, a2, gain or 1.0), (m1, m2, model_gain or 1.0)  # identical stators give no gain to match
+
+
+def model_filter(context: Context) -> list[float]:
+    """Pack a copy of the model without its zero: transition by rows, then the effect of a volt held over a sample."""
+    m1, m2, gain = coefficients(context)[1]
+    h = context.dt_ms * context.device.natural_frequency
+    *phi, first, second = held(1.0, m1, m2, h) if context.device.mass > 0.0 else held(0.0, 1.0, m2, h)
+    return [*phi, gain * first, gain * second]
+
+
+MODEL_FILTER_SIZE = 6
+
+
+@kernel
+def advance_model(p: Any, packed: int, s: Any, at: int, voltage: float) -> None:
+    """Advance one copy of the model over an interval with a held input."""
+    x = s[at]
+    v = s[at + 1]
+    s[at] = settled(p[packed] * x + p[packed + 1] * v + p[packed + 4] * voltage)
+    s[at + 1] = settled(p[packed + 2] * x + p[packed + 3] * v + p[packed + 5] * voltage)
 
 
 @kernel

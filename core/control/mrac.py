@@ -7,25 +7,26 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, kernel, parameter, settled
 from core.control.controller import (
     APPLIED,
+    FIRST_ORDER,
     INPUTS,
     MEASURED,
     MODEL,
     OUTPUT,
     REFERENCE,
     TRUTH,
+    advance_model,
+    coefficients,
     matching,
-    normalised,
-    pace,
+    model_filter,
     true_plant,
 )
-from core.device.oscillator import transition
 
 H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
 MODEL_GAIN, MODEL_A1, MODEL_A2, PLANT_A1, PLANT_A2, PLANT_GAIN, SIGN, FILTER_DECAY, FILTER_GAIN = range(10, 19)
-PHI11, PHI12, PHI21, PHI22, STATIC, BIAS = range(19, 25)
+BIAS, MODEL_FILTER = 19, 20
 R, FILTERED_INPUT, FILTERED_OUTPUT, Y, CONSTANT, N = range(6)
 """The regressors; the constant takes part only if it is not 0."""
 THETA, ALPHA, W1, W2, LAST = 0, N, N + 1, N + 2, N + 3  # LAST: the regressor of the sample before
@@ -34,16 +35,6 @@ FIRST_TRUTH = len(INPUTS)
 DRIVE_OFFSET = FIRST_TRUTH + len(TRUTH)
 OWN_VOLTAGE = DRIVE_OFFSET + 1
 TAPS = OWN_VOLTAGE + 1
-
-
-@kernel
-def advance(p: Any, s: Any, at: int, held: float) -> None:
-    """Advance one copy of the model over an interval with a held input."""
-    rest = p[STATIC] * held
-    x = s[at] - rest
-    v = s[at + 1]
-    s[at] = settled(p[PHI11] * x + p[PHI12] * v + rest)
-    s[at + 1] = settled(p[PHI21] * x + p[PHI22] * v)
 
 
 @kernel
@@ -60,8 +51,8 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
     n = CONSTANT if p[BIAS] == 0.0 else N
     if s[START] != 0.0:
         for i in range(n):
-            advance(p, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
-        advance(p, s, APPLIED_FILTER, u)  # G_m[u]
+            advance_model(p, MODEL_FILTER, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
+        advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u)  # G_m[u]
         s[W1] = settled(p[FILTER_DECAY] * s[W1] + p[FILTER_GAIN] * u)  # w1' = -lam w1 + u
         s[W2] = settled(p[FILTER_DECAY] * s[W2] + p[FILTER_GAIN] * s[LAST + Y])  # w2' = -lam w2 + y
     s[START] = 1.0
@@ -199,13 +190,15 @@ class Mrac(Block):
         bias_v: float = parameter(0.0, "constant regressor against a constant load, 0 for none", "V", ge=0, le=100)
 
     @classmethod
+    def unsuited(cls, device: Oscillator) -> str:
+        """Refuse plants of first order."""
+        return FIRST_ORDER if device.mass == 0.0 else ""
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        w0 = pace(context.device)
-        h = context.dt_ms * w0
-        a1, a2, gain = normalised(context.device, w0)
-        m1, m2, model_gain = normalised(context.model, w0)
-        gain, model_gain = gain or 1.0, model_gain or 1.0  # identical stators give no gain to match
+        h = context.dt_ms * context.device.natural_frequency
+        (a1, a2, gain), (m1, m2, model_gain) = coefficients(context)
         weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
         pole = params.filter_pole
         decay = math.exp(-pole * h)
@@ -230,21 +223,18 @@ class Mrac(Block):
                 math.copysign(1.0, gain * model_gain),
                 decay,
                 (1.0 - decay) / pole,
-                *transition(1.0, m1, m2, h),
-                model_gain / m2,
                 params.bias_v,
+                *model_filter(context),
             ]
         )
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """Gains that match the nominal device, everything else at rest."""
-        w0 = pace(context.device)
-        plant, model = normalised(context.device, w0), normalised(context.model, w0)
+        plant, model = coefficients(context)
         start = np.zeros(STATES)
-        if plant[2] != 0.0:
-            start[THETA : THETA + CONSTANT] = matching(*plant, *model, params.filter_pole)
-        start[ALPHA] = 1.0 / (start[THETA] or 1.0)
+        start[THETA : THETA + CONSTANT] = matching(*plant, *model, params.filter_pole)
+        start[ALPHA] = 1.0 / start[THETA]
         return start
 
     step = mrac_step

@@ -6,12 +6,16 @@ import math
 from typing import Any, Literal
 
 from core.block import BlockParams, Context, Equation, Port, kernel, parameter, settled
-from core.control.controller import INPUTS, VELOCITY_INPUTS, normalised, pace, saturated
+from core.control.controller import INPUTS, VELOCITY_INPUTS, coefficients, saturated
 from core.control.velocity import Source, velocity_source
 
-H, RATE, SIGN, MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN = range(9)
-SURFACE_GAIN, LAYER, SHARE, EQUIVALENT, PRINTED_GAINS, FADE, SLIDING_SIZE = range(9, 16)
-"""Packed parameters of every sliding controller; its own follow."""
+TIME_STEP, RATE, SIGN, MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN = range(9)
+SURFACE_GAIN, LAYER, FADE, SWITCHING_SIZE = range(9, 13)
+"""Packed parameters of every switching law; its own follow."""
+SHARE, EQUIVALENT, PRINTED_GAINS, SLIDING_SIZE = range(SWITCHING_SIZE, SWITCHING_SIZE + 4)
+"""Those of the laws that compute their gains from coefficients."""
+FADING = 1000.0
+"""Time over which the peak of the layer needed is forgotten, in 1/w0."""
 
 VELOCITY, MODEL_VELOCITY = len(INPUTS), len(INPUTS) + 1
 SLIDING_INPUTS = (*INPUTS, *VELOCITY_INPUTS)
@@ -48,13 +52,19 @@ GAINS_EQUATION = Equation(
 )
 
 
-class SlidingParams(BlockParams):
-    """Surface, switching and where the velocity is from."""
+class SwitchingParams(BlockParams):
+    """Surface, boundary layer and where the velocity is from."""
 
     surface_weight: float = parameter(
         1.0, "Q over R of the Riccati equation, in w0^2", equation="3.2.4.2.7", gt=0, le=100
     )
     layer_um: float = parameter(0.3, "boundary layer, 0 for a plain sign", "um", ge=0, le=100)
+    velocity: Source = velocity_source()
+
+
+class SlidingParams(SwitchingParams):
+    """The sliding law with gains from the coefficients of the plant."""
+
     law: Literal["equivalent", "switching"] = parameter(
         "equivalent", "equivalent control with switching on top, or switching alone", equation="3.2.4.2.1"
     )
@@ -64,39 +74,26 @@ class SlidingParams(BlockParams):
     gains: Literal["working", "printed"] = parameter(
         "working", "gains that follow from the surface, or as printed", equation="3.2.4.2.2-3"
     )
-    velocity: Source = velocity_source()
-
-    @property
-    def share(self) -> float:
-        """Share that switches."""
-        usual = 0.3 if self.law == "equivalent" else 1.0
-        return usual if self.switching_share is None else self.switching_share
 
 
 def pack_sliding(params: SlidingParams, context: Context) -> list[float]:
-    """Pack what every sliding controller needs."""
-    rate = pace(context.device)
-    h = context.dt_ms * rate
-    m1, m2, model_gain = normalised(context.model, rate)
-    a1, a2, gain = normalised(context.device, rate)
-    gain, model_gain = gain or 1.0, model_gain or 1.0  # identical stators: the law stays finite
+    """Pack what the laws need that compute their gains from coefficients of second order."""
+    usual = 0.3 if params.law == "equivalent" else 1.0
     return [
-        h,
-        rate,
-        math.copysign(1.0, gain),
-        m1,
-        m2,
-        model_gain,
-        a1,
-        a2,
-        gain,
-        math.sqrt(params.surface_weight),
-        params.layer_um,
-        params.share,
+        *pack_switching(params, context),
+        usual if params.switching_share is None else params.switching_share,
         float(params.law == "equivalent"),
         float(params.gains == "printed"),
-        math.exp(-h / 1000.0),
     ]
+
+
+def pack_switching(params: SwitchingParams, context: Context) -> list[float]:
+    """Pack what every switching law needs, the coefficients in units of the rate of the device."""
+    rate = context.device.natural_frequency
+    h = context.dt_ms * rate
+    plant, model = coefficients(context)
+    sign, fade = math.copysign(1.0, plant[2]), math.exp(-h / FADING)
+    return [h, rate, sign, *model, *plant, math.sqrt(params.surface_weight), params.layer_um, fade]
 
 
 @kernel
@@ -149,7 +146,7 @@ def switch(
     gain: float,
 ) -> float:
     """Return the switching part, and write the taps."""
-    needed = amplitude * abs(gain) * p[H]
+    needed = amplitude * abs(gain) * p[TIME_STEP]
     s[peak] = settled(max(needed, s[peak] * p[FADE]))
     w[io[first]] = e
     w[io[first + 1]] = surface

@@ -6,9 +6,9 @@ import math
 from typing import Any, Literal
 
 import numpy as np
-from scipy.linalg import expm
 
-from core.block import Context, Oscillator, kernel, parameter, settled
+from core.block import Context, kernel, parameter, settled
+from core.device.oscillator import held
 
 KIND, DT, PHI11, PHI12, PHI21, PHI22, INPUT1, INPUT2, CORRECT1, CORRECT2, VELOCITY_SIZE = range(11)
 """Packed numbers of a velocity source."""
@@ -27,23 +27,19 @@ def velocity_source() -> Any:
     )
 
 
-def held(oscillator: Oscillator, h: float) -> tuple[float, float, float, float, float, float]:
-    """Return transition (by rows) and input vector of an oscillator under a held voltage."""
-    m = oscillator.mass
-    system = [[0.0, 1.0, 0.0], [-oscillator.stiffness / m, -oscillator.damping / m, oscillator.force / m], [0.0] * 3]
-    found = expm(np.array(system) * h)
-    return (*found[0, :2].tolist(), *found[1, :2].tolist(), *found[:2, 2].tolist())
-
-
 def pack_velocity(source: Source, context: Context, rate: float) -> list[float]:
     r"""Pack the source; the observer's error has a double pole at :math:`e^{-3\omega_0h}`, by Ackermann's formula."""
     h = context.dt_ms
-    phi11, phi12, phi21, phi22, first, second = held(context.device, h)
+    device = context.device
+    phi11, phi12, phi21, phi22, first, second = held(device.mass, device.damping, device.stiffness, h)
     phi = np.array([[phi11, phi12], [phi21, phi22]])
+    effect = (first * device.force, second * device.force)
+    if device.mass == 0.0:
+        return [0.0, h, *phi.ravel().tolist(), *effect, 0.0, 0.0]  # nothing here feeds back a velocity
     pole = math.exp(-OBSERVER_POLE * rate * h)
     wanted = phi @ phi - 2.0 * pole * phi + pole * pole * np.eye(2)
     correct = wanted @ np.linalg.solve(np.array([phi[0], (phi @ phi)[0]]), np.array([0.0, 1.0]))
-    return [float(SOURCES.index(source)), h, phi11, phi12, phi21, phi22, first, second, *correct.tolist()]
+    return [float(SOURCES.index(source)), h, *phi.ravel().tolist(), *effect, *correct.tolist()]
 
 
 @kernel

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, Context, Equation, FloatArray
-from core.control.controller import APPLIED, MEASURED, OUTPUT
+from core.block import Block, Context, Equation, FloatArray, Oscillator
+from core.control.controller import APPLIED, FIRST_ORDER, MEASURED, OUTPUT
 from core.control.sliding import (
     GAINS_EQUATION,
     LAYER_EQUATION,
@@ -57,6 +57,11 @@ class Vsc(Block):
         LAYER_EQUATION,
     )
     Params = SlidingParams
+
+    @classmethod
+    def unsuited(cls, device: Oscillator) -> str:
+        """Refuse plants of first order."""
+        return FIRST_ORDER if device.mass == 0.0 else ""
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
