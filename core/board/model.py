@@ -118,22 +118,9 @@ class Model(Block):
         resonator = params.kind != "transfer_function" and context.device.time_unit_ms == 0.0
         if resonator or params.kind == "direct":
             phi = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
-            return np.array(
-                [
-                    *phi,
-                    model.static_gain,
-                    float(params.kind == "direct"),
-                    0.0,
-                    0.0,
-                    1.0,
-                    0.0,
-                    0.0,
-                    1.0,
-                    0.0,
-                    context.dt_ms,
-                ]
-            )
-        *phi, reach, push = held(model.mass, model.damping, model.stiffness, context.dt_ms)
+            plain = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0)
+            return np.array([*phi, model.static_gain, float(params.kind == "direct"), *plain, context.dt_ms])
+        *free, reach, push = held(model.mass, model.damping, model.stiffness, context.dt_ms)
         gain, unit = model.force, 1.0 / context.device.natural_frequency
         first, zeroth = 0.0, 1.0
         if params.kind == "transfer_function":
@@ -150,7 +137,7 @@ class Model(Block):
                 zeroth - first * model.damping * inverse,
                 first * gain * inverse,
             )
-        return np.array([*phi, 0.0, 0.0, gain * reach, gain * push, zeroth, first, *slope, context.dt_ms])
+        return np.array([*free, 0.0, 0.0, gain * reach, gain * push, zeroth, first, *slope, context.dt_ms])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from core.control.controller import (
 )
 from core.control.velocity import STATES, Source, pack_velocity, velocity, velocity_source
 
-H, RATE, SIGN, GAIN, WEIGHT_OUTPUT, LEAKAGE, BOUND, NORMALISE, FILTERS, POLE = range(10)
+H, RATE, SIGN, GAIN, WEIGHT_OUTPUT, LEAKAGE, BOUND, REACH, FILTERS, POLE = range(10)
 LEAD, DECAY, FILL, RATIO = range(10, 14)
 MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(14, 21)
 MOVING = MODEL_FILTER + MODEL_FILTER_SIZE
@@ -83,10 +83,9 @@ def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
         a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE], p[LEAD]
     )
     weight = p[WEIGHT_OUTPUT]
-    den = 1.0
-    if p[NORMALISE] != 0.0:
-        den += r * r + s[W1] * s[W1] + weight * (s[W2] * s[W2] + y * y)
-    rate = p[H] * p[GAIN] * own / den
+    # the step of an implicit method: a sample changes the error by REACH times the change of voltage
+    size = r * r + s[W1] * s[W1] + weight * (s[W2] * s[W2] + y * y)
+    rate = p[H] * p[GAIN] * own / (1.0 + p[H] * p[GAIN] * p[REACH] * size)
     lyapunov = 0.0
     voltage = 0.0
     for i in range(4):
@@ -161,9 +160,11 @@ class MracVelocity(Block):
         output_weight: float | None = parameter(
             None, "weight of w2 and y in Gamma; 1/kp^2 unless given, so that y counts in volts", "V^2/um^2", gt=0
         )
+        start: Literal["nominal", "zero"] = parameter(
+            "nominal", "gains at the start: those that match the nominal device, or none", live=False
+        )
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(0.0, "bound of the gains (projection), 0 for none", ge=0)
-        normalise: bool = parameter(False, "divide by 1 + w'Gw")
         velocity: Source = velocity_source()
 
     @classmethod
@@ -173,6 +174,7 @@ class MracVelocity(Block):
         rate = context.device.natural_frequency
         h = context.dt_ms * rate
         decay = math.exp(-pole * h)
+        copy = model_filter(context)
         return np.array(
             [
                 h,
@@ -182,7 +184,7 @@ class MracVelocity(Block):
                 1.0 / plant[2] ** 2 if params.output_weight is None else params.output_weight,
                 params.leakage,
                 params.gain_bound,
-                float(params.normalise),
+                abs(plant[2] / model[2] * (copy[4] + lead * copy[5])),
                 float(lead > 0.0 if params.filters is None else params.filters),
                 pole,
                 lead,
@@ -191,7 +193,7 @@ class MracVelocity(Block):
                 plant[2] / model[2],
                 *model,
                 *plant,
-                *model_filter(context),
+                *copy,
                 *pack_velocity(params.velocity, context, rate),
             ]
         )
@@ -210,7 +212,8 @@ class MracVelocity(Block):
         """Gains that match the nominal device, everything else at rest."""
         plant, model, lead, pole = cls.shape(params, context)
         start = np.zeros(SIZE)
-        start[THETA : THETA + 4] = matching_lead(*plant, *model, pole, lead)
+        if params.start == "nominal":
+            start[THETA : THETA + 4] = matching_lead(*plant, *model, pole, lead)
         return start
 
     step = mrac_velocity_step

@@ -128,7 +128,8 @@ def slide(
     terms = (on_e * e, on_de * de, on_y * y, on_v * v, p[MODEL_GAIN] * w[io[0]])
     equivalent = (terms[0] + terms[1] + terms[2] + terms[3] + terms[4]) * inverse * p[EQUIVALENT]
     size = abs(terms[0]) + abs(terms[1]) + abs(terms[2]) + abs(terms[3]) + abs(terms[4])
-    return equivalent + switch(p, s, peak, w, io, first, e, surface, equivalent, p[SHARE] * size * abs(inverse), gain)
+    amplitude = p[SHARE] * size * abs(inverse)
+    return float(equivalent + switch(p, s, peak, w, io, first, e, surface, equivalent, amplitude, gain))
 
 
 @kernel
