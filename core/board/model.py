@@ -121,7 +121,7 @@ class Model(Block):
         if params.kind == "transfer_function":
             # the zero works on the output: the state is that of a unit numerator
             gain = 1.0
-            first, zeroth = ([0.0, 0.0] + params.numerator)[-2:]
+            first, zeroth = [0.0, *params.numerator][-2:]
         return np.array([*phi, 0.0, 0.0, gain * reach, gain * push, zeroth, first * unit])
 
     @classmethod

@@ -197,8 +197,10 @@ class Mrac(Block):
         adapt_alpha: bool = parameter(True, "adapt alpha as well")
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
-        """Refuse plants of first order."""
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants of first order, and models that are not at rest without a reference."""
+        if model.mass <= 0.0 or model.stiffness <= 0.0:
+            return "needs a reference model of second order with a spring"
         return FIRST_ORDER if device.mass == 0.0 else ""
 
     @classmethod
