@@ -115,14 +115,14 @@ class Model(Block):
         if resonator or params.kind == "direct":
             phi = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
             return np.array([*phi, model.static_gain, float(params.kind == "direct"), 0.0, 0.0, 1.0, 0.0])
-        *phi, reach, push = held(model.mass, model.damping, model.stiffness, context.dt_ms)
+        *moved, reach, push = held(model.mass, model.damping, model.stiffness, context.dt_ms)
         gain, unit = model.force, 1.0 / context.device.natural_frequency
         first, zeroth = 0.0, 1.0
         if params.kind == "transfer_function":
             # the zero works on the output: the state is that of a unit numerator
             gain = 1.0
             first, zeroth = [0.0, *params.numerator][-2:]
-        return np.array([*phi, 0.0, 0.0, gain * reach, gain * push, zeroth, first * unit])
+        return np.array([*moved, 0.0, 0.0, gain * reach, gain * push, zeroth, first * unit])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

@@ -48,9 +48,7 @@ def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple
 
 
 @kernel
-def held(
-    mass: float, damping: float, stiffness: float, h: float
-) -> tuple[float, float, float, float, float, float]:
+def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float, float, float, float, float, float]:
     r"""Return transition and effect of a unit force held over ``h``, for any :math:`m\ddot x+\beta\dot x+kx=f`.
 
     Mass, stiffness and damping may be 0 and the last two negative, as those of a transfer function are:
