@@ -226,8 +226,8 @@ class Block:
         cls.family = path[-2] if len(path) > 1 else ""
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:  # noqa: ARG003 (most blocks suit every device)
-        """Say why the block cannot be on a bench with this device; nothing when it can."""
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:  # noqa: ARG003 (most blocks suit every device)
+        """Say why the block cannot be on a bench with this device and reference model; nothing when it can."""
         return ""
 
     @classmethod

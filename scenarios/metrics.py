@@ -15,6 +15,8 @@ from core.errors import unknown
 from scenarios.lateral_metrics import lateral_metrics
 from scenarios.sensing_metrics import sensing_metrics
 
+IDENTIFIED_PCT = 10.0
+"""Error of the worst coefficient within which an identifier counts as settled."""
 SETTLED = 0.02
 """Share of the model's amplitude within which a loop counts as settled."""
 TAIL = 0.25
@@ -103,6 +105,30 @@ def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str
     return found
 
 
+def identify_metrics(board: Board, name: str, error: FloatArray | None, options: dict[str, Any]) -> dict[str, float]:
+    """Return how well one identifier knows the device, and whether the input lets it.
+
+    ``error_pct`` is the mean over the tail of the largest relative error of a coefficient; the settling time is the
+    last moment it was above 10 %, counted from ``metrics.since_ms``. ``mass_error_pct`` and the others are those of the
+    estimates at the end.
+    """
+    prefix = f"identify.{name}"
+    last = {
+        "excitation": board.value(f"{name}.excitation"),
+        "excitation_relative": board.value(f"{name}.excitation_relative"),
+        "identifiable": board.value(f"{name}.identifiable"),
+    }
+    if error is not None:
+        start = min(round(float(options.get("since_ms", 0.0)) / board.dt_ms), len(error) - 1)
+        outside = np.flatnonzero(error[start:] > IDENTIFIED_PCT)
+        last["settling_ms"] = (float(outside[-1]) + 1.0) * board.dt_ms if len(outside) else 0.0
+        last["error_pct"] = float(np.mean(error[int(len(error) * (1.0 - float(options.get("tail_share", TAIL)))) :]))
+        for part in ("mass", "stiffness", "damping"):
+            estimate, truth = (board.value(f"{name}.{port}.{part}") for port in ("estimate", "truth"))
+            last[f"{part}_error_pct"] = 100.0 * (estimate / truth - 1.0)
+    return {f"{prefix}.{key}": value for key, value in last.items() if math.isfinite(value)}
+
+
 def step_lengths(truth: FloatArray) -> list[int]:
     """Return the number of samples of each stretch of one truth."""
     edges = np.flatnonzero(np.diff(truth)) + 1
@@ -121,6 +147,8 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
         found |= sensing_metrics(board, trace, options)
+    for name in board.spec.identifiers if board.tick > 1 else ():
+        found |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), options)
     for name, scores in board.scores().items():
         found |= diagnosis_metrics(name, scores, step_lengths(trace[f"{name}.truth"]))
     return found

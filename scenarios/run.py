@@ -166,6 +166,7 @@ def run(scenario: Scenario, seed: int | None = None, *, taps: bool = False, comp
     elapsed = time.perf_counter() - began
     outputs = outputs[: board.tick]
     names = [*TRACED_FIGURES, *(f"{name}.truth" for name in board.spec.diagnosers)]
+    names += [f"{name}.error_pct" for name in board.spec.identifiers if f"{name}.error_pct" in board.wiring.index]
     trace = {name: outputs[:, board.signals.index(name)] for name in names}
     metrics = measure(board, trace, scenario.head.metrics)
     return Result(

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from core import registry
-from core.block import Block, BlockParams, Context
+from core.block import Block, BlockParams, Context, Oscillator
 from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
@@ -186,17 +186,25 @@ def _parse(doc: Document) -> Spec:
 
 
 def _suited(spec: Spec) -> Spec:
-    """Leave out the controllers that are not for this device; refuse anything else that is not."""
-    plant = spec.device.oscillator()
-    fields = {"plant.model": spec.plant.block, "controller.kind": spec.controllers[spec.active].block}
+    """Leave out controllers and sensors that are not for this device; refuse what was asked for and is not."""
+    nominal = spec.device.oscillator()
+    pair = nominal, Model.oscillator(spec.model.params, nominal)
+    fields = {
+        "plant.model": spec.plant.block,
+        "controller.kind": spec.controllers[spec.active].block,
+        "sensor.kind": spec.sensors[spec.measuring].block,
+    }
     for key in ("identifiers", "diagnosers"):
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
     for field, block in fields.items():
-        reason = block.unsuited(plant)
+        reason = block.unsuited(*pair)
         if reason:
             raise InputError(f"{block.name}: {reason}", field)
-    kept = {name: section for name, section in spec.controllers.items() if not section.block.unsuited(plant)}
-    return replace(spec, controllers=kept)
+    return replace(spec, controllers=_for(pair, spec.controllers), sensors=_for(pair, spec.sensors))
+
+
+def _for(pair: tuple[Oscillator, Oscillator], sections: dict[str, Section]) -> dict[str, Section]:
+    return {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
 
 
 def _as_written(error: InputError, document: Document) -> InputError:

@@ -44,16 +44,25 @@ def normalised(oscillator: Oscillator, frequency: float) -> tuple[float, float, 
         Plant or model.
     frequency : float
         rad/ms; the nominal device's :math:`\omega_0` makes :math:`a_2=1` there.
-
-    A model of first order is given a second pole, ten times as fast as time is counted: nothing of second order
-    follows it exactly.
     """
-    m = oscillator.mass or oscillator.damping / (10.0 * frequency)
+    m = oscillator.mass
     return (
         oscillator.damping / (m * frequency),
         oscillator.stiffness / (m * frequency * frequency),
         oscillator.force / (m * frequency * frequency),
     )
+
+
+def unsuited_second_order(device: Oscillator, model: Oscillator) -> str:
+    """Say why a controller of second order cannot be used: the plant, or a model that does not come to rest."""
+    if model.mass <= 0.0 or model.stiffness <= 0.0:
+        return "needs a reference model of second order with a spring"
+    return FIRST_ORDER if device.mass == 0.0 else ""
+
+
+def unsuited_order(device: Oscillator, model: Oscillator) -> str:
+    """Say why a controller for both orders cannot be used: a model that is quicker than the plant."""
+    return "needs a reference model of second order" if device.mass > 0.0 and model.mass == 0.0 else ""
 
 
 def first_order(oscillator: Oscillator, frequency: float) -> tuple[float, float, float]:

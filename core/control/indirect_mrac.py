@@ -10,7 +10,6 @@ import numpy as np
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.control.controller import (
     APPLIED,
-    FIRST_ORDER,
     INPUTS,
     MEASURED,
     MODEL,
@@ -20,6 +19,7 @@ from core.control.controller import (
     coefficients,
     matching,
     true_plant,
+    unsuited_second_order,
 )
 from core.estimation import (
     FILTER_SIZE,
@@ -155,9 +155,9 @@ class IndirectMrac(Block):
         )
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
-        """Refuse plants of first order."""
-        return FIRST_ORDER if device.mass == 0.0 else ""
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants and models that are not of second order."""
+        return unsuited_second_order(device, model)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

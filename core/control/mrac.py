@@ -10,7 +10,6 @@ import numpy as np
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, kernel, parameter, settled
 from core.control.controller import (
     APPLIED,
-    FIRST_ORDER,
     INPUTS,
     MEASURED,
     MODEL,
@@ -22,6 +21,7 @@ from core.control.controller import (
     matching,
     model_filter,
     true_plant,
+    unsuited_second_order,
 )
 
 H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
@@ -190,9 +190,9 @@ class Mrac(Block):
         bias_v: float = parameter(0.0, "constant regressor against a constant load, 0 for none", "V", ge=0, le=100)
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
-        """Refuse plants of first order."""
-        return FIRST_ORDER if device.mass == 0.0 else ""
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants and models that are not of second order."""
+        return unsuited_second_order(device, model)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, kernel, parameter, settled
 from core.control.controller import (
     APPLIED,
     INPUTS,
@@ -22,6 +22,7 @@ from core.control.controller import (
     coefficients,
     model_filter,
     true_plant,
+    unsuited_order,
 )
 from core.control.velocity import STATES, Source, pack_velocity, velocity, velocity_source
 
@@ -166,6 +167,11 @@ class MracVelocity(Block):
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(0.0, "bound of the gains (projection), 0 for none", ge=0)
         velocity: Source = velocity_source()
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse a model of another kind than the plant."""
+        return unsuited_order(device, model)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

@@ -79,7 +79,7 @@ class Pid(Block):
         feedforward: float = parameter(0.0, "share of the reference voltage added", ge=-2, le=2)
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse plants of first order."""
         return FIRST_ORDER if device.mass == 0.0 else ""
 

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from core.block import Block, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
-from core.control.controller import APPLIED, FIRST_ORDER, MEASURED, OUTPUT, TRUTH, true_plant
+from core.control.controller import APPLIED, MEASURED, OUTPUT, TRUTH, true_plant, unsuited_second_order
 from core.control.sliding import (
     GAINS_EQUATION,
     LAYER_EQUATION,
@@ -158,9 +158,9 @@ class Stvsc(Block):
         )
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
-        """Refuse plants of first order."""
-        return FIRST_ORDER if device.mass == 0.0 else ""
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants and models that are not of second order."""
+        return unsuited_second_order(device, model)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from core.block import Block, Context, Equation, FloatArray, Oscillator
-from core.control.controller import APPLIED, FIRST_ORDER, MEASURED, OUTPUT
+from core.control.controller import APPLIED, MEASURED, OUTPUT, unsuited_second_order
 from core.control.sliding import (
     GAINS_EQUATION,
     LAYER_EQUATION,
@@ -59,9 +59,9 @@ class Vsc(Block):
     Params = SlidingParams
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
-        """Refuse plants of first order."""
-        return FIRST_ORDER if device.mass == 0.0 else ""
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants and models that are not of second order."""
+        return unsuited_second_order(device, model)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

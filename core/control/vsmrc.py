@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, Context, Equation, FloatArray, parameter
-from core.control.controller import APPLIED, MEASURED, MODEL, OUTPUT, REFERENCE
+from core.block import Block, Context, Equation, FloatArray, Oscillator, parameter
+from core.control.controller import APPLIED, MEASURED, MODEL, OUTPUT, REFERENCE, unsuited_order
 from core.control.sliding import (
     LAYER_EQUATION,
     MODEL_A1,
@@ -78,6 +78,11 @@ class Vsmrc(Block):
         output_bound_v_um: float | None = parameter(
             None, "voltage switched per displacement, c_y; unless given, what holds the device there", "V/um", ge=0
         )
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse a model of another kind than the plant."""
+        return unsuited_order(device, model)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

@@ -189,7 +189,7 @@ class Mmae(Block):
         )
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse plants without mass or spring."""
         return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 

@@ -89,7 +89,7 @@ class Shuttle(Block):
     )
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse what is no resonator."""
         return "" if device.time_unit_ms == 0.0 else "this device is no resonator; choose transfer_function"
 

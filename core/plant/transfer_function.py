@@ -85,7 +85,7 @@ class TransferFunction(Shuttle):
         drive_noise_v: float = parameter(0.0, "white noise on the drive voltage, rms per sample", "V", ge=0)
 
     @classmethod
-    def unsuited(cls, device: Oscillator) -> str:
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse resonators: their force is that of a comb."""
         return "" if device.time_unit_ms > 0.0 else "this device is a resonator; choose linear"
 
