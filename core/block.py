@@ -65,7 +65,7 @@ class Port:
     hidden : bool
         Plumbing: neither traced nor offered to scopes.
     warning : str
-        For a tap: what the log says when it rises from 0 on a controller that drives.
+        For a tap: what the log says when it rises from 0.
     """
 
     name: str

@@ -6,7 +6,7 @@ import math
 from typing import Any, Literal
 
 from core.block import BlockParams, Context, Equation, Port, kernel, parameter, settled
-from core.control.controller import INPUTS, VELOCITY_INPUTS, coefficients, saturated
+from core.control.controller import ENGAGED, INPUTS, VELOCITY_INPUTS, coefficients, saturated
 from core.control.velocity import Source, velocity_source
 
 TIME_STEP, RATE, SIGN, MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN = range(9)
@@ -26,7 +26,7 @@ SLIDING_TAPS = (
     Port("equivalent", "V", "equivalent control"),
     Port("switching", "V", "amplitude of the switching part"),
     Port("layer_needed", "um", "thinnest boundary layer without chatter, its peak of late"),
-    Port("layer_exceeded", "1", "1 while the boundary layer is thinner than that", warning=LAYER_TOO_THIN),
+    Port("layer_exceeded", "1", "1 while it drives with a boundary layer thinner than that", warning=LAYER_TOO_THIN),
 )
 LAYER_EQUATION = Equation(
     "boundary layer",
@@ -154,5 +154,5 @@ def switch(
     w[io[first + 2]] = equivalent
     w[io[first + 3]] = amplitude
     w[io[first + 4]] = s[peak]
-    w[io[first + 5]] = 1.0 if s[peak] > p[LAYER] else 0.0
+    w[io[first + 5]] = 1.0 if s[peak] > p[LAYER] and w[io[ENGAGED]] != 0.0 else 0.0
     return float(amplitude * saturated(surface, p[LAYER]) * p[SIGN])
