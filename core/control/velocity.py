@@ -10,36 +10,40 @@ import numpy as np
 from core.block import Context, kernel, parameter, settled
 from core.device.oscillator import held
 
-KIND, DT, PHI11, PHI12, PHI21, PHI22, INPUT1, INPUT2, CORRECT1, CORRECT2, VELOCITY_SIZE = range(11)
+KIND, DT, PHI11, PHI12, PHI21, PHI22, INPUT1, INPUT2, PUSH1, PUSH2, CORRECT1, CORRECT2, CORRECT3 = range(13)
+VELOCITY_SIZE = 13
 """Packed numbers of a velocity source."""
 SOURCES = ("true", "difference", "observer")
 Source = Literal["true", "difference", "observer"]
-STATES = 4
-"""Last measurement, whether there is one, and the observer's displacement and velocity."""
-OBSERVER_POLE = 3.0
-"""Double pole of the observer over the rate of the device."""
+STATES = 5
+"""Last measurement, whether there is one, and the observer's displacement, velocity and unmodelled acceleration."""
+OBSERVER_POLE = 6.0
+"""Triple pole of the observer over the rate of the device."""
 
 
 def velocity_source() -> Any:
     """Declare the parameter."""
-    return parameter(
-        "true", "velocity from the plant itself, from the difference of two samples, or from an observer of the device"
-    )
+    return parameter("true", "velocity from the plant itself, from the difference of two samples, or from an observer")
 
 
 def pack_velocity(source: Source, context: Context, rate: float) -> list[float]:
-    r"""Pack the source; the observer's error has a double pole at :math:`e^{-3\omega_0h}`, by Ackermann's formula."""
+    r"""Pack the source; the observer's error has a triple pole at :math:`e^{-6\omega_0h}`, by Ackermann's formula.
+
+    Its third state is an acceleration nobody told it of: a device that is not the nominal one does not mislead it.
+    """
     h = context.dt_ms
     device = context.device
     phi11, phi12, phi21, phi22, first, second = held(device.mass, device.damping, device.stiffness, h)
-    phi = np.array([[phi11, phi12], [phi21, phi22]])
     effect = (first * device.force, second * device.force)
+    push = (first * device.mass, second * device.mass)
+    own = [float(SOURCES.index(source)), h, phi11, phi12, phi21, phi22, *effect, *push]
     if device.mass == 0.0:
-        return [0.0, h, *phi.ravel().tolist(), *effect, 0.0, 0.0]  # nothing here feeds back a velocity
-    pole = math.exp(-OBSERVER_POLE * rate * h)
-    wanted = phi @ phi - 2.0 * pole * phi + pole * pole * np.eye(2)
-    correct = wanted @ np.linalg.solve(np.array([phi[0], (phi @ phi)[0]]), np.array([0.0, 1.0]))
-    return [float(SOURCES.index(source)), h, *phi.ravel().tolist(), *effect, *correct.tolist()]
+        return [0.0, *own[1:], 0.0, 0.0, 0.0]  # nothing here feeds back a velocity
+    phi = np.array([[phi11, phi12, push[0]], [phi21, phi22, push[1]], [0.0, 0.0, 1.0]])
+    shifted = phi - math.exp(-OBSERVER_POLE * rate * h) * np.eye(3)
+    seen = np.array([phi[0], (phi @ phi)[0], (phi @ phi @ phi)[0]])
+    correct = shifted @ shifted @ shifted @ np.linalg.solve(seen, np.array([0.0, 0.0, 1.0]))
+    return [*own, *correct.tolist()]
 
 
 @kernel
@@ -55,9 +59,11 @@ def velocity(p: Any, packed: int, s: Any, at: int, true: float, y: float, u: flo
         return float((y - last) / p[packed + DT]) if known else 0.0
     x = s[at + 2]
     v = s[at + 3]
-    ahead = p[packed + PHI11] * x + p[packed + PHI12] * v + p[packed + INPUT1] * u
-    v = p[packed + PHI21] * x + p[packed + PHI22] * v + p[packed + INPUT2] * u
+    more = s[at + 4]
+    ahead = p[packed + PHI11] * x + p[packed + PHI12] * v + p[packed + INPUT1] * u + p[packed + PUSH1] * more
+    v = p[packed + PHI21] * x + p[packed + PHI22] * v + p[packed + INPUT2] * u + p[packed + PUSH2] * more
     missing = y - ahead if known else 0.0
     s[at + 2] = settled(ahead + p[packed + CORRECT1] * missing)
     s[at + 3] = settled(v + p[packed + CORRECT2] * missing)
+    s[at + 4] = settled(more + p[packed + CORRECT3] * missing)
     return float(s[at + 3])
