@@ -60,7 +60,7 @@ def test_first_order_laws_are_the_loop_of_the_equations(kind):
     trace = trace_of(REGULATOR, {**(SLIDING if kind == "self_sliding" else MRAC), "adaptation_gain": 1.0}, 3000)
     h, x, m, theta = 1e-3, 0.0, 0.0, np.zeros(3)
     grow, decay = math.exp(0.2 * h), math.exp(-h)
-    found = []
+    u, found = 0.0, []
     for i in range(3000):
         if i:
             x = grow * x + (grow - 1) / 0.2 * u
