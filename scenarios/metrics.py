@@ -69,6 +69,8 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[st
     if abs(final) > 1e-9 and np.ptp(r) == 0.0:
         peak = float(np.max(x * math.copysign(1.0, final)))
         found["control.overshoot_pct"] = 100.0 * (peak / abs(final) - 1.0)
+    if (peak_of := first_peak(x, model)) is not None:
+        found["control.first_peak_pct"] = peak_of
     frequency = getattr(board.spec.reference.params, "frequency_hz", 0.0)
     if frequency:
         first = len(u) - len(u[tail])
@@ -82,6 +84,20 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[st
         found["control.amplitude_um"] = abs(phasor)
         found["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
     return {name: value for name, value in found.items() if math.isfinite(value)}
+
+
+def first_peak(x: FloatArray, model: FloatArray) -> float | None:
+    """Return by how much the first peak is higher than the model's, %; nothing when the model does not turn twice."""
+    slope = np.sign(np.diff(model))
+    moving = np.flatnonzero(slope)
+    if not len(moving):
+        return None
+    way = slope[moving[0]]
+    back = moving[slope[moving] == -way]
+    again = moving[(slope[moving] == way) & (moving > back[0])] if len(back) else back
+    if not len(again) or model[back[0]] * way <= 0.0:
+        return None
+    return float(100.0 * (np.max(x[: again[0] + 1] * way) / (model[back[0]] * way) - 1.0))
 
 
 def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str, float]:
