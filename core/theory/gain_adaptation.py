@@ -16,7 +16,7 @@ from core.block import FloatArray, kernel
 MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = range(6)
 """``PARKS`` is the rule as derived, on the slope of the error alone; ``LYAPUNOV`` adds the error itself."""
 RULES = {"mit": MIT, "parks": PARKS, "lyapunov": LYAPUNOV, "dressler": DRESSLER, "price": PRICE, "monopoli": MONOPOLI}
-STEPS = 300
+STEPS = 200
 """Steps of a period."""
 MARGIN = 1e-7
 """Growth rate, 1/time, that counts as none."""
@@ -64,36 +64,20 @@ class GainLoop:
 
 
 @kernel
-def _slope(
-    p: FloatArray, rule: int, rate: float, r: float, ym: float, y: float, s: FloatArray, out: FloatArray
-) -> None:
-    """Write the slope of e, e' and x."""
-    b1, b2, kv = p[0], p[1], p[2]
-    e, v, x = s[0], s[1], s[2]
-    push = x * r
+def _coefficients(p: FloatArray, rule: int, rate: float, r: float, ym: float, y: float) -> tuple[float, float, float]:
+    """Return what e and e' put into the slope of x, and what e puts into the plant at once."""
+    strength = -p[2] * rate
     if rule == MIT:
-        change = -kv * rate * e * ym
-    elif rule == PARKS:
-        change = -kv * rate * v * r
-    elif rule == LYAPUNOV:
-        change = -kv * rate * (v + p[5] * e) * r
-    elif rule == MONOPOLI:
-        change = -kv * rate * e * y
-        push += p[7] * change * y
-    else:
-        change = -kv * rate * e * r
-        if rule == PRICE:
-            push -= kv * p[6] * rate * e * r * r
-    out[0] = v
-    out[1] = (push - b1 * v - e) / b2
-    out[2] = change
-
-
-@kernel
-def _ahead(s: FloatArray, slope: FloatArray, h: float, out: FloatArray) -> None:
-    """Write s + h slope."""
-    for j in range(3):
-        out[j] = s[j] + h * slope[j]
+        return strength * ym, 0.0, 0.0
+    if rule == PARKS:
+        return 0.0, strength * r, 0.0
+    if rule == LYAPUNOV:
+        return strength * p[5] * r, strength * r, 0.0
+    if rule == MONOPOLI:
+        return strength * y, 0.0, p[7] * strength * y * y
+    if rule == PRICE:
+        return strength * r, 0.0, p[6] * strength * r * r
+    return strength * r, 0.0, 0.0
 
 
 @kernel
@@ -101,42 +85,43 @@ def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
     """Return the transition over one period of a sine (w > 0), or the matrix of the system for a constant."""
     b1, b2, k, amplitude, q = p[0], p[1], p[3], p[4], p[7]
     found = np.zeros((3, 3))
-    s, a1, a2, a3, a4, t = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
     if w == 0.0:
-        for column in range(3):
-            s[:] = 0.0
-            s[column] = 1.0
-            _slope(p, rule, rate, amplitude, k * amplitude, amplitude, s, a1)
-            found[:, column] = a1
+        on_e, on_v, at_once = _coefficients(p, rule, rate, amplitude, k * amplitude, amplitude)
+        found[0, 1] = 1.0
+        found[1, 0], found[1, 1], found[1, 2] = (at_once - 1.0) / b2, -b1 / b2, amplitude / b2
+        found[2, 0], found[2, 1] = on_e, on_v
         return found
-    # the responses of model and filter to R sin wt: real and imaginary parts
+    for i in range(3):
+        found[i, i] = 1.0
+    # model and filter answer R sin wt with a real and an imaginary part
     real, imaginary = 1.0 - b2 * w * w, b1 * w
-    size = real * real + imaginary * imaginary
+    model = k * amplitude / (real * real + imaginary * imaginary)
+    filtered = amplitude / (1.0 + q * q * w * w)
     h = 2.0 * math.pi / w / STEPS
-    for column in range(3):
-        s[:] = 0.0
-        s[column] = 1.0
-        for i in range(STEPS):
-            for stage in range(4):
-                at = w * h * (i + (0.0 if stage == 0 else 1.0 if stage == 3 else 0.5))
-                sine, cosine = math.sin(at), math.cos(at)
-                r = amplitude * sine
-                ym = k * amplitude * (real * sine - imaginary * cosine) / size
-                y = amplitude * (sine - q * w * cosine) / (1.0 + q * q * w * w)
-                if stage == 0:
-                    _slope(p, rule, rate, r, ym, y, s, a1)
-                elif stage == 1:
-                    _ahead(s, a1, 0.5 * h, t)
-                    _slope(p, rule, rate, r, ym, y, t, a2)
-                elif stage == 2:
-                    _ahead(s, a2, 0.5 * h, t)
-                    _slope(p, rule, rate, r, ym, y, t, a3)
-                else:
-                    _ahead(s, a3, h, t)
-                    _slope(p, rule, rate, r, ym, y, t, a4)
-            for j in range(3):
-                s[j] += h / 6.0 * (a1[j] + 2.0 * a2[j] + 2.0 * a3[j] + a4[j])
-        found[:, column] = s
+    r1 = 0.0
+    e1, v1, g1 = _coefficients(p, rule, rate, 0.0, -model * imaginary, -filtered * q * w)
+    for i in range(STEPS):
+        sine, cosine = math.sin(w * h * (i + 0.5)), math.cos(w * h * (i + 0.5))
+        ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
+        r2 = amplitude * sine
+        e2, v2, g2 = _coefficients(p, rule, rate, r2, ym, y)
+        sine, cosine = math.sin(w * h * (i + 1.0)), math.cos(w * h * (i + 1.0))
+        ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
+        r3 = amplitude * sine
+        e3, v3, g3 = _coefficients(p, rule, rate, r3, ym, y)
+        for c in range(3):
+            e, v, x = found[0, c], found[1, c], found[2, c]
+            ka, la, ma = v, (x * r1 + (g1 - 1.0) * e - b1 * v) / b2, e1 * e + v1 * v
+            et, vt, xt = e + 0.5 * h * ka, v + 0.5 * h * la, x + 0.5 * h * ma
+            kb, lb, mb = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
+            et, vt, xt = e + 0.5 * h * kb, v + 0.5 * h * lb, x + 0.5 * h * mb
+            kc, lc, mc = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
+            et, vt, xt = e + h * kc, v + h * lc, x + h * mc
+            kd, ld, md = vt, (xt * r3 + (g3 - 1.0) * et - b1 * vt) / b2, e3 * et + v3 * vt
+            found[0, c] = e + h / 6.0 * (ka + 2.0 * kb + 2.0 * kc + kd)
+            found[1, c] = v + h / 6.0 * (la + 2.0 * lb + 2.0 * lc + ld)
+            found[2, c] = x + h / 6.0 * (ma + 2.0 * mb + 2.0 * mc + md)
+        r1, e1, v1, g1 = r3, e3, v3, g3
     return found
 
 
@@ -149,7 +134,7 @@ def growth(loop: GainLoop, rule: int, rate: float, w: float) -> float:
     return float(np.log(max(float(np.max(np.abs(roots))), 1e-300)) * w / (2.0 * math.pi))
 
 
-def critical_gain(loop: GainLoop, rule: int, w: float, most: float = 10.0, points: int = 400) -> float:
+def critical_gain(loop: GainLoop, rule: int, w: float, most: float = 10.0, points: int = 200) -> float:
     """Return the first adaptation gain beyond which a solution grows; ``most`` when none does up to there."""
     below = 0.0
     for rate in np.linspace(most / points, most, points):
