@@ -80,27 +80,39 @@ def least_squares(
     limit : float
         Largest trace of the covariance, 0 for none.
     """
-    information = 0.0
+    # one pass over the triangle serves both halves of the matrix
     for i in range(n):
+        s[product + i] = 0.0
+    at = covariance
+    for i in range(n):
+        value = s[regressor + i]
         total = 0.0
-        for j in range(n):
-            total += s[covariance + entry(i, j)] * s[regressor + j]
-        s[product + i] = total
-        information += s[regressor + i] * total
-    inverse = 1.0 / (noise + information)
+        for j in range(i):
+            total += s[at] * s[regressor + j]
+            s[product + j] += s[at] * value
+            at += 1
+        s[product + i] += total + s[at] * value
+        at += 1
+    information = 0.0
     before = 0.0
-    after = 0.0
+    lost = 0.0
+    for i in range(n):
+        value = s[product + i]
+        information += s[regressor + i] * value
+        lost += value * value
+        before += s[covariance + entry(i, i)]
+    inverse = 1.0 / (noise + information)
     for i in range(n):
         s[theta + i] += s[product + i] * inverse * error
-        variance = s[covariance + entry(i, i)]
-        before += variance
-        after += variance - s[product + i] * inverse * s[product + i]
-    after /= forgetting
+    after = (before - lost * inverse) / forgetting
     if limit <= 0.0 or after <= limit or after <= before:
+        grow = 1.0 / forgetting
+        at = covariance
         for i in range(n):
+            gain = s[product + i] * inverse
             for j in range(i + 1):
-                at = covariance + entry(i, j)
-                s[at] = settled((s[at] - s[product + i] * inverse * s[product + j]) / forgetting)
+                s[at] = settled((s[at] - gain * s[product + j]) * grow)
+                at += 1
     return information
 
 

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from scipy import signal
 
-from core.block import FloatArray, Oscillator
+from core import estimation, registry
+from core.block import FloatArray, Oscillator, kernel
 from core.board import program
 from core.board.board import CHUNK, Board
 from core.device.oscillator import transition
@@ -129,6 +130,67 @@ def lsim_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
     return lambda: cpu_ns(lambda: signal.lsim(system, voltage, t), len(voltage))
 
 
+@kernel
+def estimate_record(
+    s: FloatArray, regressors: FloatArray, measured: FloatArray, forgetting: float, limit: float
+) -> None:
+    """Run recursive least squares with four parameters over a record.
+
+    Parameters
+    ----------
+    s : ndarray
+        Estimate, lower triangle of the covariance, and eight scratch numbers.
+    regressors, measured : ndarray, shape (m, 4) and (m,)
+        The record.
+    forgetting, limit : float
+        Forgetting factor and largest trace.
+    """
+    n, at = 4, 14  # known when it is compiled, so that the loops are unrolled
+    for i in range(regressors.shape[0]):
+        error = measured[i]
+        for j in range(n):
+            s[at + j] = regressors[i, j]
+            error -= s[j] * regressors[i, j]
+        estimation.least_squares(s, 0, n, at, at + n, n, error, forgetting, forgetting, limit)
+
+
+def estimate_start(covariance: float) -> FloatArray:
+    """Return the state of ``estimate_record`` before the first sample."""
+    return np.array([0.0] * 4 + estimation.diagonal(4, covariance) + [0.0] * 8)
+
+
+def regressors_of(u: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the regressors [u, u, -y, -y] of a record and what they should give."""
+    return np.column_stack([u[1:-1], u[:-2], -y[1:-1], -y[:-2]]), y[2:]
+
+
+def estimate_sample(regressors: FloatArray, measured: FloatArray) -> Callable[[], float]:
+    """Return the measurement of recursive least squares with four parameters, ns per update."""
+    start = estimate_start(1e8)
+
+    def measure() -> float:
+        s = start.copy()
+        return cpu_ns(lambda: estimate_record(s, regressors, measured, 0.98, 1e10), len(measured))
+
+    return measure
+
+
+def padasip_sample(regressors: FloatArray, measured: FloatArray, updates: int = 2000) -> Callable[[], float]:
+    """Return the measurement of padasip's filter on the same record, ns per update."""
+    import padasip
+
+    def measure() -> float:
+        peer = padasip.filters.FilterRLS(n=4, mu=0.98, eps=1e-8, w="zeros")
+
+        def work() -> None:
+            for i in range(updates):
+                peer.adapt(measured[i], regressors[i])
+
+        return cpu_ns(work, updates)
+
+    return measure
+
+
 PLANAR = {
     "device": {"id": "lcr-350"},
     "plant": {"model": "planar", "step_us": 0.25},
@@ -142,7 +204,9 @@ PLANAR = {
 
 def speed() -> dict[str, Any]:
     """Measure everything and return it with the targets, JSON-ready."""
+    identifiers = {f"identifiers.{name}.kind": name for name in registry.blocks("identify")}
     bench = _board({"plant.drive_noise_v": 0.01})
+    estimating = _board({"plant.drive_noise_v": 0.01, **identifiers})
     plane = Board(PLANAR)
     plane.advance(CHUNK)
     device = bench.spec.context().device
@@ -156,11 +220,15 @@ def speed() -> dict[str, Any]:
         "plant_record": lambda: cpu_ns(lambda: held_response(device, sine, 0.01), SECOND),
         "lsim": lsim_sample(device, sine),
     }
+    tones = sine + 5.0 * np.sin(2.0 * np.pi * 4.5 * 0.01 * np.arange(SECOND))
+    record = regressors_of(tones, held_response(device, tones, 0.01))
+    candidates["least_squares"] = estimate_sample(*record)
     missing = ""
     try:
         candidates["filterpy_bank"] = filterpy_step(bench)
+        candidates["padasip"] = padasip_sample(*record)
     except ImportError:
-        missing = "filterpy is not installed (make setup-test installs it)"
+        missing = "filterpy or padasip is not installed (make setup-test installs them)"
     ns = interleaved(candidates)
     figures = [
         _figure("cost of a tick of a bench (blocks, trace, log, digest)", ns["bench_tick"] / 1e3, "us"),
@@ -182,6 +250,12 @@ def speed() -> dict[str, Any]:
             least=1000.0,
         ),
     ]
+    figures.append(
+        _figure("recursive least squares, 4 parameters, per update", ns["least_squares"] / 1e3, "us", most=0.03)
+    )
+    if "padasip" in ns:
+        ratio = ns["padasip"] / ns["least_squares"]
+        figures.append(_figure("recursive least squares over padasip's FilterRLS", ratio, "x", least=150.0))
     if "filterpy_bank" in ns:
         figures.append(
             _figure(
@@ -194,7 +268,7 @@ def speed() -> dict[str, Any]:
     return {
         "figures": figures,
         "ns": {name: round(value, 1) for name, value in ns.items()},
-        "blocks_ns": block_costs(bench),
+        "blocks_ns": block_costs(estimating),
         "missing": missing,
         "ok": all(figure["ok"] for figure in figures),
     }

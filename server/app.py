@@ -19,6 +19,7 @@ from server.api import (
     scenarios,
     snapshots,
     stream,
+    theory,
     trace,
 )
 from server.page import Page
@@ -32,7 +33,7 @@ from server.settings import Settings
 from server.version import VERSION
 
 API = "/api/v1"
-ROUTERS = (catalog, scenarios, benches, snapshots, recordings, trace, runs, stream)
+ROUTERS = (catalog, scenarios, benches, snapshots, recordings, trace, runs, theory, stream)
 
 
 def create_app(settings: Settings) -> FastAPI:

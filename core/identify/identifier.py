@@ -97,26 +97,29 @@ def voltage(p: Any, s: Any, last_charge: int, w: Any, io: Any) -> float:
 
 @kernel
 def excite(p: Any, s: Any, gram: int, regressor: int, n: int, w: Any, io: Any, first: int) -> None:
-    """Gather the Gram matrix and judge it at the end of each window; its lower triangle and n^2 scratch follow a count.
+    """Gather the Gram matrix and judge it at the end of each window.
 
-    The three ports of ``EXCITATION`` begin at ``first``.
+    A count, its lower triangle, n^2 scratch numbers and the last verdict stand from ``gram`` on. The three ports of
+    ``EXCITATION`` begin at ``first``.
     """
     gather(s, gram + 1, regressor, n)
     s[gram] += 1.0
+    size = n * (n + 1) // 2
+    scratch = gram + 1 + size
+    judged = scratch + n * n
     if s[gram] >= p[WINDOW]:
-        size = n * (n + 1) // 2
-        scratch = gram + 1 + size
-        w[io[first]] = smallest_eigenvalue(s, gram + 1, scratch, n, False) / s[gram]
-        relative = smallest_eigenvalue(s, gram + 1, scratch, n, True)
-        w[io[first + 1]] = relative
-        w[io[first + 2]] = 1.0 if relative > p[LEAST] else 0.0
+        s[judged] = smallest_eigenvalue(s, gram + 1, scratch, n, False) / s[gram]
+        s[judged + 1] = smallest_eigenvalue(s, gram + 1, scratch, n, True)
         for i in range(size + 1):
             s[gram + i] = 0.0
+    w[io[first]] = s[judged]
+    w[io[first + 1]] = s[judged + 1]
+    w[io[first + 2]] = 1.0 if s[judged + 1] > p[LEAST] else 0.0
 
 
 def room(n: int) -> int:
     """Return the numbers ``excite`` needs."""
-    return 1 + n * (n + 1) // 2 + n * n
+    return 1 + n * (n + 1) // 2 + n * n + 2
 
 
 @kernel

@@ -17,6 +17,8 @@ import numpy as np
 from core.block import FloatArray, kernel
 
 SWEEPS = 10
+ROUNDING = 1e-13
+"""Eigenvalues this much smaller than the largest are 0."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +52,14 @@ def excitation(gram: FloatArray) -> Excitation:
     """Judge a mean Gram matrix, shape (n, n)."""
     size = np.sqrt(np.diag(gram))
     scale = np.outer(size, size)
-    relative = 0.0 if np.any(size == 0.0) else float(np.linalg.eigvalsh(gram / scale)[0])
-    return Excitation(np.asarray(np.linalg.eigvalsh(gram), dtype=np.float64), relative)
+    relative = 0.0 if np.any(size == 0.0) else float(_eigenvalues(gram / scale)[0])
+    return Excitation(_eigenvalues(gram), relative)
+
+
+def _eigenvalues(matrix: FloatArray) -> FloatArray:
+    """Return the eigenvalues, smallest first; what is rounding beside the largest is 0."""
+    found = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
+    return np.where(np.abs(found) < ROUNDING * np.abs(found[-1]), 0.0, found)
 
 
 def gram_of_tones(

@@ -1,7 +1,7 @@
 r"""Positive real and strictly positive real transfer functions (A.11), exactly.
 
-On the imaginary axis :math:`\mathrm{Re}\,G=\mathrm{Re}[N(j\omega)D(-j\omega)]/|D|^2`, and the numerator is a polynomial in
-:math:`\omega^2`: its extremes are at the roots of its derivative, so no grid is needed.
+On the imaginary axis :math:`\mathrm{Re}\,G=\mathrm{Re}[N(j\omega)D(-j\omega)]/|D|^2`, and the numerator is a polynomial
+in :math:`\omega^2`: its extremes are at the roots of its derivative, so no grid is needed.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ class Verdict:
     relative_degree : int
         Degree of the denominator less that of the numerator.
     least_real : float
-        Smallest real part on the imaginary axis, minus infinity beside a pole that makes it so.
+        Smallest real part on the imaginary axis; huge beside a pole that makes it so.
     at : float
         Frequency where it is, infinite when it is the limit.
     reasons : tuple of str
@@ -127,12 +128,12 @@ def nyquist(numerator: Sequence[float], denominator: Sequence[float], w: FloatAr
     return values.real, values.imag
 
 
-def _left(roots: FloatArray) -> bool:
+def _left(roots: Any) -> bool:
     """Say whether all roots have a negative real part."""
     return bool(np.all(roots.real < -TINY * np.maximum(1.0, np.abs(roots))))
 
 
-def _turns(values: FloatArray) -> list[float]:
+def _turns(values: Any) -> list[float]:
     """Return 0 and the positive real roots of a polynomial."""
     roots = np.roots(values)
     return [0.0, *(float(root.real) for root in roots if root.real > 0.0 and abs(root.imag) < 1e-6 * abs(root))]
@@ -147,14 +148,16 @@ def _least(real: FloatArray) -> float:
 
 
 def _least_real(real: FloatArray, square: FloatArray) -> tuple[float, float]:
-    """Return where Re G = P/Q is smallest on the axis, and its value there; both polynomials in the squared frequency."""
-    turning = np.polysub(np.polymul(np.polyder(real), square), np.polymul(real, np.polyder(square)))
-    top, bottom = np.trim_zeros(real, "f"), np.trim_zeros(square, "f")
+    """Return where Re G = P/Q is smallest on the axis, and its value; both are polynomials in w^2."""
+    slopes: Any = np.polyder(real), np.polyder(square)
+    turning: Any = np.polysub(np.polymul(slopes[0], square), np.polymul(real, slopes[1]))
+    top: Any = np.trim_zeros(real, "f")
+    bottom: Any = np.trim_zeros(square, "f")
     found = []
-    for x in _turns(turning):
-        size = float(np.polyval(bottom, x))
-        if size > TINY * float(np.sum(np.abs(bottom))):
-            found.append((math.sqrt(x), float(np.polyval(top, x)) / size))
+    for turn in _turns(turning):
+        beside = float(np.polyval(bottom, turn)) <= TINY * float(np.sum(np.abs(bottom)))
+        x = turn * (1.0 + 1e-6) + 1e-9 if beside else turn  # beside a pole on the axis
+        found.append((math.sqrt(x), float(np.polyval(top, x) / np.polyval(bottom, x))))
     far = 0.0
     if len(top) >= len(bottom):
         far = float(top[0] / bottom[0]) if len(top) == len(bottom) else math.copysign(math.inf, float(top[0]))
