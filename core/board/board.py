@@ -209,10 +209,10 @@ class Board:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
         wiring = self.wiring
         running = wiring.rest(self.spec)
-        if self.compiled:
-            wiring.table[:, program.ADDRESS] = [program.compiled(i.block.step).address for i in wiring.instances]
         self._steps = [wiring.instances[row].block.step for row in running]
         self._table = wiring.table[running]
+        if self.compiled:
+            self._table[:, program.ADDRESS] = [program.compiled(step).address for step in self._steps]
 
     def _allocate(self) -> None:
         """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""
