@@ -72,6 +72,7 @@ SECTIONS = (
     "guard",
     "identifiers",
     "diagnosers",
+    "twins",
 )
 FIELDS = (*Frame.model_fields, *SECTIONS)
 
