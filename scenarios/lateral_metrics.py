@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -50,7 +50,7 @@ def device_pull_in(device: Device) -> float | None:
     return None if device.geometry is None else geometry_pull_in(device.geometry, device.capacitance_gradient)
 
 
-@cache
+@lru_cache(maxsize=256)
 def geometry_pull_in(geometry: Geometry, gradient_f_m: float) -> float:
     """Return the bias of pull-in of a drawing, its rotational stiffness by the frame of beams."""
     tip = 0.5 * geometry.plate_length_um + geometry.arm_width_um + geometry.finger_length_um - geometry.overlap_um
