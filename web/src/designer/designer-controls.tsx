@@ -33,7 +33,7 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
     );
   };
   return (
-    <section className={styles.controls} aria-label="Device">
+    <section className={styles.controls} aria-label="What can be turned">
       <NativeSelect
         label="Device"
         size="xs"

@@ -2,11 +2,12 @@ import { Button } from "@mantine/core";
 import { IconArrowLeft, IconDice5, IconPlayerPlay } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
-import type { DeviceCatalogue, Evaluation } from "../api/types";
+import type { DeviceCatalogue, Evaluation, ProcessSpread } from "../api/types";
 import { openBench } from "../app/open-bench";
 import { showError } from "../app/send";
 import { setPage } from "../app/view-store";
 import { EmptyState } from "../ui/empty-state";
+import { formatSi } from "../ui/format";
 import { benchOf, catalogued, designDocument, newDesign } from "./design";
 import styles from "./designer.module.css";
 import { DesignerControls } from "./designer-controls";
@@ -23,8 +24,9 @@ export function Designer() {
   const [catalogue, setCatalogue] = useState<DeviceCatalogue | undefined>(undefined);
   const [state, setState] = useState(() => newDesign(FIRST));
   const [original, setOriginal] = useState<Evaluation | undefined>(undefined);
+  const [spread, setSpread] = useState<ProcessSpread["statistics"][string] | undefined>(undefined);
   const [busy, setBusy] = useState(false);
-  const { evaluation, bode, refusal, design } = useDesign(state);
+  const { evaluation, bode, drawing, refusal, design } = useDesign(state);
 
   useEffect(() => {
     api.deviceCatalogue().then(setCatalogue, showError);
@@ -37,8 +39,9 @@ export function Designer() {
     const seed = (state.drawn?.seed ?? 0) + 1;
     const undrawn = { ...state, drawn: undefined };
     try {
-      const { geometry } = await api.spread({ ...designDocument(undrawn), seed });
+      const { geometry, statistics } = await api.spread({ ...designDocument(undrawn), seed });
       setState({ ...undrawn, drawn: { seed, geometry } });
+      setSpread(statistics.f0_hz);
     } catch (error) {
       showError(error);
     }
@@ -60,13 +63,19 @@ export function Designer() {
   if (!catalogue || !device)
     return <EmptyState title="Loading the devices">They come from the server's catalogue.</EmptyState>;
   return (
-    <main className={styles.page} aria-label="Device designer">
+    <main className={styles.page}>
       <header className={styles.top}>
         <Button size="xs" variant="subtle" leftSection={<IconArrowLeft size={16} />} onClick={() => setPage("bench")}>
           Bench
         </Button>
         <h1>Device designer</h1>
-        {state.drawn && <span className={styles.drawn}>device {state.drawn.seed} of the process</span>}
+        {state.drawn && (
+          <span className={styles.drawn}>
+            device {state.drawn.seed} of the process
+            {spread &&
+              `; 98 % of them have f₀ from ${formatSi(spread.p01, "Hz", 3)} to ${formatSi(spread.p99, "Hz", 3)}`}
+          </span>
+        )}
         {refusal && (
           <span className={styles.refusal} role="alert">
             {refusal.body.message}. {refusal.body.hint}
@@ -100,7 +109,7 @@ export function Designer() {
         </div>
       </header>
       <DesignerControls catalogue={catalogue} device={device} state={state} onChange={setState} />
-      {evaluation && bode ? (
+      {evaluation && bode && drawing ? (
         <>
           <section className={styles.drawing} aria-label="Drawing">
             <DeviceView geometry={evaluation.geometry} title={evaluation.title} />
@@ -109,7 +118,7 @@ export function Designer() {
             <FigureGrid figures={evaluation.figures} original={original?.figures} />
           </section>
           <section className={styles.response} aria-label="Frequency response">
-            <ResponseView bode={bode} />
+            <ResponseView bode={bode} drawing={drawing} />
           </section>
           <section className={styles.sensitivity} aria-label="Sensitivity">
             <SensitivityTable evaluation={evaluation} />

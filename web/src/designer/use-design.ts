@@ -7,6 +7,8 @@ import { type DesignState, designDocument } from "./design";
 interface Worked {
   evaluation: Evaluation;
   bode: Bode;
+  /** The drawing that the device was drawn from by the process; the device itself unless it was. */
+  drawing: Bode;
 }
 
 const SPAN = 10;
@@ -20,11 +22,14 @@ export function useDesign(state: DesignState) {
   const [worked, setWorked] = useState<Worked | undefined>(undefined);
   const [refusal, setRefusal] = useState<ApiError | undefined>(undefined);
   const design = useMemo(() => designDocument(state), [state]);
+  const undrawn = useMemo(() => (state.drawn ? designDocument({ ...state, drawn: undefined }) : undefined), [state]);
+  const before = useRef(undrawn);
   const wanted = useRef(design);
   const busy = useRef(false);
 
   useEffect(() => {
     wanted.current = design;
+    before.current = undrawn;
     if (busy.current) return;
     const work = async () => {
       busy.current = true;
@@ -33,8 +38,10 @@ export function useDesign(state: DesignState) {
         try {
           const evaluation = await api.evaluate(asked);
           const f0 = evaluation.metrics.f0_hz;
-          const bode = await api.bode({ ...asked, start_hz: f0 / SPAN, stop_hz: f0 * SPAN, points: 240, seed: 1 });
-          setWorked({ evaluation, bode });
+          const over = { start_hz: f0 / SPAN, stop_hz: f0 * SPAN, points: 240, seed: 1 };
+          const bode = await api.bode({ ...asked, ...over });
+          const drawing = before.current ? await api.bode({ ...before.current, ...over }) : bode;
+          setWorked({ evaluation, bode, drawing });
           setRefusal(undefined);
         } catch (error) {
           if (!(error instanceof ApiError)) throw error;
@@ -45,7 +52,7 @@ export function useDesign(state: DesignState) {
     void work().finally(() => {
       busy.current = false;
     });
-  }, [design]);
+  }, [design, undrawn]);
 
   return { ...worked, refusal, design };
 }

@@ -65,7 +65,7 @@ export function Knob(props: KnobProps) {
         <NumberField
           label={label}
           unit={unitText(unit)}
-          value={Number(shown.toPrecision(5))}
+          value={Number(shown.toPrecision(6))}
           minimum={minimum ?? null}
           maximum={maximum ?? null}
           integer={step === 1 && unit === ""}

@@ -4,6 +4,7 @@ import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
+import { Prose } from "../../ui/prose";
 import styles from "./environment.module.css";
 
 const BYPASS = "ideal";
@@ -48,7 +49,11 @@ export function SensorChoice() {
           Bypass
         </Button>
       </div>
-      {chosen && <p className={styles.note}>{chosen.summary.replace(/:math:`[^`]*`/g, "").replace(/`+/g, "")}</p>}
+      {chosen && (
+        <p className={styles.note}>
+          <Prose text={chosen.summary} />
+        </p>
+      )}
       {optical.length > 0 && (
         <>
           <p className={styles.note}>

@@ -54,10 +54,10 @@ export function IdentifiedTable({ result }: { result: Identification }) {
             <tr key={value}>
               <th scope="row">{label}</th>
               <td>
-                <b>{formatSi(found, unit)}</b>
+                <b>{formatSi(found, unit, 6)}</b>
               </td>
               <td>{formatSi(sigma, unit, 2)}</td>
-              <td data-sure={sure}>{`${change > 0 ? "+" : ""}${formatNumber(change, 1)} %`}</td>
+              <td data-sure={sure}>{`${change > 0 ? "+" : ""}${formatNumber(change, 2)} %`}</td>
             </tr>
           );
         })}

@@ -54,7 +54,7 @@ export function paintPhase(ctx: CanvasRenderingContext2D, picture: PhasePicture)
   }
   ctx.textAlign = "right";
   ctx.textBaseline = "middle";
-  for (const tick of scaled(picture.y, (bottom - TOP) / 44)) {
+  for (const tick of scaled(picture.y, (bottom - TOP) / 30)) {
     line(ctx, LEFT, py(tick), right, py(tick));
     ctx.fillText(label(tick * picture.y.scale.factor), LEFT - 6, py(tick));
   }

@@ -27,9 +27,9 @@ export function mapWords(map: UnstableRegion): string {
   if (map.folds.some((f) => f.x_um === 0)) return "The rest itself is unstable: less bias is needed.";
   const fold = map.folds[0];
   const text = fold
-    ? `A slow drive folds at ${Math.abs(fold.x_um).toFixed(2)} µm and ${Math.abs(fold.volts).toFixed(2)} V.`
+    ? `Dashed: a slow drive folds at ${Math.abs(fold.x_um).toFixed(2)} µm and ${Math.abs(fold.volts).toFixed(2)} V.`
     : "";
-  if (map.boundary) return `${text} Beyond the shaded edge the energy suffices to pull in.`.trim();
+  if (map.boundary) return `${text} Shaded: the energy suffices to pull in.`.trim();
   if (fold) return `${text} With the drive held at ${map.drive_v} V nothing within the travel pulls in.`;
   if (map.plant === "planar" || map.plant === "slaved_lateral") return "Nothing within the travel pulls in.";
   return "";

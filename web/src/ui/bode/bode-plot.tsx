@@ -18,6 +18,7 @@ interface BodePlotProps {
 const LEFT = 48;
 const RIGHT = 14;
 const AXIS = 30;
+const BETWEEN = 22;
 
 /** Magnitude over phase, on one logarithmic axis of frequency; the pointer reads both. */
 export function BodePlot({ label, curves, band, points, degrees = [-180, 0] }: BodePlotProps) {
@@ -31,8 +32,8 @@ export function BodePlot({ label, curves, band, points, degrees = [-180, 0] }: B
     [curves, band, points],
   );
   const width = Math.max(60, size.width - LEFT - RIGHT);
-  const upper = Math.max(40, (size.height - AXIS - 16) * 0.62);
-  const lower = Math.max(30, size.height - AXIS - 16 - upper);
+  const upper = Math.max(40, (size.height - AXIS - BETWEEN) * 0.62);
+  const lower = Math.max(30, size.height - AXIS - BETWEEN - upper);
   const x = (f: number) => (Math.log(f / low) / Math.log(high / low)) * width;
   const read = at === undefined ? undefined : nearest(hertz, at);
 
@@ -96,7 +97,7 @@ export function BodePlot({ label, curves, band, points, degrees = [-180, 0] }: B
             />
             <BodePart
               left={LEFT}
-              top={upper + 16}
+              top={upper + BETWEEN}
               width={width}
               height={lower}
               x={x}
