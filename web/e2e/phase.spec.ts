@@ -40,3 +40,12 @@ test("a swept sine says what the device is, and the environment changes live", a
   await expect(page.getByRole("row", { name: /^Damping β .*−\d/ })).toBeVisible();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 });
+
+test("the spectrum finds the tone of the drive", async ({ page, openBench }) => {
+  await openBench();
+  await page.getByRole("tab", { name: "Spectrum" }).click();
+  const panel = page.getByRole("region", { name: "Spectrum" });
+  // 10 V at 2 kHz
+  await panel.getByRole("combobox", { name: "Signal" }).selectOption("reference.voltage");
+  await expect(panel.getByText(/^Strongest: (10\.0|9\.9\d|10\.1)\sV at (2\.00\d|1\.99\d)\skHz$/)).toBeVisible();
+});

@@ -66,6 +66,7 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "events", "events", { within: "lanes", inactive: true });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
+    add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.26, h: 0.34 },
@@ -86,6 +87,7 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
+    add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.225, h: 0.32 },

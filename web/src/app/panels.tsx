@@ -10,6 +10,7 @@ import { SchematicPanel } from "../panels/schematic/schematic-panel";
 import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
+import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
 
 export interface PanelProps {
@@ -31,6 +32,7 @@ export const PANELS: Record<string, PanelKind> = {
   card: { title: "Block", component: CardPanel },
   environment: { title: "Environment", component: EnvironmentPanel },
   phase: { title: "Phase plane", component: PhasePanel },
+  spectrum: { title: "Spectrum", component: SpectrumPanel },
   identify: { title: "Swept sine", component: IdentifyPanel },
   events: { title: "Events", component: EventsPanel },
   scores: { title: "Scoreboard", component: ScoreboardPanel },

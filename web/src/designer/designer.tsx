@@ -112,7 +112,11 @@ export function Designer() {
       {evaluation && bode && drawing ? (
         <>
           <section className={styles.drawing} aria-label="Drawing">
-            <DeviceView geometry={evaluation.geometry} title={evaluation.title} />
+            <DeviceView
+              geometry={evaluation.geometry}
+              title={evaluation.title}
+              onChooseDrawn={() => setState(newDesign(FIRST))}
+            />
           </section>
           <section className={styles.figures} aria-label="Figures">
             <FigureGrid figures={evaluation.figures} original={original?.figures} />

@@ -1,3 +1,4 @@
+import { Button } from "@mantine/core";
 import { useMemo } from "react";
 import { EmptyState } from "../ui/empty-state";
 import { formatNumber } from "../ui/format";
@@ -8,12 +9,26 @@ import { deviceDrawing, rectPath } from "./device-drawing";
 const MARGIN = 14;
 const SCALE_BARS = [20, 50, 100, 200, 500];
 
+interface DeviceViewProps {
+  geometry: Record<string, number> | null;
+  title: string;
+  /** Take a device that has a drawing. */
+  onChooseDrawn(): void;
+}
+
 /** The device from above, to scale: beams thinner than a pixel are drawn one pixel wide. */
-export function DeviceView({ geometry, title }: { geometry: Record<string, number> | null; title: string }) {
+export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) {
   const drawing = useMemo(() => (geometry ? deviceDrawing(geometry) : undefined), [geometry]);
   if (!drawing || !geometry)
     return (
-      <EmptyState title="No drawing">
+      <EmptyState
+        title="No drawing"
+        action={
+          <Button size="xs" variant="default" onClick={onChooseDrawn}>
+            Take LCR-350
+          </Button>
+        }
+      >
         {title} is given by its mass, damping and stiffness. A device with a drawing, such as LCR-350, is drawn here.
       </EmptyState>
     );

@@ -46,7 +46,7 @@ export function PlantChoice() {
             <Radio
               key={b.name}
               className={styles.plant}
-              size="xs"
+              size="sm"
               value={b.name}
               label={b.title}
               description={describe(cost, tickNs)}

@@ -3,7 +3,7 @@ import type { UnstableRegion } from "../../api/types";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
-import type { PanelFrame } from "../../stream/panel-frame";
+import { middles } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
@@ -101,15 +101,6 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
       />
     </div>
   );
-}
-
-/** One value for each column; with a column for each tick that is the sample. */
-function middles(frame: PanelFrame, signal: number): Float32Array<ArrayBuffer> {
-  const found = new Float32Array(frame.columns);
-  const low = 2 * signal * frame.columns;
-  for (let i = 0; i < frame.columns; i += 1)
-    found[i] = 0.5 * (frame.data[low + i] + frame.data[low + frame.columns + i]);
-  return found;
 }
 
 const largest = ([low, high]: Range) => Math.max(Math.abs(low), Math.abs(high));
