@@ -20,16 +20,21 @@ def test_a_softening_spring_has_the_separatrix_of_its_potential():
     assert found.speed_um_ms == pytest.approx(expected, rel=1e-3, abs=0.05)
 
 
-def test_the_lower_barrier_counts():
-    # F = -kx + bx^2 turns outwards at +k/b only; the other side has none within reach
-    k, b = 1.0, 0.25
-    found = boundary(lambda q, _r, _l: np.array([-k * q[0] + b * q[0] ** 2]), 1.0, 0.0, 0.0, 1)
-    saddle = k / b
-    barrier = k * saddle**2 / 2 - b * saddle**3 / 3
-    assert found.x_um[-1] == pytest.approx(saddle, abs=1e-3)
-    # where the other slope is as high: kx^2/2 + bx^3/3 = barrier at x = -saddle / 2
-    assert found.x_um[0] == pytest.approx(-0.5 * saddle, abs=0.05)
-    assert np.max(found.speed_um_ms) == pytest.approx(np.sqrt(2 * barrier), rel=1e-3)
+def test_the_lower_of_two_barriers_counts():
+    # F = -kx + bx^2 + ax^3 has its saddles at (-b +- sqrt(b^2 + 4ak)) / 2a, the near one at +x
+    k, b, a = 1.0, 0.1, 0.01
+    found = boundary(lambda q, _r, _l: np.array([-k * q[0] + b * q[0] ** 2 + a * q[0] ** 3]), 1.0, 0.0, 0.0, 1)
+    near, far = (-b + np.sqrt(b * b + 4 * a * k)) / (2 * a), (-b - np.sqrt(b * b + 4 * a * k)) / (2 * a)
+
+    def energy(x):
+        return k * x**2 / 2 - b * x**3 / 3 - a * x**4 / 4
+
+    assert energy(near) < energy(far)
+    assert found.x_um[-1] == pytest.approx(near, abs=1e-3)
+    # on the other side it ends where the slope is as high, short of the far saddle
+    assert far < found.x_um[0] < 0.0
+    assert energy(found.x_um[0]) <= energy(near) < energy(found.x_um[0] - 0.05)  # one step of the walk
+    assert np.max(found.speed_um_ms) == pytest.approx(np.sqrt(2 * energy(near)), rel=1e-3)
 
 
 def test_sideways_instability_is_a_barrier_too():

@@ -113,6 +113,15 @@ def test_a_device_drawn_from_the_process_is_the_same_for_the_same_seed(live):
     assert 0.7 * spread["p01"] < drawn["stiffness_n_m"]["value"] < 1.4 * spread["p99"]
 
 
+def test_devices_are_drawn_in_their_environment(live):
+    design = {"device": {"id": "lcr-350", "mass_kg": 3e-10}, "environment": {"pressure_pa": 1000.0}}
+    nominal = figures(live, **design)
+    drawn = ask(live, "spread", **design, seed=2, draws=4000)["statistics"]
+    # the median of a nearly symmetric spread; 3 to 10 % apart over sqrt(4000) devices
+    for name in ("mass_kg", "damping_ns_m", "stiffness_n_m", "quality_factor"):
+        assert drawn[name]["p50"] == pytest.approx(nominal[name]["value"], rel=0.02), name
+
+
 @pytest.mark.parametrize(
     ("what", "body", "field", "words"),
     [
@@ -129,6 +138,12 @@ def test_a_device_drawn_from_the_process_is_the_same_for_the_same_seed(live):
             {"device": {"id": "lcr-350", "geometry": {"overlap_um": 61.0}}},
             "device.geometry",
             "overlap_um must be <= finger_length_um",
+        ),
+        (
+            "evaluate",
+            {"device": {"id": "lcr-350", "geometry": {"comb_bias_um": -1.0}}},
+            "device.geometry",
+            "the fingers touch",
         ),
         ("evaluate", {"device": {}, "environment": {"pressure_pa": -1}}, "environment.pressure_pa", ">= 0.01"),
         ("evaluate", {"gadget": {}}, "gadget", "unknown field"),
