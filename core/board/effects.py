@@ -1,4 +1,4 @@
-"""Effect channels: through which faults reach the plant."""
+"""Effect channels: through which faults reach the plant and the measurement."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def effects_step(p: Any, s: Any, w: Any, io: Any) -> None:
 
 
 class Effects(Block):
-    """The channels through which faults reach the plant, set back to neutral before the faults of each tick.
+    """The channels through which faults reach plant and measurement, set back to neutral before those of each tick.
 
     Stiffness and damping start from what the environment makes of the device, which is 1 at 300 K and 1 atm.
     """
@@ -68,6 +68,9 @@ class Effects(Block):
         _sum("turn_cubic", "rad/um^3", "rotation per cubed travel"),
         _sum("other", "1", "not zero while something is wrong that no hypothesis of a bank can say"),
         _scale("vacuum", "share of the vacuum that is left"),
+        _sum("sensor_offset", "um", "added to what is measured"),
+        _sum("sensor_quantum", "um", "step what is measured is rounded to, 0 for none"),
+        _sum("sensor_held", "1", "not zero while the sample is lost"),
     )
 
     class Params(BlockParams):
