@@ -9,8 +9,8 @@ import numpy as np
 
 from core.block import Block, BlockParams, Context, FloatArray, Port
 
-STIFFNESS_IN, DAMPING_IN, OUTPUTS = range(3)
-STIFFNESS, DAMPING = 1, 2
+STIFFNESS_IN, DAMPING_IN, FRICTION_IN, OUTPUTS = range(4)
+STIFFNESS, DAMPING, FRICTION, OTHER = 1, 2, 7, 17
 """Places among the outputs of the channels that start from the environment."""
 
 
@@ -35,18 +35,22 @@ def effects_step(p: Any, s: Any, w: Any, io: Any) -> None:
         w[io[OUTPUTS + i]] = p[1 + i]
     w[io[OUTPUTS + STIFFNESS]] = w[io[STIFFNESS_IN]]
     w[io[OUTPUTS + DAMPING]] = w[io[DAMPING_IN]]
+    w[io[OUTPUTS + FRICTION]] = w[io[FRICTION_IN]]
+    w[io[OUTPUTS + OTHER]] = w[io[FRICTION_IN]]  # no hypothesis says friction
 
 
 class Effects(Block):
     """The channels through which faults reach plant and measurement, set back to neutral before those of each tick.
 
-    Stiffness and damping start from what the environment makes of the device, which is 1 at 300 K and 1 atm.
+    Stiffness, damping and friction start from what the environment makes of the device, which is nothing for a new one
+    at 300 K and 1 atm.
     """
 
     title = "Effect channels"
     inputs = (
         Port("stiffness", "1", "stiffness over nominal in this environment", source="environment.stiffness_scale"),
         Port("damping", "1", "damping over nominal in this environment", source="environment.damping_scale"),
+        Port("rubbing", "uN", "friction in this environment", source="environment.friction"),
     )
     outputs = (
         _scale("mass_scale", "true mass over nominal", hidden=False),
