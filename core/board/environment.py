@@ -18,6 +18,7 @@ from core.device.environment import (
     stiffness_scale,
     structural_share,
 )
+from core.device.geometry import drawn
 
 PRESSURE_AT, TEMPERATURE_AT, HUMID, STICKY, RUBBING, WEEKS, AGED, FILM = range(8)
 """Packed parameters; from ``FILM`` on areas and gaps, angular frequency and structural share."""
@@ -125,7 +126,7 @@ class Environment(Block):
                 1e-3 * params.friction_nn,
                 params.age_weeks,
                 1.0 / ageing_ratio(params.age_weeks),
-                *context.film,
+                *drawn(context).film,
                 1e3 * device.natural_frequency,
                 structural_share(0.5 / device.damping_ratio),
             ]
@@ -134,7 +135,7 @@ class Environment(Block):
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """Pressure and temperature of the factors kept, and the factors."""
-        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0, 1.0, squeezed_share(ATMOSPHERE_PA, ROOM_K, context.film[3])])
+        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0, 1.0, squeezed_share(ATMOSPHERE_PA, ROOM_K, drawn(context).gap_um)])
 
     @classmethod
     def scales(cls, params: Any, context: Context) -> tuple[float, float]:

@@ -16,8 +16,6 @@ from core.block import FloatArray
 from core.device.geometry import Geometry
 
 Beam = Literal["inner", "outer"]
-ROOT_UM = 37.5
-"""Distance of the roots of all beams from the x axis."""
 SEGMENT = (-1.5, -0.5, 0.5, 1.5)
 """Places of the four beams of a side along its truss, in truss segments."""
 
@@ -58,17 +56,18 @@ class _Mesh:
 
 def _mesh(geometry: Geometry, damage: Damage) -> _Mesh:
     mesh = _Mesh()
+    foot = 0.5 * geometry.plate_width_um
     for side in (1.0, -1.0):
         modulus = geometry.youngs_modulus_gpa * (damage.side_scale if side > 0.0 else 1.0)
         tops = []
         for i, place in enumerate(SEGMENT):
             x = place * geometry.truss_segment_um
-            root = mesh.node(x, side * ROOT_UM)
-            top = mesh.node(x, side * (ROOT_UM + geometry.beam_length_um))
+            root = mesh.node(x, side * foot)
+            top = mesh.node(x, side * (foot + geometry.beam_length_um))
             (mesh.rigid if i in (0, 3) else mesh.fixed).append(root)
             stuck = damage.adhesion
             if stuck is not None and side > 0.0 and i == (2 if stuck[0] == "inner" else 3):
-                middle = mesh.node(x, ROOT_UM + stuck[1] * geometry.beam_length_um)
+                middle = mesh.node(x, foot + stuck[1] * geometry.beam_length_um)
                 mesh.fixed.append(middle)
                 pairs = [(root, middle), (middle, top)]
             else:

@@ -23,8 +23,9 @@ def ageing_step(p: Any, s: Any, w: Any, io: Any) -> None:
 class Ageing(Fault):
     r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less displacement at rest after four (3.1.3.2).
 
-    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. Only the end is the text's; the exponential and its time constant of
-    two weeks are assumed, and so is that wear and stiction act as a stiffness.
+    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. Only the end is the
+    text's; the exponential and its time constant of two weeks are assumed, and so is that wear and stiction act as a
+    stiffness.
     """
 
     title = "Ageing"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,10 @@ import pytest
 from scipy import integrate
 
 from core.board import program
-from core.plant import planar, plane
+from core.plant import body, plane
 from core.plant.electrostatics import co_energy, comb
 from core.plant.equilibrium import bias_pull_in
-from core.plant.suspension import HEALTHY, Row, elastic_energy, elastic_force
+from core.plant.suspension import elastic_energy, elastic_force
 from scenarios.lateral_metrics import lateral_metrics
 from tests.lab import do, make, phasor, play, rms
 
@@ -109,9 +110,24 @@ def test_force_along_x_is_that_at_the_rotor_tip():
             assert along == pytest.approx(1 / (G * G - tip * tip), rel=1e-6)
 
 
+@dataclass(frozen=True)
+class Row:
+    """A suspension fitted to an independent frame program, in SI units; the reaches in um."""
+
+    k1: float
+    k3: float
+    ky: float
+    reach_y: float
+    kt: float
+    reach_t: float
+    ys2: float
+    th1: float
+    th3: float
+
+
 def rows():
     return [
-        HEALTHY,
+        Row(0.0538, 0.0, 205.4, 9.4, 4.51e-7, 39.7, 0.0, 0.0, 0.0),
         Row(0.0784, 1e8, 204, 15.6, 4.95e-7, 37.8, 1089, 31.4, 1.18e11),
         Row(0.0753, 2.4e7, 26.9, 40, 8.05e-8, 1e6, 858, 185, 1.28e11),
     ]
@@ -200,7 +216,7 @@ def test_without_rotation_it_is_the_linear_plant():
 def test_squeeze_film_between_two_stators():
     for u in (0.0, 0.3, -0.7):
         r = 1 / (1 - u * u)
-        assert planar.squeeze_factor(r) == pytest.approx(((1 - u) ** -3 + (1 + u) ** -3) / 2, rel=1e-12)
+        assert body.squeeze_factor(r) == pytest.approx(((1 - u) ** -3 + (1 + u) ** -3) / 2, rel=1e-12)
 
 
 # -- heat

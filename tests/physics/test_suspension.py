@@ -100,7 +100,7 @@ def test_the_text_s_adhesion_and_broken_truss():
 )
 def test_a_hurt_side_turns_the_shuttle(damage, turn):
     """Rotation per travel by another frame program; the sign: the softer side, at +y, runs ahead, x - theta y > x."""
-    assert linear(damage)[3] * 1e6 == pytest.approx(turn, rel=0.06)
+    assert linear(Geometry(), damage)[3] * 1e6 == pytest.approx(turn, rel=0.06)
 
 
 def test_pull_in_of_a_drawing_scales_as_it_should():
@@ -169,7 +169,7 @@ def test_half_an_adhesion_is_half_its_effect():
     board = make({"device.id": "lcr-350"})
     inject(board, point_adhesion=0.5)
     trace = play(board, 3)
-    whole = stiffness_ratio(Geometry(), Damage(adhesion=("inner", 0.75)))
+    whole = stiffness_ratio(LCR, Damage(adhesion=("inner", 0.75)))
     assert trace["effects.stiffness_scale"][-1] == pytest.approx(1 + 0.5 * (whole - 1), rel=1e-12)
 
 
