@@ -40,7 +40,7 @@ def lateral(geometry: Geometry) -> Lateral:
 
     the first by Legtenberg et al. 1996 (recalled), the second from the compliance of a guided beam along its length,
     :math:`L/EA+L\delta^2/700EI` with :math:`\delta=x/2`, in series with the bending of the trusses over the distance
-    :math:`s` between beams. Both are within 6 % of a frame at large displacements.
+    :math:`s` between beams. Both are within 4 % of a frame at large displacements, up to 15 um of travel.
 
     Gas: Couette and Stokes flow as along x, with the beams at their share of the motion, and between fingers the
     squeeze film :math:`4n\mu L_0t^3/g^3` of a continuous gas; a rotation shears the combs as well.
