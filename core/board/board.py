@@ -176,7 +176,7 @@ class Board:
                 n,
                 self.tick,
                 self.dt_ms,
-                wiring.table,
+                self._table,
                 wiring.p,
                 wiring.s,
                 wiring.w,
@@ -192,7 +192,7 @@ class Board:
             n,
             self.tick,
             self.dt_ms,
-            wiring.table,
+            self._table,
             wiring.p,
             wiring.s,
             wiring.w,
@@ -206,11 +206,13 @@ class Board:
         )
 
     def _link(self) -> None:
-        """Put the addresses of the compiled steps into the table."""
-        self._steps = [instance.block.step for instance in self.wiring.instances]
+        """Put the addresses of the compiled steps into the table, and leave out what rests."""
+        wiring = self.wiring
+        running = wiring.rest(self.spec)
+        self._steps = [wiring.instances[row].block.step for row in running]
+        self._table = wiring.table[running]
         if self.compiled:
-            self._functions = [program.compiled(step) for step in self._steps]
-            self.wiring.table[:, program.ADDRESS] = [function.address for function in self._functions]
+            self._table[:, program.ADDRESS] = [program.compiled(step).address for step in self._steps]
 
     def _allocate(self) -> None:
         """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""
