@@ -92,8 +92,8 @@ def noise_of(p: Any, s: Any, y: float, theta: float) -> tuple[float, float, floa
     c1 = s[C_SQUEEZE] * squeeze_factor(1.0 / (1.0 - u1 * u1))
     c2 = s[C_SQUEEZE] * squeeze_factor(1.0 / (1.0 - u2 * u2))
     l11 = math.sqrt(s[C_SIDE] + c1 + c2)
-    l21 = arm * (c1 - c2) / l11
-    return l11, l21, math.sqrt(s[C_TURN] + arm * arm * (c1 + c2) - l21 * l21)
+    l21 = arm * (c1 - c2) / l11 if l11 > 0.0 else 0.0
+    return l11, l21, math.sqrt(max(s[C_TURN] + arm * arm * (c1 + c2) - l21 * l21, 0.0))
 
 
 @inlined

@@ -196,7 +196,7 @@ class Planar(Shuttle):
         Port("sideways", "1/um", "added sideways shift per squared travel", source="effects.sideways"),
         Port("turn", "rad/um", "added rotation per travel", source="effects.turn"),
         Port("turn_cubic", "rad/um^3", "added rotation per cubed travel", source="effects.turn_cubic"),
-        Port("squeeze", "1", "rarefied squeeze film over continuous, over the damping", source="environment.squeeze"),
+        Port("squeeze_scale", "1", "squeeze film over continuous, over the damping", source="effects.squeeze_scale"),
     )
     equations = (
         Equation(

@@ -219,6 +219,24 @@ def test_squeeze_film_between_two_stators():
         assert body.squeeze_factor(r) == pytest.approx(((1 - u) ** -3 + (1 + u) ** -3) / 2, rel=1e-12)
 
 
+@pytest.mark.parametrize(("pressure", "fault"), [(101325.0, 0.0), (1e3, 0.0), (1e3, 4.0)])
+def test_squeeze_film_is_rarefied(pressure, fault):
+    """4 n mu L t^3/g^3 of a continuous gas over 1 + 9.638 Kn^1.159; a fault of the damping multiplies it."""
+    board = bench(0.0, {"environment.pressure_pa": pressure})
+    do(board, {"kind": "inject", "fault": "damping", "severity": fault})
+    board.advance(2)
+    _, s = insides(board)
+    mu, path = 1.8459e-5, 67.0e-3 * 101325.0 / pressure
+    film = 4 * N * mu * 40e-6 * (T / G) ** 3 / (1 + 9.638 * (path / G) ** 1.159)
+    assert 2e-3 * s[body.C_SQUEEZE] == pytest.approx((1 + fault) * film, rel=5e-3)
+
+
+def test_without_any_damping_nothing_shakes_it():
+    still = {"lateral_damping_ns_m": 0.0, "rotation_damping_nms": 0.0, "squeeze_ns_m": 0.0, "thermal_noise": True}
+    trace = play(bench(0.0, **still), 50)
+    assert np.all(trace["plant.rotation"] == 0.0) and np.all(np.isfinite(trace["plant.displacement"]))
+
+
 # -- heat
 
 
