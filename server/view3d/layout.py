@@ -89,7 +89,7 @@ class Layout:
         self.stator_um = self.tip_um - g.overlap_um
         self.beam_from_um = g.plate_width_um / 2
         self.beam_to_um = self.beam_from_um + g.beam_length_um
-        self.half_width_um = max(self.beam_to_um + g.truss_um, g.arm_length_um / 2) + 20
+        self.half_width_um = max(self.beam_to_um + g.truss_um, g.arm_length_um / 2) + 28
         self.half_length_um = self.stator_um + g.finger_length_um + BASE_UM + 10
 
     def ground(self) -> Mesh:

@@ -101,11 +101,11 @@ class Marks:
         middle = (sum(lost) / len(lost) - 1.0) * segment
         if fault.share >= 1.0:
             size = (0.94 * len(lost) * segment, self.layout.truss_um, self.layout.thick_um)
-            self.add("broken-truss", turned(Box((middle + 5.0, y + 15.0, GROUND_UM + 1.0), size), -0.35))
+            self.add("broken-truss", turned(Box((middle + 5.0, y + 8.0, self.layout.z), size), -0.25))
         else:
             size = (2.0, self.layout.truss_um + 4.0, self.layout.thick_um + 4.0)
             self.add("broken-truss", merge([Box((middle, y, self.layout.z), size)]))
-        return middle, y + 15.0, self.layout.top_um
+        return middle, 0.82 * y, self.layout.top_um
 
     def _debris(self, fault: Active) -> Place:
         side = -1.0 if getattr(fault.params, "comb", "right") == "left" else 1.0
@@ -126,8 +126,10 @@ class Marks:
         share = min(1.0, 0.3 + 0.15 * fault.severity)
         self.tint(share, share)
 
-    def _film(self, fault: Active) -> None:
+    def _damping(self, fault: Active) -> None:
         self.film = max(self.film, min(1.0, 0.25 + 0.5 * abs(fault.severity)))
+
+    _vacuum_loss = _damping
 
     def _stiction(self, _: Active) -> Place:
         x, y = -(self.layout.plate_um + self.layout.geometry.arm_width_um / 2), -self.layout.geometry.arm_length_um / 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -28,6 +29,8 @@ MOVED = ("plant.displacement", "model.displacement", "plant.rotation")
 SIGNALS = (*MOVED, "plant.shift", "plant.contact", "plant.short", "sensor.displacement")
 LASERS = ("through_wafer", "dual_beam", "doppler")
 """Sensors that look at the grating with light."""
+APART_UM = 11.0
+"""Least distance of two beams of light, so that they are seen to be two."""
 STEPS = 50
 """Shades and sizes a severity or a warning can have: so few that they seldom change."""
 
@@ -175,13 +178,14 @@ class Observer:
     def _lasers(self, spec: Any) -> tuple[Laser, ...]:
         """Return where the light of the sensors that run meets the grating."""
         in_use = needed(spec)
-        beams: list[Laser] = []
+        beams: dict[float, bool] = {}
         for name in LASERS:
             if name in in_use:
+                beams.setdefault(0.0, name != "doppler")
                 spacing = getattr(spec.sensors[name].params, "spacing_um", 0.0)
-                places = (0.0, spacing * self._factor) if spacing else (0.0,)
-                beams += [Laser(place, name != "doppler") for place in places]
-        return tuple(beams)
+                if spacing:
+                    beams[math.copysign(max(APART_UM, abs(spacing) * self._factor), spacing)] = True
+        return tuple(Laser(*beam) for beam in beams.items())
 
 
 def combs_of(shift_um: float, turn: float, tip_um: float, plant: Any) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 from viser import _messages as viser_messages
 
 from server.view3d.layout import UM_PER_UNIT, Box, Layout, Mesh, merge, unit_box
@@ -22,7 +23,7 @@ SILICON, MOVING, FIXED, GROUND = (150, 158, 170), (86, 180, 233), (110, 118, 130
 REFERENCE, ESTIMATE, LIGHT = (223, 228, 234), (31, 184, 143), (240, 110, 190)
 ATTENTION = (232, 64, 52)
 SIDES = ((1, "right", RIGHT), (-1, "left", LEFT))
-BEAM_UM, ABOVE_UM, BELOW_UM, SPOT_UM = 3.0, 130.0, 90.0, 7.0
+BEAM_UM, ABOVE_UM, BELOW_UM, SPOT_UM = 3.0, 130.0, 90.0, 5.0
 """Sizes of the light that are seen."""
 
 
@@ -66,8 +67,8 @@ class Scene:
                 short = bool(pose.short & bit)
                 if (warning, short) != (earlier, bool(before.short & bit)):
                     moving = blend(MOVING, ATTENTION, 1.0 if short else warning)
-                    self._fingers[name].batched_colors = np.array(moving, np.uint8)
-                    self._stators[name].batched_colors = np.array(ATTENTION if short else FIXED, np.uint8)
+                    self._fingers[name].batched_colors = in_batch(moving)
+                    self._stators[name].batched_colors = in_batch(ATTENTION if short else FIXED)
             if pose.lasers != before.lasers:
                 self._show_lasers(pose.lasers)
             if pose.caption != before.caption:
@@ -152,7 +153,7 @@ class Scene:
             spot = ball((laser.place_um, 0.0, top + 0.5), SPOT_UM, stretch=(1.0, 1.0, 0.1))
             self._lights += [
                 self._mesh(f"/light/{number}", beam, LIGHT, opacity=0.6),
-                self._mesh(f"/light/{number}/spot", spot, LIGHT),
+                self._mesh(f"/spot/{number}", spot, LIGHT),
             ]
 
     def _build(self) -> None:
@@ -208,7 +209,7 @@ class Scene:
             batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (len(places), 1)),
             batched_positions=places / UM_PER_UNIT,
             batched_scales=np.tile(self._layout.finger_size, (len(places), 1)) / UM_PER_UNIT,
-            batched_colors=color,
+            batched_colors=in_batch(color),
             flat_shading=True,
             lod="off",
         )
@@ -218,6 +219,13 @@ def blend(first: Color, second: Color, share: float) -> Color:
     """Mix two colours."""
     red, green, blue = (round(a + (b - a) * share) for a, b in zip(first, second, strict=True))
     return red, green, blue
+
+
+def in_batch(color: Color) -> NDArray[np.uint8]:
+    """Return a colour as batches want it: viser takes theirs as linear, all others as sRGB."""
+    share = np.array(color) / 255.0
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return np.asarray(np.round(255.0 * linear), dtype=np.uint8)
 
 
 def _seen(faults: tuple[Active, ...]) -> list[Any]:
