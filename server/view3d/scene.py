@@ -86,12 +86,12 @@ class Scene:
         self._shuttle.position = (x / UM_PER_UNIT, y / UM_PER_UNIT, 0.0)
         if turn != before.turn:
             self._shuttle.wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
-        for (side, name, _), lateral in zip(SIDES, pose.combs_um, strict=True):
+        for (_, name, _), lateral in zip(SIDES, pose.combs_um, strict=True):
             fingers = self._fingers[name]
             # true to scale in their gaps, whatever the exaggeration of the arm that carries them
             fingers.position = (x / UM_PER_UNIT, lateral / UM_PER_UNIT, 0.0)
             if turn != before.turn:
-                places = self._layout.fingers(side)
+                places = self._places[name].copy()
                 places[:, 0] -= turn * places[:, 1]
                 fingers.batched_positions = places.astype(np.float32) / UM_PER_UNIT
         for beams, bending in zip(self._beams, self._flexures, strict=True):
@@ -130,7 +130,7 @@ class Scene:
                 beams.color = blend(SILICON, ATTENTION, share)
         if found.film != before.film:
             self._film.visible = found.film > 0.0
-            self._film.opacity = 0.6 * found.film
+            self._film.opacity = 0.3 * found.film
         if found.bases != before.bases:
             self._bases.color = blend(FIXED, ATTENTION, found.bases)
 
@@ -170,7 +170,8 @@ class Scene:
         self._bases = self._mesh("/bases", layout.bases(), FIXED)
         self._film = self._mesh("/film", layout.film(), ATTENTION, opacity=0.2, visible=False)
         self._stators = {name: self._comb(f"/stators/{name}", layout.stators(side), FIXED) for side, name, _ in SIDES}
-        self._fingers = {name: self._comb(f"/fingers/{name}", layout.fingers(side), MOVING) for side, name, _ in SIDES}
+        self._places = {name: layout.fingers(side) for side, name, _ in SIDES}
+        self._fingers = {name: self._comb(f"/fingers/{name}", self._places[name], MOVING) for _, name, _ in SIDES}
         self._shuttle = scene.add_frame("/shuttle", show_axes=False)
         self._mesh("/shuttle/plate", layout.shuttle(), MOVING)
         self._flexures: list[Flexure] = [flexure(layout, side) for side in (1, -1)]
