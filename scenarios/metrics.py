@@ -121,8 +121,9 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
         found |= sensing_metrics(board, trace, options)
-    for name, scores in board.scores().items():
-        found |= diagnosis_metrics(name, scores, step_lengths(trace[f"{name}.truth"]))
+    scores = board.scores()
+    for name in board.spec.diagnosers:
+        found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
     return found
 
 

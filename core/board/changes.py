@@ -246,6 +246,7 @@ def _repack(board: Board, key: str, params: BlockParams) -> None:
     packed = old.block.pack(params, board.spec.context(old.every))
     start = wiring.table[row, program.P_OFFSET]
     wiring.p[start : start + len(packed)] = packed
+    board._link()
 
 
 def _rewire(board: Board, spec: Spec) -> None:

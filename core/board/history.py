@@ -22,10 +22,52 @@ WIDEST = 4096
 
 
 @kernel
-def _put(rows: Any, row: int, place: int, value: Any) -> None:
-    """Write what is new: a page of memory nobody wrote to costs nothing, and most faults stay at zero."""
-    if rows[row, place] != value:
-        rows[row, place] = value
+def _write(ring: Any, signal: int, place: int, rows: FloatArray, c: int, start: int, stop: int) -> None:
+    """Write a column of the rows into the ring of a signal."""
+    capacity = ring.shape[1]
+    first = min(stop - start, capacity - place)
+    for i in range(first):
+        ring[signal, place + i] = np.float32(rows[start + i, c])
+    for i in range(first, stop - start):
+        ring[signal, place + i - capacity] = np.float32(rows[start + i, c])
+
+
+@kernel
+def _fold(
+    ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, signal: int, first: int, end: int
+) -> None:
+    """Fold the ticks of a span into the pyramid.
+
+    Every touched bucket is folded again from its start; the capacity is a multiple of the widest bucket.
+    """
+    capacity = ring.shape[1]
+    for bucket in range(first // FACTOR, (end - 1) // FACTOR + 1):
+        begin = bucket * FACTOR % capacity
+        inner = min(FACTOR, end - bucket * FACTOR)
+        # two at a time: each comparison waits for the one before
+        least = most = ring[signal, begin]
+        least_too = most_too = ring[signal, begin + inner - 1]
+        for place in range(begin + 1, begin + inner - 1, 2):
+            value, other = ring[signal, place], ring[signal, place + 1]
+            least = value if value < least else least
+            most = value if value > most else most
+            least_too = other if other < least_too else least_too
+            most_too = other if other > most_too else most_too
+        low[signal, bucket % sizes[0]] = min(least, least_too)
+        high[signal, bucket % sizes[0]] = max(most, most_too)
+    span = FACTOR
+    for level in range(1, LEVELS):
+        for bucket in range(first // (span * FACTOR), (end - 1) // (span * FACTOR) + 1):
+            begin = offsets[level - 1] + bucket * FACTOR % sizes[level - 1]
+            least = low[signal, begin]
+            most = high[signal, begin]
+            inner = min(FACTOR, (end - 1) // span - bucket * FACTOR + 1)
+            for place in range(begin + 1, begin + inner):
+                least = min(least, low[signal, place])
+                most = max(most, high[signal, place])
+            low[signal, offsets[level] + bucket % sizes[level]] = least
+            high[signal, offsets[level] + bucket % sizes[level]] = most
+        span *= FACTOR
 
 
 @kernel
@@ -41,69 +83,34 @@ def _append(
     rows: FloatArray,
     at: int,
 ) -> None:
-    """Write rows (ticks by signals) into the ring of some signals and fold them into the pyramid."""
+    """Write rows (ticks by signals) into the rings of some signals and fold them into the pyramid.
+
+    Signals are columns of the rows and rows of the ring, so tiles that fit a near cache are written at a time. What
+    has not changed for as long as the ring is long stands there already: memory nobody wrote to costs nothing, and
+    most faults stay at zero.
+    """
     capacity = ring.shape[1]
-    count = rows.shape[0]
-    end = first + count
-    for c in range(rows.shape[1]):
-        signal = at + c
-        constant = rows[0, c] == np.float64(last[signal])
-        for i in range(count):
-            if rows[i, c] != rows[0, c]:
-                constant = False
-                break
-        if constant and steady[signal] >= capacity:
-            continue  # the whole ring holds this value already
-        steady[signal] = steady[signal] + count if constant else 0
-        last[signal] = np.float32(rows[count - 1, c])
-        place = first % capacity
-        for i in range(count):
-            _put(ring, signal, place, np.float32(rows[i, c]))
-            place += 1
-            if place == capacity:
-                place = 0
-        # every touched bucket is folded again from its start; the capacity is a multiple of the widest bucket
-        for bucket in range(first // FACTOR, (end - 1) // FACTOR + 1):
-            begin = bucket * FACTOR % capacity
-            least = ring[signal, begin]
-            most = least
-            for place in range(begin + 1, begin + min(FACTOR, end - bucket * FACTOR)):
-                value = ring[signal, place]
-                least = value if value < least else least
-                most = value if value > most else most
-            _put(low, signal, bucket % sizes[0], least)
-            _put(high, signal, bucket % sizes[0], most)
-        span = FACTOR
-        for level in range(1, LEVELS):
-            for bucket in range(first // (span * FACTOR), (end - 1) // (span * FACTOR) + 1):
-                begin = offsets[level - 1] + bucket * FACTOR % sizes[level - 1]
-                least = low[signal, begin]
-                most = high[signal, begin]
-                inner = min(FACTOR, (end - 1) // span - bucket * FACTOR + 1)
-                for place in range(begin + 1, begin + inner):
-                    least = min(least, low[signal, place])
-                    most = max(most, high[signal, place])
-                _put(low, signal, offsets[level] + bucket % sizes[level], least)
-                _put(high, signal, offsets[level] + bucket % sizes[level], most)
-            span *= FACTOR
-
-
-@kernel
-def _append_tiles(
-    ring: Any,
-    low: Any,
-    high: Any,
-    offsets: IntArray,
-    sizes: IntArray,
-    steady: IntArray,
-    last: Any,
-    first: int,
-    rows: FloatArray,
-    at: int,
-) -> None:
-    """Append in tiles that fit the nearest cache: signals are columns of the rows, and rows of the ring."""
-    for start in range(0, rows.shape[0], TILE):
-        _append(ring, low, high, offsets, sizes, steady, last, first + start, rows[start : start + TILE], at)
+    count, signals = rows.shape
+    moved = np.zeros(signals, dtype=np.bool_)
+    changed = np.zeros(signals, dtype=np.bool_)
+    for start in range(0, count, TILE):
+        stop = min(start + TILE, count)
+        place = (first + start) % capacity
+        changed[:] = False
+        for i in range(start, stop):
+            for c in range(signals):
+                changed[c] |= rows[i, c] != last[at + c]
+        for c in range(signals):
+            signal = at + c
+            if not changed[c] and steady[signal] >= capacity:
+                continue
+            steady[signal] = 0 if changed[c] else steady[signal] + stop - start
+            last[signal] = rows[stop - 1, c]
+            moved[c] = True
+            _write(ring, signal, place, rows, c, start, stop)
+    for c in range(signals):
+        if moved[c]:
+            _fold(ring, low, high, offsets, sizes, at + c, first, first + count)
 
 
 @kernel
@@ -199,7 +206,7 @@ class History:
         self._high = _untouched(signals, int(self._sizes.sum()))
         # ticks in a row each signal has been at its last value; memory starts as zeros throughout
         self._steady = np.full(signals, self.capacity, dtype=np.int64)
-        self._last = np.zeros(signals, dtype=np.float32)
+        self._last = np.zeros(signals)
         self._written = 0
         self._begin = 0
         self.end_tick = 0
@@ -231,8 +238,8 @@ class History:
             self._last,
             rows.first_tick,
         )
-        _append_tiles(*args, rows.outputs, 0)
-        _append_tiles(*args, rows.taps, outputs)
+        _append(*args, rows.outputs, 0)
+        _append(*args, rows.taps, outputs)
         self.end_tick = self._written = rows.first_tick + rows.count
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:

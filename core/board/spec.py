@@ -71,6 +71,7 @@ SECTIONS = (
     "drive",
     "guard",
     "diagnosers",
+    "twins",
 )
 FIELDS = (*Frame.model_fields, *SECTIONS)
 

@@ -14,7 +14,8 @@ from core.board.effects import Effects
 from core.board.measurement import Measurement
 from core.board.score import Score
 from core.board.spec import Spec
-from core.faults.fault import Fault
+from core.faults.fault import Fault, FaultParams
+from core.sense.sensor import Sensor
 from core.signals import Signal, SignalTable
 
 NOTHING = "@nothing"
@@ -57,6 +58,19 @@ class Wiring:
         start = self.table[row, program.S_OFFSET]
         end = self.table[row + 1, program.S_OFFSET] if row + 1 < len(self.instances) else len(self.s)
         return self.s[start:end]
+
+    def rest(self, spec: Spec) -> list[int]:
+        """Return the rows that run; make those that rest as new, and their signals 0."""
+        running = []
+        for row, instance in enumerate(self.instances):
+            if not rests(spec, instance):
+                running.append(row)
+                continue
+            self.state_of(instance.key)[:] = instance.block.state(instance.params, spec.context(instance.every))
+            for port in (*instance.block.outputs, *instance.block.taps):
+                start = self.index[signal_name(instance, port.name)]
+                self.w[start : start + len(port.names(instance.params))] = 0.0
+        return running
 
 
 def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
@@ -103,7 +117,9 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     shown: list[tuple[str, Port, Instance, str]] = []
     size = RESERVED
     for instance in order:
-        for kind, ports in (("output", instance.block.outputs), ("tap", instance.block.taps)):
+        # what stands by is worth seeing, but not what the bench puts out
+        aside = issubclass(instance.block, (Fault, Sensor))
+        for kind, ports in (("tap" if aside else "output", instance.block.outputs), ("tap", instance.block.taps)):
             for port in ports:
                 names = [signal_name(instance, name) for name in port.names(instance.params)]
                 index.setdefault(signal_name(instance, port.name), size)
@@ -154,6 +170,13 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
         output_index=columns[: signals.outputs],
         tap_index=columns[signals.outputs :],
     )
+
+
+def rests(spec: Spec, instance: Instance) -> bool:
+    """Say whether a block need not run: a fault that is not there, a sensor that nobody reads."""
+    if isinstance(instance.params, FaultParams):
+        return instance.params.severity == 0.0
+    return instance.key in spec.sensors and issubclass(instance.block, Sensor) and instance.key not in needed(spec)
 
 
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:

@@ -1,19 +1,22 @@
-"""The engine: one thread that advances every bench and is the only one to touch a board.
+"""The engine: one thread that owns time, with one worker for each processor to advance benches side by side.
 
 The event loop owns the conversation, the engine owns time: a busy loop or a slow client delays frames,
 never a board. Whatever must happen to a board (a command, a snapshot, a new bench) is a job, run between two
-slices; the loop awaits its result.
+slices; the loop awaits its result. The compiled ticks run without the interpreter's lock, so benches do not wait for
+each other; none is advanced by two threads at a time.
 """
 
 from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import compress
 from typing import Any, Protocol, TypeVar
 
 from server.lag import Lateness
@@ -25,8 +28,8 @@ T = TypeVar("T")
 PERIOD_S = 1.0 / 120.0
 """Two rounds per screen frame."""
 
-LATE_S = 0.1
-"""A round this late is logged."""
+LATE_S, LATE_AGAIN_S = 0.1, 60.0
+"""A round this late is logged, and then no other for a while: the histogram has them all."""
 
 SPARE_S = 0.001
 """Left of every round for the rest of the process when a bench runs as fast as possible."""
@@ -80,7 +83,9 @@ class Engine:
         self._wake = threading.Condition()
         self._stopping = False
         self._thread = threading.Thread(target=self._run, name="combbench-engine", daemon=True)
+        self._workers = ThreadPoolExecutor(os.cpu_count(), thread_name_prefix="combbench-bench")
         self._beat = clock()
+        self._silent_until = 0.0
 
     def start(self) -> None:
         """Start the thread."""
@@ -92,6 +97,7 @@ class Engine:
             self._stopping = True
             self._wake.notify()
         self._thread.join(timeout=5.0)
+        self._workers.shutdown()
 
     @property
     def is_alive(self) -> bool:
@@ -151,7 +157,8 @@ class Engine:
                 deadline = now
             elif now >= deadline:
                 self.lateness.add(now - deadline)
-                if now - deadline > LATE_S:
+                if now - deadline > LATE_S and now > self._silent_until:
+                    self._silent_until = now + LATE_AGAIN_S
                     log.warning("the engine woke %.0f ms late", 1e3 * (now - deadline))
                 whole = self._round(now, deadline + PERIOD_S)
                 self._on_round()
@@ -197,7 +204,11 @@ class Engine:
     def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> bool:
         """Give each bench one slice in turn until all are there or the round is over; false after a job."""
         while pairs:
-            pairs = [(work, target) for work, target in pairs if self._slice(work, target)]
+            if len(pairs) == 1:
+                unfinished = [self._slice(*pairs[0])]
+            else:
+                unfinished = list(self._workers.map(self._slice, *zip(*pairs, strict=True)))
+            pairs = list(compress(pairs, unfinished))
             if self._run_jobs():
                 return False
             if self.clock() >= end:

@@ -88,7 +88,7 @@ def bench_of(session: Session, around: dict[str, Any], view3d: str | None) -> Be
                 kind=section.block.name,
                 names=[item.name for item in getattr(section.params, "hypotheses", ())],
             )
-            for name, section in spec.diagnosers.items()
+            for name, section in session.board.diagnosers.items()
         },
         parameters=spec.document,
         view3d=view3d,

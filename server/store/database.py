@@ -7,12 +7,13 @@ import logging
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from alembic import command
-from alembic.config import Config
-from sqlalchemy import Engine, create_engine, event, text
+from sqlalchemy import Engine, create_engine, event, inspect, text
 from sqlalchemy.orm import Session, sessionmaker
+
+if TYPE_CHECKING:
+    from alembic.config import Config
 
 MIGRATIONS = Path(__file__).parent / "migrations"
 T = TypeVar("T")
@@ -35,7 +36,11 @@ class Database:
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="combbench-db")
 
     def migrate(self) -> None:
-        """Bring the tables to this version."""
+        """Bring the tables to this version; the tools for it are loaded only when there is something to do."""
+        if self._revision() == newest_revision():
+            return
+        from alembic import command
+
         level = logging.getLogger("alembic").level
         logging.getLogger("alembic").setLevel(logging.WARNING)
         try:
@@ -43,6 +48,13 @@ class Database:
                 command.upgrade(alembic_config(self.url, connection), "head")
         finally:
             logging.getLogger("alembic").setLevel(level)
+
+    def _revision(self) -> str | None:
+        """Return the version of the tables, none for an empty file."""
+        with self._engine.connect() as connection:
+            if not inspect(connection).has_table("alembic_version"):
+                return None
+            return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
 
     def transact(self, work: Callable[[Session], T]) -> T:
         """Run ``work`` in a transaction, here and now."""
@@ -86,8 +98,15 @@ def make_engine(url: str) -> Engine:
     return engine
 
 
+def newest_revision() -> str:
+    """Return the last of the numbered migrations."""
+    return max(path.stem.split("_")[0] for path in (MIGRATIONS / "versions").glob("[0-9]*.py"))
+
+
 def alembic_config(url: str, connection: Any = None) -> Config:
     """Describe the migrations to Alembic without an ini file."""
+    from alembic.config import Config
+
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS))
     config.set_main_option("sqlalchemy.url", url.replace("%", "%%"))
