@@ -40,6 +40,25 @@ class Damage:
     side_scale: float = 1.0
 
 
+@dataclass(frozen=True)
+class Shape:
+    """A suspension that follows the shuttle.
+
+    Parameters
+    ----------
+    points : ndarray, shape (nodes, 2)
+        Where the nodes are at rest, um.
+    elements : list of (int, int)
+        The nodes at both ends of each beam, or part of a beam or truss.
+    response : ndarray, shape (nodes, 3, 3)
+        Displacement (x, y, theta) of each node per displacement of the shuttle.
+    """
+
+    points: FloatArray
+    elements: list[tuple[int, int]]
+    response: FloatArray
+
+
 @dataclass
 class _Mesh:
     """Nodes and elements: (first node, second node, E, width)."""
@@ -95,7 +114,22 @@ def stiffness(geometry: Geometry, damage: Damage | None = None) -> FloatArray:
     ndarray, shape (3, 3)
         In (x, y, theta): N/m, uN/rad for the couplings, uN um/rad for the rotation.
     """
+    whole, carried = _assembled(geometry, _mesh(geometry, damage or Damage()))
+    reduced = carried.T @ whole @ carried
+    edge, corner = reduced[:-3, -3:], reduced[-3:, -3:]
+    return np.asarray(corner + edge.T @ _following(reduced))
+
+
+def shape(geometry: Geometry, damage: Damage | None = None) -> Shape:
+    """Return how every node of the suspension follows the shuttle, at rest in itself."""
     mesh = _mesh(geometry, damage or Damage())
+    whole, carried = _assembled(geometry, mesh)
+    response = carried @ np.vstack([_following(carried.T @ whole @ carried), np.eye(3)])
+    return Shape(np.array(mesh.points), [(a, b) for a, b, _, _ in mesh.elements], response.reshape(-1, 3, 3))
+
+
+def _assembled(geometry: Geometry, mesh: _Mesh) -> tuple[FloatArray, FloatArray]:
+    """Return the stiffness of all nodes, and what each freedom carries along: the free nodes, then the shuttle."""
     n = len(mesh.points)
     whole = np.zeros((3 * n, 3 * n))
     for a, b, modulus, width in mesh.elements:
@@ -105,16 +139,18 @@ def stiffness(geometry: Geometry, damage: Damage | None = None) -> FloatArray:
             mesh.points[a], mesh.points[b], modulus * 1e3, width, geometry.thickness_um
         )
     free = [i for i in range(n) if i not in mesh.fixed and i not in mesh.rigid]
-    columns = 3 * len(free) + 3
-    shape = np.zeros((3 * n, columns))
+    carried = np.zeros((3 * n, 3 * len(free) + 3))
     for j, i in enumerate(free):
-        shape[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] = np.eye(3)
+        carried[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] = np.eye(3)
     for i in mesh.rigid:
         x, y = mesh.points[i]
-        shape[3 * i : 3 * i + 3, -3:] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
-    reduced = shape.T @ whole @ shape
-    inner, edge, corner = reduced[:-3, :-3], reduced[:-3, -3:], reduced[-3:, -3:]
-    return np.asarray(corner - edge.T @ np.linalg.lstsq(inner, edge, rcond=None)[0])
+        carried[3 * i : 3 * i + 3, -3:] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
+    return whole, carried
+
+
+def _following(reduced: FloatArray) -> FloatArray:
+    """Return where the free nodes are per displacement of the shuttle."""
+    return np.asarray(-np.linalg.lstsq(reduced[:-3, :-3], reduced[:-3, -3:], rcond=None)[0])
 
 
 def along_x(stiffness: FloatArray) -> float:
