@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from core.block import FloatArray
@@ -45,6 +47,7 @@ def device_pull_in(device: Device) -> float:
     return geometry_pull_in(device.drawing, device.capacitance_gradient)
 
 
+@lru_cache(maxsize=256)
 def geometry_pull_in(geometry: Geometry, gradient_f_m: float) -> float:
     """Return the bias of pull-in of a drawing, its rotational stiffness by the frame of beams."""
     across = lateral(geometry)

@@ -12,6 +12,8 @@ from server import errors, openapi
 from server.api import (
     benches,
     catalog,
+    devices,
+    experiments,
     health,
     metrics,
     recordings,
@@ -32,7 +34,7 @@ from server.settings import Settings
 from server.version import VERSION
 
 API = "/api/v1"
-ROUTERS = (catalog, scenarios, benches, snapshots, recordings, trace, runs, stream)
+ROUTERS = (catalog, devices, scenarios, benches, experiments, snapshots, recordings, trace, runs, stream)
 
 
 def create_app(settings: Settings) -> FastAPI:

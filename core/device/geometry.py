@@ -7,6 +7,10 @@ structural thickness share one printed symbol and are two numbers here (``film_g
 
 from __future__ import annotations
 
+from typing import Self
+
+from pydantic import model_validator
+
 from core.block import BlockParams, Context, parameter
 from core.device.environment import ATMOSPHERE_PA, ROOM_K, penetration_depth_um, viscosity
 from core.units import EPSILON_0
@@ -39,6 +43,20 @@ class Geometry(BlockParams):
     openings_um2: float = parameter(3560.0, "anchor notches and grating cut out of the plate", "um^2", ge=0, live=False)
     youngs_modulus_gpa: float = parameter(164.0, "Young's modulus", "GPa", gt=0, live=False)
     density_kg_m3: float = parameter(2330.0, "density", "kg/m^3", gt=0, live=False)
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        finger = self.finger_width_um - 2.0 * self.comb_bias_um
+        for what, left in (("beams", self.beam_um), ("trusses", self.truss_um), ("fingers", finger)):
+            if left <= 0.0:
+                raise ValueError(f"nothing is left of the {what}: the etch bias per edge takes their whole width")
+        if self.gap_um <= 0.0:
+            raise ValueError("the fingers touch: the etch bias per edge closes the gap between them")
+        if self.overlap_um > self.finger_length_um:
+            raise ValueError("the fingers overlap by more than their length: overlap_um must be <= finger_length_um")
+        if self.areas_um2[0] <= 0.0:
+            raise ValueError("nothing is left of the shuttle: openings_um2 is more than plate, arms and fingers")
+        return self
 
     @property
     def beam_um(self) -> float:
