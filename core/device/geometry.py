@@ -11,7 +11,7 @@ from typing import Self
 
 from pydantic import model_validator
 
-from core.block import BlockParams, parameter
+from core.block import BlockParams, Context, parameter
 from core.device.environment import ATMOSPHERE_PA, ROOM_K, penetration_depth_um, viscosity
 from core.units import EPSILON_0
 
@@ -74,6 +74,16 @@ class Geometry(BlockParams):
         return self.finger_gap_um + 2.0 * self.comb_bias_um
 
     @property
+    def stator_tip_um(self) -> float:
+        """Distance of the stator's finger tips from the centre: where the overlap begins."""
+        return 0.5 * self.plate_length_um + self.arm_width_um + self.finger_length_um - self.overlap_um
+
+    @property
+    def far_finger_um(self) -> float:
+        """Distance of the outermost finger from the x axis."""
+        return (self.fingers - 1) * (self.finger_width_um + self.finger_gap_um)
+
+    @property
     def areas_um2(self) -> tuple[float, float, float, float]:
         """Plan areas of shuttle, beams and trusses, and facing area of the combs."""
         finger = self.finger_width_um - 2.0 * self.comb_bias_um
@@ -127,3 +137,8 @@ class Geometry(BlockParams):
     def capacitance_gradient(self) -> float:
         r"""dC/dx of one comb, F/m: :math:`2n\varepsilon_0t/g` (n rotor fingers, two gaps each)."""
         return 2.0 * self.fingers * EPSILON_0 * self.thickness_um / self.gap_um
+
+
+def drawn(context: Context) -> Geometry:
+    """Return the drawing of the device on the bench; that of LCR-350 if it has none."""
+    return context.drawing if isinstance(context.drawing, Geometry) else Geometry()
