@@ -30,7 +30,8 @@ export function mapWords(map: UnstableRegion): string {
     ? `Dashed: a slow drive folds at ${Math.abs(fold.x_um).toFixed(2)} µm and ${Math.abs(fold.volts).toFixed(2)} V.`
     : "";
   if (map.boundary) return `${text} Shaded: the energy suffices to pull in.`.trim();
-  if (fold) return `${text} Shaded: beyond it. With the drive held at ${map.drive_v} V nothing within the travel pulls in.`;
+  if (fold)
+    return `${text} Shaded: beyond it. With the drive held at ${map.drive_v} V nothing within the travel pulls in.`;
   if (map.plant === "planar" || map.plant === "slaved_lateral") return "Nothing within the travel pulls in.";
   return "";
 }
