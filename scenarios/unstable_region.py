@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from core.board import program
 from core.board.board import Board
-from core.plant import planar, slaved_lateral
+from core.plant import body, slaved_lateral
 from core.plant.equilibrium import Fold, Force, folds, planar_force, slaved_force, stators_of
 from core.plant.escape import Boundary, boundary
 from core.plant.shuttle import LEFT, MASS, RIGHT, comb_voltage
@@ -43,7 +43,7 @@ def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegion:
         size = 1
     elif kind == "planar" and board.tick > 0:
         force = planar_force(p, state[:9].copy())
-        ends = folds(force, stators_of(p), lambda q: float(planar.worst(p, float(q[1]), float(q[2]))), 3)
+        ends = folds(force, stators_of(p), lambda q: float(body.worst(p, float(q[1]), float(q[2]))), 3)
         size = 3
     else:
         return UnstableRegion(kind, [], None)

@@ -91,7 +91,7 @@ def _lines(layout: Layout, side: int, shape: frame.Shape) -> dict[tuple[str, int
         s = np.linspace(0.0, 1.0, rings)
         follow = np.stack([_followed(shape, chain, ends[0] + share * (ends[1] - ends[0])) for share in s])
         x = ends[0, 0] + s * (ends[1, 0] - ends[0, 0])
-        y = side * (np.abs(ends[0, 1] + s * (ends[1, 1] - ends[0, 1])) - frame.ROOT_UM + layout.beam_from_um)
+        y = side * np.abs(ends[0, 1] + s * (ends[1, 1] - ends[0, 1]))
         if name[0] == "truss":
             y = y + side * layout.truss_um / 2
         found[name] = (np.column_stack([x, y, np.full(rings, layout.z)]), follow)
