@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 from core.block import Block, BlockParams, Equation, Port
 from core.errors import unknown
 
-FAMILIES = ("reference", "plant", "sense", "control", "diagnose", "faults", "board")
+FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", "board")
 
 
 class PortCard(BaseModel):
@@ -113,6 +113,7 @@ def block(family: str, name: object, field: str = "") -> type[Block]:
             "plant": "plant model",
             "sense": "sensor",
             "control": "controller",
+            "identify": "identifier",
             "diagnose": "diagnoser",
             "faults": "fault",
         }
