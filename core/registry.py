@@ -198,9 +198,11 @@ def _parameter(name: str, info: FieldInfo) -> ParameterCard:
 def _type(annotation: Any) -> tuple[str, list[str]]:
     if get_origin(annotation) is Literal:
         return "choice", [str(choice) for choice in get_args(annotation)]
+    if get_origin(annotation) is list:
+        return "list", []
     options = [option for option in get_args(annotation) if option is not type(None)] or [annotation]
     simple = {bool: "boolean", int: "integer", float: "number", str: "text"}
     for option in options:
         if option in simple:
             return simple[option], []
-    return ("list" if get_origin(annotation) is list else "table"), []
+    return "table", []

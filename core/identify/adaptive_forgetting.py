@@ -52,15 +52,15 @@ def follow(p: Any, s: Any, e: float) -> None:
     Innovations that are more than :math:`1+h^T\eta h/\lambda` times the variance of the noise mean that the estimate is
     trusted too much; the factor that would explain them is :math:`\tilde\lambda=h^T\eta h/(R-1)`.
     """
-    square = e * e / p[VARIANCE]
+    square = e * e
     before = s[LAMBDA]
     memory = p[MEMORY] if p[READING] == DIRECT else before
     if p[READING] == PRINTED:
         weight = 1.0 + before * s[WEIGHT]
-        s[RATIO] = min((before * s[RATIO] + square) / weight, HUGE)
+        s[RATIO] = min((before * s[RATIO] + square) / (weight * p[VARIANCE]), HUGE)
     else:
         weight = 1.0 + memory * s[WEIGHT]
-        s[RATIO] = (memory * s[WEIGHT] * s[RATIO] + square) / weight
+        s[RATIO] = (memory * s[WEIGHT] * s[RATIO] + square / p[VARIANCE]) / weight
     s[WEIGHT] = weight
     information = spread(s)
     if p[READING] == DIRECT:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import cont2discrete
+from scipy.signal import cont2discrete, lfilter
 
 from core.errors import InputError
 from scenarios.library import get
@@ -101,6 +101,32 @@ def test_holding_the_displacement_biases_by_half_a_sample(pole):
     assert held[2] == pytest.approx(100 * (theory[2] - 1), abs=5.0)
 
 
+def test_least_squares_is_the_information_form_of_the_equations():
+    """P^-1 <- e^-Bh P^-1 + h phi phi'/m^2, and theta the weighted solution, with phi filtered here by scipy."""
+    rate, alpha, trust, n, h = 300.0, 10.0, 40.0, 1500, 0.01 * W0
+    own = {"forgetting_rate": rate, "normaliser": alpha, "initial_covariance": trust, "covariance_limit": 0.0}
+    board = bench({"kind": "least_squares", "start": "zero", "range_ratio": 0.0, **own}, FOUR, stiffness=0.3)
+    trace = play(board, n)
+    u, y = trace["drive.voltage"], trace["sensor.displacement"]
+    held, line = (
+        [cont2discrete((top, [1.0, 2.0, 1.0]), h, method=method) for top in ([1.0], [1.0, 0.0], [1.0, 0.0, 0.0])]
+        for method in ("zoh", "foh")
+    )
+    wu = lfilter(held[0][0].ravel(), held[0][1], u)
+    # the filter of the bench starts at rest with its first sample; so does this one, for y begins at 0
+    wy, dy, z = (lfilter(b.ravel(), a, y) for b, a, _ in line)
+    information, weighted = np.eye(3) / trust, np.zeros(3)
+    for i in range(1, n):
+        phi = np.array([wu[i], -dy[i], -wy[i]])
+        share = h / (1 + alpha * phi @ phi)
+        decay = math.exp(-rate * 1e-5)
+        information = decay * information + share * np.outer(phi, phi)
+        weighted = decay * weighted + share * phi * z[i]
+    found = [trace[f"x.coefficient.{name}"][-1] for name in NAMES]
+    np.testing.assert_allclose(found, np.linalg.solve(information, weighted), rtol=1e-6)
+    assert trace["x.covariance_trace"][-1] == pytest.approx(np.trace(np.linalg.inv(information)), rel=1e-6)
+
+
 def test_forgetting_sets_the_pace_only_while_the_start_is_trusted():
     def ms(rate: float, trust: float) -> float:
         own = {"kind": "least_squares", "start": "zero", "forgetting_rate": rate, "initial_covariance": trust}
@@ -110,11 +136,17 @@ def test_forgetting_sets_the_pace_only_while_the_start_is_trusted():
     assert ms(10.0, 1e4) / ms(30.0, 1e4) == pytest.approx(1.0, abs=0.1)
 
 
-def test_gradient_diverges_without_its_normaliser():
-    wild = {"kind": "gradient", "normalise": False, "output_weight": 1.0, "range_ratio": 0.0}
-    assert np.abs(errors(play(bench({**wild, "adaptation_gain": 0.2}, FOUR, stiffness=0.3), 6000))).max() < 20.0
-    found = play(bench({**wild, "adaptation_gain": 3.0}, FOUR, stiffness=0.3), 6000)
-    assert found["x.error_pct"][-1] == 1e4
+def test_without_its_normaliser_the_gain_that_is_stable_depends_on_the_amplitude():
+    """Sampled, the error of a step with phi is multiplied by 1 - h g phi'phi, and phi grows with the voltage."""
+
+    def error(volts: float, **law: Any) -> float:
+        own = {"kind": "gradient", "output_weight": 1.0, "range_ratio": 0.0, "adaptation_gain": 0.2, **law}
+        board = bench(own, FOUR, {"reference.amplitude_v": volts}, stiffness=0.3)
+        return float(play(board, 6000)["x.error_pct"][-1])
+
+    assert error(1.0, normalise=False) < 30.0
+    assert error(10.0, normalise=False) == 1e4
+    assert error(10.0) < 30.0
 
 
 def test_lyapunov_function_of_the_gradient_never_rises():
@@ -151,10 +183,10 @@ def test_switched_off_it_holds_and_on_again_it_trusts_nothing():
     off = play(board, 1000)
     for name in NAMES:
         assert np.ptp(off[f"x.coefficient.{name}"]) == 0.0
-    assert off["x.covariance_trace"][-1] < 300
+    assert off["x.covariance_trace"][-1] < 200
     do(board, {"kind": "set", "values": {"identifiers.x.enabled": True}})
     on = play(board, 3000)
-    assert on["x.covariance_trace"][0] == pytest.approx(3 * 123.0, rel=0.2)
+    assert 2 * 123.0 < on["x.covariance_trace"][0] < 3 * 123.0  # the first sample tells of one direction of three
     assert on["x.estimate.stiffness"][-1] == pytest.approx(1.5, abs=0.02)
 
 
@@ -208,7 +240,8 @@ def test_recursive_least_squares_finds_the_sampled_plant_and_mass_stiffness_damp
     trace = play(bench({"kind": "recursive_least_squares"}, FOUR, added_mass=0.1, stiffness=0.3, damping=0.5), 500)
     m, b, k = 2.209e-4 * 1.1, 7.09e-4 * 1.5, 0.0538 * 1.3
     force = -4 * 24 * 8.8541878128e-12 * 20 / 1.05 * 1e6
-    system = ([[0, 1], [-k / m, -b / m]], [[0], [force / m]], [[1, 0]], [[0]])
+    rows = ([[0, 1], [-k / m, -b / m]], [[0], [force / m]], [[1, 0]], [[0]])
+    system = tuple(np.array(part, dtype=float) for part in rows)
     a, g, c, *_ = cont2discrete(system, 0.01)
     expected = [(c @ g).item(), (c @ (a - np.trace(a) * np.eye(2)) @ g).item(), -np.trace(a), np.linalg.det(a)]
     for name, value in zip(("b0", "b1", "a1", "a2"), expected, strict=True):
