@@ -165,7 +165,8 @@ def run(scenario: Scenario, seed: int | None = None, *, taps: bool = False, comp
             kept[rows.first_tick : board.tick] = rows.taps
     elapsed = time.perf_counter() - began
     outputs = outputs[: board.tick]
-    names = [*TRACED_FIGURES, *(f"{name}.truth" for name in board.spec.diagnosers)]
+    said = (f"{name}.{port}" for name in board.spec.diagnosers for port in ("truth", "winner", "verdict", "region"))
+    names = [*TRACED_FIGURES, *(name for name in said if name in board.signals)]
     trace = {name: outputs[:, board.signals.index(name)] for name in names}
     metrics = measure(board, trace, scenario.head.metrics)
     return Result(
