@@ -21,6 +21,7 @@ class Observer:
 
     def __init__(self, spec: Spec, wiring: Wiring) -> None:
         signals = wiring.signals
+        known = set(signals.names)
         self._dt_ms = spec.dt_ms
         self._names: dict[str, list[str]] = {}
         self._scored: dict[str, tuple[int, int]] = {}
@@ -31,9 +32,9 @@ class Observer:
                 self._names[name] = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
                 self._scored[name] = signals.index(f"{name}.truth"), signals.index(f"{name}.delay")
             for port in ("verdict", "region", "alarm", "unexcited"):
-                if f"{name}.{port}" in signals:
+                if f"{name}.{port}" in known:
                     self._said.append((name, port, signals.index(f"{name}.{port}")))
-            if f"{name}.verdict" in signals:
+            if f"{name}.verdict" in known:
                 labels = self._names[name]
                 self._consistent[name] = [signals.index(f"{name}.consistent.{label}") for label in labels]
         self._last: dict[int, float] = {column: 0.0 for _, _, column in self._said}

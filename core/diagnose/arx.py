@@ -13,6 +13,7 @@ import numpy as np
 from core.block import Block, Context, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
 from core.diagnose.hypothesis import BankParams, assumed_noise
+from core.diagnose.kalman import gaussian
 
 COUNT, EVERY, FILTER1, FILTER2, LANES = range(5)
 """Packed parameters of every bank; the lanes of the hypotheses follow, then a bank's own."""
@@ -91,6 +92,19 @@ class ArxBank(Block):
         Port("residual", "um", "what the difference equation does not explain", each="hypotheses"),
         Port("nis", "1", "the same squared over its variance", each="hypotheses"),
     )
+
+    sample_by_sample: ClassVar[bool] = True
+    """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+
+    @classmethod
+    def prior(cls, params: Any, before: list[float]) -> list[float]:
+        """Return the probabilities before a measurement from those after the one before."""
+        return before
+
+    @classmethod
+    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
+        """Return the logarithm of the density of a residual."""
+        return gaussian(residual, covariance)
 
     @classmethod
     def equations_of(cls, params: Any, context: Context) -> list[float]:

@@ -113,6 +113,7 @@ class Consistency(KalmanBank):
     the noise there is: with pseudo-noise the test is biased.
     """
 
+    sample_by_sample = False
     title = "Consistency test"
     outputs = (
         *KalmanBank.outputs,

@@ -85,6 +85,7 @@ class Cusum(KalmanBank):
     beyond twice the threshold.
     """
 
+    sample_by_sample = False
     title = "Cumulative sums (CUSUM)"
     outputs = (*KalmanBank.outputs, Port("alarm", "1", "1 while a sum is beyond the threshold"))
     taps = (*KalmanBank.taps, Port("sum", "nat", "cumulative sum against the healthy device", each="hypotheses"))

@@ -157,6 +157,12 @@ class Imm(KalmanBank):
         switching: float = parameter(1e-4, "probability of a change to another hypothesis, per sample", gt=0, le=0.5)
 
     @classmethod
+    def prior(cls, params: Any, before: list[float]) -> list[float]:
+        """Return the weights after mixing."""
+        other = params.switching / (len(before) - 1)
+        return [other + (1.0 - len(before) * other) * weight for weight in before]
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         other = params.switching / (len(params.hypotheses) - 1)

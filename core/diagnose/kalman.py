@@ -165,6 +165,19 @@ class KalmanBank(Block):
         ),
     )
 
+    sample_by_sample: ClassVar[bool] = True
+    """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+
+    @classmethod
+    def prior(cls, params: Any, before: list[float]) -> list[float]:
+        """Return the probabilities before a measurement from those after the one before."""
+        return before
+
+    @classmethod
+    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
+        """Return the logarithm of the density of a residual."""
+        return gaussian(residual, covariance)
+
     @classmethod
     def filters(cls, params: Any, context: Context, hypotheses: list[Hypothesis] | None = None) -> list[float]:
         """Pack what every bank needs; steady gains from the Riccati equation, for those that offer them."""
@@ -204,6 +217,11 @@ class KalmanBank(Block):
         lanes[P11] = params.initial_std_um**2
         lanes[P22] = (params.initial_std_um * context.device.natural_frequency) ** 2
         return [0.0] * OWN + lanes.ravel().tolist()
+
+
+def gaussian(residual: float, covariance: float) -> float:
+    """Return the logarithm of the normal density."""
+    return -0.5 * (residual * residual / covariance + math.log(2.0 * math.pi * covariance))
 
 
 def memory_ms(context: Context) -> float:

@@ -109,6 +109,11 @@ class LockIn(KalmanBank):
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
 
     @classmethod
+    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
+        """Return the evidence of a sample: what of the residuals is at the tone, spread over the window."""
+        return -0.5 * tone / window.length(params, context)
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         floor = params.probability_floor

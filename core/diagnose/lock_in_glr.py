@@ -83,6 +83,7 @@ class LockInGlr(KalmanBank):
     device.
     """
 
+    sample_by_sample = False
     title = "Lock-in detector (GLR)"
     outputs = (*KalmanBank.outputs, Port("alarm", "1", "1 while the healthy device does not explain the tone"))
     taps = (*KalmanBank.taps, Port("tone", "1", "part of the residuals at the tone, 2 on average", each="hypotheses"))

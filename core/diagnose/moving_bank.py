@@ -90,6 +90,7 @@ class MovingBank(KalmanBank):
     Hentz 1987).
     """
 
+    sample_by_sample = False
     title = "Moving bank"
     outputs = (
         Port("probability", "1", "probability of the filter", labels=("lower", "centre", "upper")),

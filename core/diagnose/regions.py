@@ -65,8 +65,10 @@ class Regions(Block):
         Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
         Port("charge", "V", "running sum of the applied voltage", source="drive.charge"),
     )
-    outputs = (Port("region", "1", "0 required, 1 degraded, 2 unacceptable, 3 danger"),)
-    taps = (Port("loss", "1", "rms distance from the healthy motion over its rms"),)
+    outputs = (
+        Port("region", "1", "0 required, 1 degraded, 2 unacceptable, 3 danger"),
+        Port("loss", "1", "rms distance from the healthy motion over its rms"),
+    )
     equations = (Equation("loss", r"J=\mathrm{rms}(y-y_0)/\mathrm{rms}(y_0)", "5.1.5"),)
 
     class Params(BlockParams):

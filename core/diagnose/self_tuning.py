@@ -33,7 +33,7 @@ def quadratic(s: Any, covariance: int, h: int, n: int) -> float:
         for j in range(i):
             row += s[covariance + estimation.entry(i, j)] * s[h + j]
         total += 2.0 * row * s[h + i]
-    return total
+    return float(total)
 
 
 @kernel
@@ -48,7 +48,7 @@ def adapted(p: Any, own: int, s: Any, innovation: float, gain: float) -> float:
         s[RATIO] = settled((1.0 - share) * s[RATIO] + share * normalised)
         if s[RATIO] <= p[own + GATE]:
             return 1.0
-        return min(max(gain / max(s[RATIO] - 1.0, 1e-12), p[own + LEAST]), 1.0)
+        return float(min(max(gain / max(s[RATIO] - 1.0, 1e-12), p[own + LEAST]), 1.0))
     s[WEIGHT] = 1.0 + before * s[WEIGHT]
     last = s[RATIO]
     if mode == 2.0:
@@ -58,8 +58,8 @@ def adapted(p: Any, own: int, s: Any, innovation: float, gain: float) -> float:
     target = before * (1.0 + gain / before) / max(s[RATIO], 1e-300)
     moved = before + (p[own + STEP] if target > before else -p[own + STEP] if target < before else 0.0)
     if mode == 2.0:
-        return min(max(moved, p[own + LEAST]), 1.0)
-    return min(max(moved, 1e-3), 2.0)
+        return float(min(max(moved, p[own + LEAST]), 1.0))
+    return float(min(max(moved, 1e-3), 2.0))
 
 
 def self_tuning_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -112,6 +112,7 @@ class SelfTuning(ArxBank):
     a ramp that does not look at the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
     """
 
+    sample_by_sample = False
     title = "Self-tuning estimator"
     taps = (
         *ArxBank.taps,

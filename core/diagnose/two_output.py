@@ -100,6 +100,7 @@ class TwoOutput(KalmanBank):
     once, likelihood included.
     """
 
+    sample_by_sample = False
     title = "Kalman bank, displacement and velocity"
     inputs = (
         *KalmanBank.inputs,
