@@ -14,6 +14,7 @@ from core.board.score import Scores
 from core.errors import unknown
 from scenarios.lateral_metrics import lateral_metrics
 from scenarios.sensing_metrics import sensing_metrics
+from scenarios.verdict_metrics import verdict_metrics
 
 SETTLED = 0.02
 """Share of the model's amplitude within which a loop counts as settled."""
@@ -121,9 +122,11 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
         found |= sensing_metrics(board, trace, options)
-    for name, scores in board.scores().items():
-        found |= diagnosis_metrics(name, scores, step_lengths(trace[f"{name}.truth"]))
-    return found
+    scores = board.scores()
+    for name in board.spec.diagnosers:
+        if name in scores:
+            found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
+    return found | verdict_metrics(board, trace)
 
 
 def _rms(values: FloatArray) -> float:

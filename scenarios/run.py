@@ -12,9 +12,12 @@ import numpy as np
 from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Trip
+from core.board.ensemble import Ensemble, make
 from core.errors import InputError
+from core.signals import SignalTable
 from scenarios.metrics import device_metrics, measure
 from scenarios.schema import Scenario
+from scenarios.verdict_metrics import TRACED_VERDICTS
 
 TRACED_FIGURES = (
     "plant.displacement",
@@ -125,7 +128,7 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     document = dict(scenario.bench)
     if seed is not None:
         document["seed"] = seed
-    board = Board(document, compiled=compiled)
+    board = make(document, compiled=compiled)
     for position, event in enumerate(scenario.head.events):
         for command in event.commands():
             try:
@@ -165,10 +168,11 @@ def run(scenario: Scenario, seed: int | None = None, *, taps: bool = False, comp
             kept[rows.first_tick : board.tick] = rows.taps
     elapsed = time.perf_counter() - began
     outputs = outputs[: board.tick]
-    said = (f"{name}.{port}" for name in board.spec.diagnosers for port in ("truth", "winner", "verdict", "region"))
-    names = [*TRACED_FIGURES, *(name for name in said if name in board.signals)]
-    trace = {name: outputs[:, board.signals.index(name)] for name in names}
-    metrics = measure(board, trace, scenario.head.metrics)
+    metrics = _figures(board, outputs, scenario)
+    if isinstance(board, Ensemble):
+        for name, twin in board.twins.items():
+            found = _figures(twin, outputs, scenario, board.signals, f"{name}:")
+            metrics |= {f"twins.{name}.{metric}": value for metric, value in found.items()}
     return Result(
         scenario,
         board.spec.seed,
@@ -179,6 +183,18 @@ def run(scenario: Scenario, seed: int | None = None, *, taps: bool = False, comp
         outputs,
         kept[: board.tick] if kept is not None else None,
     )
+
+
+def _figures(
+    board: Board, outputs: FloatArray, scenario: Scenario, signals: SignalTable | None = None, prefix: str = ""
+) -> dict[str, float]:
+    """Return the figures of a board from the trace, or of a twin from the trace of all."""
+    known = set(board.signals.names)
+    names = [*TRACED_FIGURES, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
+    names = [name for name in names if name in known]
+    table = signals or board.signals
+    trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
+    return measure(board, trace, scenario.head.metrics)
 
 
 def _run_study(scenario: Scenario, board: Board) -> Result:

@@ -9,6 +9,7 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from core.board.commands import Command, Timed, parse_command
+from core.board.ensemble import twin_documents
 from core.board.spec import FIELDS, Document, parse
 from core.errors import InputError, from_validation, unknown_field
 from scenarios.studies import parse_study
@@ -58,7 +59,8 @@ class Event(BaseModel):
             found.append({"kind": "heal", "faults": self.heal})
         if self.fault is not None:
             profile = {"profile": self.profile} if self.profile is not None else {}
-            found.append({"kind": "inject", "fault": self.fault, "severity": self.severity, **profile})
+            chosen = {"parameters": self.parameters} if self.parameters else {}
+            found.append({"kind": "inject", "fault": self.fault, "severity": self.severity, **profile, **chosen})
         if self.set:
             found.append({"kind": "set", "values": self.set})
         if self.switch:
@@ -160,6 +162,11 @@ class Scenario:
         if unknown:
             raise unknown_field(unknown[0], (*HEAD, *FIELDS), unknown[0])
         self.spec = parse(self.bench)
+        for name, twin in twin_documents(self.bench).items():
+            try:
+                parse(twin)
+            except InputError as error:
+                raise error.under(f"twins.{name}") from None
         self.study = parse_study(self.head.study) if self.head.study is not None else None
         self.commands: list[Command] = []
         for position, event in enumerate(self.head.events):

@@ -16,9 +16,10 @@ from core.board.condition import Condition, parse_condition
 from core.board.guard import REASONS
 from core.board.log import Log
 from core.board.observer import Observer
-from core.board.spec import Document, Spec, parse
+from core.board.spec import Document, Section, Spec, parse
 from core.board.wiring import Wiring, scored, wire
 from core.errors import InputError
+from core.signals import SignalTable
 
 CHUNK = 512
 """Most ticks of one call of ``advance``."""
@@ -69,6 +70,7 @@ class Checkpoint:
     """Everything a board is, at a tick edge."""
 
     tick: int
+    kind: type[Board]
     parts: dict[str, Any] = field(repr=False)
 
 
@@ -108,9 +110,14 @@ class Board:
         return self.spec.dt_ms
 
     @property
-    def signals(self) -> Any:
+    def signals(self) -> SignalTable:
         """Table of traced signals."""
         return self.wiring.signals
+
+    @property
+    def diagnosers(self) -> dict[str, Section]:
+        """Every diagnoser by its id."""
+        return self.spec.diagnosers
 
     def value(self, signal: str) -> float:
         """Return the value of a signal after the last tick."""
@@ -211,10 +218,10 @@ class Board:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
         wiring = self.wiring
         running = wiring.rest(self.spec)
-        if self.compiled:
-            wiring.table[:, program.ADDRESS] = [program.compiled(i.block.step).address for i in wiring.instances]
         self._steps = [wiring.instances[row].block.step for row in running]
         self._table = wiring.table[running]
+        if self.compiled:
+            self._table[:, program.ADDRESS] = [program.compiled(step).address for step in self._steps]
 
     def _allocate(self) -> None:
         """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""
@@ -316,18 +323,22 @@ class Board:
         """Return everything the board is at this tick edge."""
         kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
         shared = {name: getattr(self, name) for name in SHARED}
-        return Checkpoint(self.tick, {**kept, **shared, "log": self.log.copy(), "_sha": self._sha.copy()})
+        return Checkpoint(self.tick, type(self), {**kept, **shared, "log": self.log.copy(), "_sha": self._sha.copy()})
 
-    @classmethod
-    def restore(cls, checkpoint: Checkpoint) -> Board:
+    @staticmethod
+    def restore(checkpoint: Checkpoint) -> Board:
         """Return a board that goes on from a checkpoint, bit for bit; restoring twice forks it."""
-        board = cls.__new__(cls)
+        board = checkpoint.kind.__new__(checkpoint.kind)
         for name, value in checkpoint.parts.items():
             setattr(board, name, copy.deepcopy(value) if name in COPIED else value)
-        board.log, board._sha = board.log.copy(), board._sha.copy()
-        board._allocate()
-        board._link()
+        board._revive()
         return board
+
+    def _revive(self) -> None:
+        """Make what copies do not share."""
+        self.log, self._sha = self.log.copy(), self._sha.copy()
+        self._allocate()
+        self._link()
 
     def save(self) -> Document:
         """Return the bench as a scenario document: what it started from, and what was done to it.

@@ -7,7 +7,7 @@ structural thickness share one printed symbol and are two numbers here (``film_g
 
 from __future__ import annotations
 
-from core.block import BlockParams, parameter
+from core.block import BlockParams, Context, parameter
 from core.device.environment import ATMOSPHERE_PA, ROOM_K, penetration_depth_um, viscosity
 from core.units import EPSILON_0
 
@@ -54,6 +54,16 @@ class Geometry(BlockParams):
     def gap_um(self) -> float:
         """Gap between fingers as etched."""
         return self.finger_gap_um + 2.0 * self.comb_bias_um
+
+    @property
+    def stator_tip_um(self) -> float:
+        """Distance of the stator's finger tips from the centre: where the overlap begins."""
+        return 0.5 * self.plate_length_um + self.arm_width_um + self.finger_length_um - self.overlap_um
+
+    @property
+    def far_finger_um(self) -> float:
+        """Distance of the outermost finger from the x axis."""
+        return (self.fingers - 1) * (self.finger_width_um + self.finger_gap_um)
 
     @property
     def areas_um2(self) -> tuple[float, float, float, float]:
@@ -109,3 +119,8 @@ class Geometry(BlockParams):
     def capacitance_gradient(self) -> float:
         r"""dC/dx of one comb, F/m: :math:`2n\varepsilon_0t/g` (n rotor fingers, two gaps each)."""
         return 2.0 * self.fingers * EPSILON_0 * self.thickness_um / self.gap_um
+
+
+def drawn(context: Context) -> Geometry:
+    """Return the drawing of the device on the bench; that of LCR-350 if it has none."""
+    return context.drawing if isinstance(context.drawing, Geometry) else Geometry()

@@ -63,7 +63,9 @@ def held_response(device: Oscillator, voltage: FloatArray, dt_ms: float) -> Floa
     """
     phi = np.array(transition(device.mass, device.damping, device.stiffness, dt_ms)).reshape(2, 2)
     gain = (np.eye(2) - phi) @ np.array([device.static_gain, 0.0])
-    powers = [np.linalg.matrix_power(phi, j) for j in range(AHEAD + 1)]
+    powers = [np.eye(2)]
+    while len(powers) <= AHEAD:
+        powers.append(phi @ powers[-1])
     drive = np.array([powers[j] @ gain for j in range(AHEAD)])
     reach = np.array([power[0] for power in powers])
     out = np.empty(len(voltage))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.block import FloatArray
-from core.plant import plane, slaved_lateral
+from core.plant import contact, plane, slaved_lateral
 from core.plant.electrostatics import comb
 from core.plant.shuttle import FIRST_V, SECOND_V
 from core.plant.suspension import elastic_force
@@ -28,7 +28,7 @@ class Fold:
 
 def planar_force(p: FloatArray, suspension: FloatArray) -> Force:
     """Return the static force of a planar plant."""
-    square, limit, stator, strength = p[plane.GAP_SQUARED], p[plane.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
+    square, limit, stator, strength = p[plane.GAP_SQUARED], p[contact.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
     overlap = p[plane.ROTOR] - stator
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:

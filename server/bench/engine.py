@@ -28,8 +28,8 @@ T = TypeVar("T")
 PERIOD_S = 1.0 / 120.0
 """Two rounds per screen frame."""
 
-LATE_S = 0.1
-"""A round this late is logged."""
+LATE_S, LATE_AGAIN_S = 0.1, 60.0
+"""A round this late is logged, and then no other for a while: the histogram has them all."""
 
 SPARE_S = 0.001
 """Left of every round for the rest of the process when a bench runs as fast as possible."""
@@ -85,6 +85,7 @@ class Engine:
         self._thread = threading.Thread(target=self._run, name="combbench-engine", daemon=True)
         self._workers = ThreadPoolExecutor(os.cpu_count(), thread_name_prefix="combbench-bench")
         self._beat = clock()
+        self._silent_until = 0.0
 
     def start(self) -> None:
         """Start the thread."""
@@ -156,7 +157,8 @@ class Engine:
                 deadline = now
             elif now >= deadline:
                 self.lateness.add(now - deadline)
-                if now - deadline > LATE_S:
+                if now - deadline > LATE_S and now > self._silent_until:
+                    self._silent_until = now + LATE_AGAIN_S
                     log.warning("the engine woke %.0f ms late", 1e3 * (now - deadline))
                 whole = self._round(now, deadline + PERIOD_S)
                 self._on_round()

@@ -585,6 +585,14 @@ export interface components {
             profile: {
                 [key: string]: unknown;
             };
+            /**
+             * Parameters
+             * @description What else was chosen for it, or its defaults
+             * @default {}
+             */
+            parameters?: {
+                [key: string]: unknown;
+            };
             /** Since Tick */
             since_tick: number;
         };

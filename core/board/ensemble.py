@@ -1,0 +1,216 @@
+"""An ensemble: a board and its twins, which are built otherwise and meet the same reference, noise and faults."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from core.block import FloatArray
+from core.board.board import Board, Checkpoint, Rows
+from core.board.commands import LogEntry, parse_command
+from core.board.score import Scores
+from core.board.spec import IDENTIFIER, Document, Section, with_values
+from core.errors import InputError, short, unknown
+from core.signals import Signal, SignalTable
+
+MOST = 3
+"""Twins of a board; four boards together."""
+
+OWN = ("plant", "controller", "controllers", "sensor", "sensors", "diagnosers", "drive", "guard")
+"""What a twin may have of its own; all else they share."""
+
+SHOWN = ("plant.displacement", "plant.velocity", "sensor.displacement", "model.displacement", "reference.voltage")
+"""Signals of a twin that are always seen, besides its controller, drive and diagnosers."""
+
+
+def twin_documents(document: Document) -> dict[str, Document]:
+    """Return the bench of every twin: that of the board with the values of the twin written over.
+
+    Raises
+    ------
+    InputError
+        When there are too many, or one differs in what they share.
+    """
+    twins = document.get("twins", {})
+    if not isinstance(twins, dict):
+        raise InputError(f"must be a table, got {short(twins)}", "twins")
+    if len(twins) > MOST:
+        raise InputError(f"at most {MOST} twins, got {len(twins)}", "twins")
+    base = {key: value for key, value in document.items() if key != "twins"}
+    found = {}
+    for name, values in twins.items():
+        if not IDENTIFIER.match(name):
+            raise InputError("must be a short name of small letters, digits and _", f"twins.{name}")
+        if not isinstance(values, dict):
+            raise InputError(f"must be a table, got {short(values)}", f"twins.{name}")
+        for key in values:
+            if key not in OWN:
+                raise unknown("table", key, OWN, f"twins.{name}.{key}")
+        found[name] = with_values(base, dict(_leaves(values)))
+    return found
+
+
+def _leaves(table: Document, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Return the values of nested tables by dotted path."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _leaves(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", value
+
+
+class Ensemble(Board):
+    """A board with twins, advanced together: whatever is done to the first is done to all at the same tick.
+
+    Their signals are called ``<twin>:<signal>``. What a twin has of its own it keeps: a switch of the controller
+    leaves a twin alone whose controller was chosen for it. A twin that trips rests until the board is reset.
+
+    Parameters
+    ----------
+    document : dict
+        What the board is made of; ``twins`` holds what each twin has of its own.
+    compiled : bool
+        Run compiled blocks.
+    """
+
+    def __init__(self, document: Document, *, compiled: bool = True) -> None:
+        super().__init__({key: value for key, value in document.items() if key != "twins"}, compiled=compiled)
+        values = document.get("twins", {})
+        self.base["twins"] = values
+        self.twins: dict[str, Board] = {}
+        for name, own in twin_documents(document).items():
+            try:
+                self.twins[name] = Board(own, compiled=compiled)
+            except InputError as error:
+                raise error.under(f"twins.{name}") from None
+        self._own = {name: [path for path, _ in _leaves(with_values(own, {}))] for name, own in values.items()}
+        self._mirrored = 0
+        self._table_of_all()
+
+    def _table_of_all(self) -> None:
+        """Join the tables of signals, outputs before taps."""
+        chosen = [("", self.wiring.signals, list(range(len(self.wiring.signals))))]
+        chosen += [(f"{name}:", twin.signals, _shown(twin)) for name, twin in self.twins.items()]
+        found: list[Signal] = []
+        self._columns: list[tuple[list[int], list[int]]] = []
+        for kind in ("output", "tap"):
+            for prefix, table, columns in chosen:
+                for column in columns:
+                    signal = table[column]
+                    if signal.kind == kind:
+                        found.append(signal.model_copy(update={"name": prefix + signal.name, "index": len(found)}))
+        for _, table, columns in chosen[1:]:
+            outputs = [column for column in columns if column < table.outputs]
+            self._columns.append((outputs, [column - table.outputs for column in columns if column >= table.outputs]))
+        self._signals = SignalTable(found)
+
+    @property
+    def signals(self) -> SignalTable:
+        """Table of the traced signals of all."""
+        return self._signals
+
+    def digest(self) -> str:
+        """Return the SHA-256 of the digests of all."""
+        parts = [super().digest(), *(twin.digest() for twin in self.twins.values())]
+        return hashlib.sha256("".join(parts).encode()).hexdigest()
+
+    @property
+    def diagnosers(self) -> dict[str, Section]:
+        """Every diagnoser, those of twins as ``<twin>:<id>``."""
+        found = dict(super().diagnosers)
+        for name, twin in self.twins.items():
+            found |= {f"{name}:{key}": section for key, section in twin.diagnosers.items()}
+        return found
+
+    def scores(self) -> dict[str, Scores]:
+        """Return the score of every diagnoser, those of twins as ``<twin>:<id>``."""
+        found = super().scores()
+        for name, twin in self.twins.items():
+            found |= {f"{name}:{key}": scores for key, scores in twin.scores().items()}
+        return found
+
+    def advance(self, n: int) -> Rows:
+        """Run up to ``n`` ticks of all; fewer when the board trips. Rows of a twin that has tripped are no numbers."""
+        rows = super().advance(n)
+        if rows.count == 0:
+            return rows
+        todo = [entry for entry in self.log.after(self._mirrored) if _was_done(entry)]
+        self._mirrored = self.log.last
+        outputs, taps = [rows.outputs], [rows.taps]
+        for (name, twin), (shown_outputs, shown_taps) in zip(self.twins.items(), self._columns, strict=True):
+            for entry in todo:
+                self._mirror(name, twin, entry)
+            seen = twin.log.last
+            own = twin.advance(rows.count)
+            self._repeat(name, twin.log.after(seen))
+            outputs.append(_filled(own.outputs[:, shown_outputs], rows.count))
+            taps.append(_filled(own.taps[:, shown_taps], rows.count))
+        return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps))
+
+    def _mirror(self, name: str, twin: Board, entry: LogEntry) -> None:
+        """Do to a twin at the same tick what was done to the board, but for what it has of its own."""
+        command: dict[str, Any] = dict(entry.command or {})
+        kind = command["kind"]
+        own = self._own[name]
+        if kind == "switch" and any(path.split(".")[0] == "controller" for path in own):
+            return
+        if kind == "set":
+            command["values"] = {path: value for path, value in command["values"].items() if not _is_own(path, own)}
+            if not command["values"]:
+                return
+        if kind == "reset_trip" and twin.trip is not None:
+            twin.tick = entry.tick  # it rested meanwhile
+        with suppress(InputError):  # it need not be possible there, such as healing what tripped it
+            twin.apply(parse_command({**command, "at_sample": entry.tick}), entry.actor)
+
+    def _repeat(self, name: str, entries: list[LogEntry]) -> None:
+        """Note what a twin found, and why it rests."""
+        for entry in entries:
+            if entry.kind in ("recognised", "tripped"):
+                kind = "recognised" if entry.kind == "recognised" else "twin_tripped"
+                self._note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
+        self._mirrored = self.log.last
+
+    def checkpoint(self) -> Checkpoint:
+        """Return everything all of them are at this tick edge."""
+        whole = super().checkpoint()
+        twins = {name: twin.checkpoint() for name, twin in self.twins.items()}
+        whole.parts.update(twins=twins, _own=self._own, _mirrored=self._mirrored)
+        return whole
+
+    def _revive(self) -> None:
+        self.twins = {name: Board.restore(kept) for name, kept in self.twins.items()}  # type: ignore[arg-type]
+        super()._revive()
+        self._table_of_all()
+
+
+def _shown(twin: Board) -> list[int]:
+    """Return the columns of a twin worth seeing."""
+    spec = twin.spec
+    blocks = {spec.active, "drive", *spec.diagnosers, *(f"{name}.score" for name in spec.diagnosers)}
+    return [signal.index for signal in twin.signals if signal.block in blocks or signal.name in SHOWN]
+
+
+def _was_done(entry: LogEntry) -> bool:
+    return entry.command is not None and entry.kind not in ("scheduled", "refused")
+
+
+def _is_own(path: str, own: list[str]) -> bool:
+    """Say whether a path is one the twin was given, or leads to one."""
+    return any(path == mine or mine.startswith(f"{path}.") for mine in own)
+
+
+def _filled(rows: FloatArray, count: int) -> FloatArray:
+    """Return as many rows, those that were not run without numbers."""
+    if len(rows) == count:
+        return rows
+    return np.vstack([rows, np.full((count - len(rows), rows.shape[1]), np.nan)])
+
+
+def make(document: Document, *, compiled: bool = True) -> Board:
+    """Return a board, with its twins if it has any."""
+    return (Ensemble if document.get("twins") else Board)(document, compiled=compiled)
