@@ -173,8 +173,8 @@ class Context:
         The nominal device.
     model : Oscillator
         The reference model the shuttle should follow.
-    film : tuple of float
-        Plan area over the gas film (um^2) and its thickness (um), facing area of the combs (um^2) and their gap (um).
+    drawing : BlockParams, optional
+        Drawing of the device (``core.device.geometry``).
     temperature_k : float
         Temperature of the device.
     stator_voltages : tuple of float
@@ -187,6 +187,8 @@ class Context:
         Whether the reference drives the plant between samples.
     limit_v : float
         Limit of the drive to either side.
+    tone_hz : float
+        Frequency of the reference, 0 if it has none.
     sensors : mapping of str to BlockParams
         Parameters of every sensor: what calibrating it would tell.
     """
@@ -196,13 +198,14 @@ class Context:
     seed: int
     device: Oscillator
     model: Oscillator
-    film: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    drawing: BlockParams | None = None
     temperature_k: float = 300.0
     stator_voltages: tuple[float, float] = (0.0, 0.0)
     capacitance_gradient: float = 0.0
     sensor_noise_um: float = 0.0
     analogue: bool = False
     limit_v: float = 30.0
+    tone_hz: float = 0.0
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
 
 

@@ -12,7 +12,7 @@ from core.control.controller import coefficients
 
 AMPLITUDE_V, RAD_PER_MS = 10.0, 1.0
 STATES = 21
-"""Plant 2, model 2, filters 2, filtered regressor 8, G_m[u] 2, gains 4, alpha 1."""
+"""Two of the plant, two of the model, two filters, eight of the regressor, two of G_m[u], four gains, alpha."""
 
 
 def adaptive_loop(context: Context, stiffness: float = 1.0, gain: float = 1.0) -> Any:

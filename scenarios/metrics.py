@@ -11,9 +11,11 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.environment import Environment
 from core.board.score import Scores
+from core.board.spec import Spec
 from core.errors import unknown
 from scenarios.lateral_metrics import lateral_metrics
 from scenarios.sensing_metrics import sensing_metrics
+from scenarios.verdict_metrics import verdict_metrics
 
 IDENTIFIED_PCT = 10.0
 """Error of the worst coefficient within which an identifier counts as settled."""
@@ -32,9 +34,8 @@ def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tic
     return complex(coefficients[0], coefficients[1])
 
 
-def device_metrics(board: Board) -> dict[str, float]:
+def device_metrics(spec: Spec) -> dict[str, float]:
     """Return the figures of the device in its environment, before any fault."""
-    spec = board.spec
     params = spec.environment.params
     stiffness, damping = Environment.scales(params, spec.context())
     temperature = spec.context().temperature_k
@@ -159,7 +160,7 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
             raise unknown("metric option", key, allowed, f"metrics.{key}")
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise unknown("metric option value", value, ["a number"], f"metrics.{key}")
-    found = device_metrics(board) | lateral_metrics(board)
+    found = device_metrics(board.spec) | lateral_metrics(board)
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
         found |= sensing_metrics(board, trace, options)
@@ -167,8 +168,9 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
         found |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), options)
     scores = board.scores()
     for name in board.spec.diagnosers:
-        found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
-    return found
+        if name in scores:
+            found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
+    return found | verdict_metrics(board, trace)
 
 
 def _rms(values: FloatArray) -> float:

@@ -127,12 +127,13 @@ class Spec:
             seed=self.seed,
             device=nominal,
             model=Model.oscillator(self.model.params, nominal),
-            film=self.device.film,
+            drawing=self.device.drawing,
             temperature_k=float(getattr(self.environment.params, "temperature_k", 300.0)),
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=getattr(self.drive.params, "kind", "held") == "analogue",
             limit_v=float(getattr(self.drive.params, "limit_v", 30.0)),
+            tone_hz=float(getattr(self.reference.params, "frequency_hz", 0.0)),
             sensors={name: section.params for name, section in self.sensors.items()},
         )
 

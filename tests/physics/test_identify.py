@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import cont2discrete
+from scipy.signal import cont2discrete, lfilter
 
 from core.errors import InputError
 from scenarios.library import get
@@ -99,6 +99,32 @@ def test_holding_the_displacement_biases_by_half_a_sample(pole):
     theory = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
     assert held[0] == pytest.approx(100 * (theory[0] - 1), abs=5.0)
     assert held[2] == pytest.approx(100 * (theory[2] - 1), abs=5.0)
+
+
+def test_least_squares_is_the_information_form_of_the_equations():
+    """P^-1 <- e^-Bh P^-1 + h phi phi'/m^2, and theta the weighted solution, with phi filtered here by scipy."""
+    rate, alpha, trust, n, h = 300.0, 10.0, 40.0, 1500, 0.01 * W0
+    own = {"forgetting_rate": rate, "normaliser": alpha, "initial_covariance": trust, "covariance_limit": 0.0}
+    board = bench({"kind": "least_squares", "start": "zero", "range_ratio": 0.0, **own}, FOUR, stiffness=0.3)
+    trace = play(board, n)
+    u, y = trace["drive.voltage"], trace["sensor.displacement"]
+    held, line = (
+        [cont2discrete((top, [1.0, 2.0, 1.0]), h, method=method) for top in ([1.0], [1.0, 0.0], [1.0, 0.0, 0.0])]
+        for method in ("zoh", "foh")
+    )
+    wu = lfilter(held[0][0].ravel(), held[0][1], u)
+    # the filter of the bench starts at rest with its first sample; so does this one, for y begins at 0
+    wy, dy, z = (lfilter(b.ravel(), a, y) for b, a, _ in line)
+    information, weighted = np.eye(3) / trust, np.zeros(3)
+    for i in range(1, n):
+        phi = np.array([wu[i], -dy[i], -wy[i]])
+        share = h / (1 + alpha * phi @ phi)
+        decay = math.exp(-rate * 1e-5)
+        information = decay * information + share * np.outer(phi, phi)
+        weighted = decay * weighted + share * phi * z[i]
+    found = [trace[f"x.coefficient.{name}"][-1] for name in NAMES]
+    np.testing.assert_allclose(found, np.linalg.solve(information, weighted), rtol=1e-6)
+    assert trace["x.covariance_trace"][-1] == pytest.approx(np.trace(np.linalg.inv(information)), rel=1e-6)
 
 
 def test_forgetting_sets_the_pace_only_while_the_start_is_trusted():

@@ -1,4 +1,4 @@
-"""Controllers against theory and against a simulation of the whole loop written here from the equations."""
+"""Direct MRAC against theory and against a simulation of the whole loop written here from the equations."""
 
 from __future__ import annotations
 
@@ -10,58 +10,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.signal import lfilter
 
-from scenarios.edit import with_values
-from scenarios.library import get
-from scenarios.run import run
-from scenarios.schema import Scenario
-from tests.lab import do, document, inject, make, phasor, play, rms
-
-W0 = math.sqrt(0.0538 / 2.2090e-10) * 1e-3  # rad/ms
-ZETA = 7.09e-7 / (2 * math.sqrt(0.0538 * 2.2090e-10))
-A1 = 2 * ZETA
-KP = -4 * 24 * 8.8541878128e-12 * (2.0 / 2.1) * 20.0 / 0.0538 * 1e6  # um/V
-F1 = 1e3 / (2 * math.pi)  # 1 krad/s
-LABELS = ("r", "w1", "w2", "y")
-
-
-def response(w: float, mass: float = 1.0, stiffness: float = 1.0, damping: float = 1.0) -> complex:
-    """Displacement per volt at w rad/ms."""
-    s = 1j * w / W0
-    return KP / (mass * s**2 + damping * A1 * s + stiffness)
-
-
-def effort(w: float, **fault: float) -> float:
-    return abs(response(w) / response(w, **fault))
-
-
-def figures(values: dict[str, Any], faults: dict[str, float], ms: float = 100.0) -> dict[str, float]:
-    """Run 100 ms with faults from the start and return the metrics."""
-    events = [{"at_sample": 0, "fault": name, "severity": size} for name, size in faults.items()]
-    return run(Scenario.load({**document(values), "duration_ms": ms, "events": events})).metrics
-
-
-# -- open loop
-
-
-def test_step_overshoot_and_rise():
-    found = figures({"reference": {"kind": "step", "amplitude_v": 10.0}}, {}, ms=8.0)
-    assert found["control.overshoot_pct"] == pytest.approx(
-        100 * math.exp(-math.pi * ZETA / math.sqrt(1 - ZETA**2)), abs=0.5
-    )
-    assert found["control.overshoot_pct"] == pytest.approx(72.27, abs=0.5)
-    values = {"reference": {"kind": "step", "amplitude_v": 10.0}, "sample_rate_khz": 1000}
-    x = play(make(values), 1000)["plant.displacement"]
-    assert np.argmin(x) * 1e-3 == pytest.approx(math.pi / (W0 * math.sqrt(1 - ZETA**2)), abs=0.002)
-    assert np.argmin(x) * 1e-3 == pytest.approx(0.202, abs=0.002)
-
-
-@pytest.mark.parametrize("amplitude_um", [1.5, -0.7])
-def test_amplitude_in_micrometres_is_displacement_at_rest(amplitude_um):
-    values = {"reference": {"kind": "constant", "amplitude_um": amplitude_um}}
-    assert play(make(values), 2000)["plant.displacement"][-1] == pytest.approx(amplitude_um, rel=1e-6)
-
-
-# -- direct MRAC: what theory fixes
+from tests.lab import inject, make, phasor, play, rms
+from tests.physics.loop import A1, F1, KP, LABELS, W0, effort, figures, response
 
 
 @pytest.mark.parametrize(
@@ -167,9 +117,6 @@ def test_mrac_lyapunov_function_falls_as_theory_says():
     fall, theory = v[-1] - v[0], rate.sum() * 1e-3 * W0
     assert fall < -0.1 * v[0]
     assert fall == pytest.approx(theory, rel=0.05)
-
-
-# -- direct MRAC: the whole loop, simulated here
 
 
 def loop(n: int, h: float, *, k: float, g: float, limit: float, mutant: str = "") -> dict[str, np.ndarray]:
@@ -309,129 +256,3 @@ def test_mrac_leakage_and_bound():
     )
     theta = play(leaking, 200)["mrac.gain.r"]
     assert theta == pytest.approx((1 - 0.5 * 0.01 * W0) ** np.arange(1, 201), rel=1e-9)
-
-
-# -- PID
-
-
-def pid_gains(values: dict[str, Any]) -> tuple[float, float, float, float]:
-    """Recover the gains of a running PID from its signals alone."""
-    board = make({"controller": {"kind": "pid", **values}, "reference.amplitude_v": 2.0, "sensor.noise_um": 0.01})
-    inject(board, stiffness=0.3)
-    trace = play(board, 3000)
-    assert board.trip is None and np.abs(trace["pid.voltage"]).max() < 30
-    e = trace["model.displacement"] - trace["sensor.displacement"]
-    np.testing.assert_allclose(trace["pid.error"], e, atol=1e-12)
-    decay = math.exp(-0.01 * W0 / values.get("derivative_filter", 0.2))
-    slope = lfilter([1 - decay], [1, -decay], np.diff(e, prepend=e[0]) / 0.01)
-    area = np.cumsum(e) * 0.01
-    basis = np.column_stack([trace["reference.voltage"], e, area, slope])
-    found, *_ = np.linalg.lstsq(basis, trace["pid.voltage"], rcond=None)
-    np.testing.assert_allclose(basis @ found, trace["pid.voltage"], atol=1e-8)
-    return tuple(found)
-
-
-@pytest.mark.parametrize("pole", [0.8, 1.3])
-def test_pid_places_a_triple_pole(pole):
-    _, proportional, integral, derivative = pid_gains({"pole": pole})
-    # s^3 + (a1 + kp Kd) s^2 + (a2 + kp Kp) s + kp Ki in 1/w0, without the derivative filter
-    closed = [
-        1.0,
-        A1 + KP * derivative * W0,
-        1.0 + KP * proportional,
-        KP * integral / W0,
-    ]
-    companion = np.array([[0, 1, 0], [0, 0, 1], [-closed[3], -closed[2], -closed[1]]])
-    np.testing.assert_allclose(np.linalg.eigvals(companion), -pole, atol=2e-3 * pole)
-    np.testing.assert_allclose(closed, np.poly([-pole] * 3), rtol=1e-7)
-
-
-def test_pid_takes_gains_as_magnitudes_and_feeds_forward():
-    own = {"proportional_v_um": 3.0, "integral_v_um_ms": 20.0, "derivative_v_ms_um": 0.2, "feedforward": 0.7}
-    assert pid_gains(own) == pytest.approx((0.7, -3.0, -20.0, -0.2), rel=1e-6)
-
-
-def test_pid_follows_with_the_published_error():
-    found = figures({"controller": {"kind": "pid", "pole": 1.3}}, {})
-    assert found["control.tail_rms_error_um"] == pytest.approx(0.062, abs=0.005)
-
-
-def test_pid_integral_does_not_wind_up():
-    """The target is out of reach for 30 ms, then within reach: the voltage leaves the limit at once."""
-    values = {
-        "controller": {"kind": "pid"},
-        "drive.limit_v": 5.0,
-        "guard.rail_ms": 1000.0,
-        "reference": {"kind": "constant", "amplitude_v": 10.0},
-    }
-    board = make(values)
-    far = play(board, 3000)
-    assert np.all(far["drive.voltage"][1000:] == 5.0)
-    error = far["pid.error"][-1]
-    assert abs(error) == pytest.approx(5 * abs(KP), rel=0.01)
-    wound = 1.3**3 / abs(KP) * W0 * abs(error) * 30.0
-    assert np.abs(far["pid.integral"]).max() < 40 < 0.02 * wound
-    assert np.ptp(far["pid.integral"][1500:]) < 1e-9
-    do(board, {"kind": "set", "values": {"reference.amplitude_v": 2.0}})
-    near = play(board, 1500)
-    assert np.flatnonzero(np.abs(near["drive.voltage"]) < 5.0)[0] < 20
-    assert abs(near["pid.error"][-1]) < 1e-3
-    assert near["drive.voltage"][-1] == pytest.approx(2.0, abs=0.01)
-
-
-def test_pid_integral_moves_out_of_the_limit_again():
-    """While saturated, an error of the other sign is still integrated."""
-    values = {"controller": {"kind": "pid"}, "drive.limit_v": 5.0, "guard.rail_ms": 1000.0}
-    board = make({**values, "reference": {"kind": "square", "amplitude_v": 10.0, "frequency_hz": 50.0}})
-    trace = play(board, 6000)
-    halves = trace["drive.voltage"][1000 + np.arange(5) * 1000 - 5]
-    assert np.array_equal(halves, [5.0, -5.0, 5.0, -5.0, 5.0])
-
-
-# -- blowing up
-
-
-def test_trip_at_gain_30_and_recovery():
-    board = make({"controller": {"kind": "mrac", "adaptation_gain": 30.0}})
-    inject(board, stiffness=1.0)
-    trace = play(board, 20_000)
-    assert board.trip is not None and "mrac.voltage" in board.trip.reason
-    assert board.trip.tick == board.tick == len(trace["plant.displacement"]) < 20_000
-    assert np.all(np.isfinite(trace["plant.displacement"])) and np.all(np.isfinite(trace["drive.voltage"]))
-    assert board.advance(10).count == 0
-    do(board, {"kind": "set", "values": {"controllers.mrac.adaptation_gain": 1.0}})
-    do(board, {"kind": "reset_trip"})
-    assert board.trip is None
-    trace = play(board, 10_000)
-    assert board.trip is None
-    error = trace["plant.displacement"] - trace["model.displacement"]
-    assert rms(error[-2500:]) < 0.003
-    assert trace["faults.stiffness"][-1] == 1.0  # the fault is still there
-
-
-def test_an_unused_controller_that_blows_up_does_not_stop_the_board():
-    values = {"controllers": {"mrac": {"adaptation_gain": 1e6}}}
-    board, calm = make(values), make({})
-    for one in (board, calm):
-        inject(one, stiffness=1.0)
-    trace, expected = play(board, 5000), play(calm, 5000)
-    assert not np.all(np.isfinite(trace["mrac.voltage"]))
-    assert board.trip is None
-    for name in ("plant.displacement", "drive.voltage", "pid.voltage", "sensor.displacement"):
-        assert np.array_equal(trace[name], expected[name]), name
-
-
-def test_library_scenarios_keep_their_figures_under_noise():
-    scenario = with_values(get("ch3-mrac-spring-x2"), {"sensor.noise_um": 0.01, "plant.thermal_noise": True})
-    found = run(scenario).metrics
-    assert found["control.tail_rms_error_um"] < 0.02
-    assert found["control.effort_ratio"] == pytest.approx(effort(1.0, stiffness=2.0), rel=0.01)
-
-
-def test_damped_model_has_the_same_resonance_and_its_own_damping():
-    values = {"model": {"kind": "damped", "damping_ratio": 0.5}, "reference": {"kind": "step", "amplitude_v": 10.0}}
-    trace = play(make({**values, "sample_rate_khz": 1000}), 1500)["model.displacement"]
-    assert -trace.min() / (10 * abs(KP)) - 1 == pytest.approx(math.exp(-math.pi * 0.5 / math.sqrt(0.75)), rel=1e-4)
-    assert np.argmin(trace) * 1e-3 == pytest.approx(math.pi / (W0 * math.sqrt(0.75)), abs=1.5e-3)
-    direct = play(make({"model": {"kind": "direct"}}), 100)
-    np.testing.assert_allclose(direct["model.displacement"], KP * direct["reference.voltage"], rtol=1e-12)
