@@ -1172,7 +1172,7 @@ export interface components {
         };
         /**
          * Figure
-         * @description A figure of a device with its equation; no value where the device does not tell.
+         * @description A figure of a device with its equation.
          */
         Figure: {
             /** Name */
@@ -1182,7 +1182,7 @@ export interface components {
             /** Unit */
             unit: string;
             /** Value */
-            value: number | null;
+            value: number;
             equation: components["schemas"]["EquationCard"];
         };
         /**
