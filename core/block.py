@@ -64,6 +64,8 @@ class Port:
         For vectors: the list parameter whose elements' names are the labels.
     hidden : bool
         Plumbing: neither traced nor offered to scopes.
+    warning : str
+        For a tap: what the log says when it rises from 0.
     """
 
     name: str
@@ -73,6 +75,7 @@ class Port:
     labels: tuple[str, ...] = ()
     each: str = ""
     hidden: bool = False
+    warning: str = ""
 
     def names(self, params: BlockParams) -> tuple[str, ...]:
         """Return the component names below the instance, one for a scalar."""
@@ -125,21 +128,27 @@ class Oscillator:
         mg, uN ms/um, uN/um.
     force : float
         Signed force per volt, uN/V (negative: a positive voltage pulls to -x).
+    time_unit_ms : float
+        Of a plant given as a transfer function: its unit of time. Mass, damping and stiffness are then its
+        coefficients, and may be 0 or negative. 0 for a resonator.
     """
 
     mass: float
     damping: float
     stiffness: float
     force: float
+    time_unit_ms: float = 0.0
 
     @property
     def static_gain(self) -> float:
-        """Displacement per volt at rest, um/V, signed."""
-        return self.force / self.stiffness
+        """Displacement per volt at rest, um/V, signed; 0 for a plant that is nowhere at rest."""
+        return self.force / self.stiffness if self.stiffness != 0.0 else 0.0
 
     @property
     def natural_frequency(self) -> float:
-        """Undamped natural frequency, rad/ms."""
+        """Undamped natural frequency, rad/ms; what counts as 1 in time of a transfer function."""
+        if self.time_unit_ms > 0.0:
+            return 1.0 / self.time_unit_ms
         return float((self.stiffness / self.mass) ** 0.5)
 
     @property
@@ -215,6 +224,11 @@ class Block:
         path = cls.__module__.split(".")
         cls.name = path[-1]
         cls.family = path[-2] if len(path) > 1 else ""
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:  # noqa: ARG003 (most blocks suit every device)
+        """Say why the block cannot be on a bench with this device and reference model; nothing when it can."""
+        return ""
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 from core.block import Block, BlockParams, Equation, Port
 from core.errors import unknown
 
-FAMILIES = ("reference", "plant", "sense", "control", "diagnose", "faults", "board")
+FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", "board")
 
 
 class PortCard(BaseModel):
@@ -113,6 +113,7 @@ def block(family: str, name: object, field: str = "") -> type[Block]:
             "plant": "plant model",
             "sense": "sensor",
             "control": "controller",
+            "identify": "identifier",
             "diagnose": "diagnoser",
             "faults": "fault",
         }
@@ -197,9 +198,11 @@ def _parameter(name: str, info: FieldInfo) -> ParameterCard:
 def _type(annotation: Any) -> tuple[str, list[str]]:
     if get_origin(annotation) is Literal:
         return "choice", [str(choice) for choice in get_args(annotation)]
+    if get_origin(annotation) is list:
+        return "list", []
     options = [option for option in get_args(annotation) if option is not type(None)] or [annotation]
     simple = {bool: "boolean", int: "integer", float: "number", str: "text"}
     for option in options:
         if option in simple:
             return simple[option], []
-    return ("list" if get_origin(annotation) is list else "table"), []
+    return "table", []

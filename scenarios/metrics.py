@@ -16,6 +16,8 @@ from core.errors import unknown
 from scenarios.lateral_metrics import lateral_metrics
 from scenarios.sensing_metrics import sensing_metrics
 
+IDENTIFIED_PCT = 10.0
+"""Error of the worst coefficient within which an identifier counts as settled."""
 SETTLED = 0.02
 """Share of the model's amplitude within which a loop counts as settled."""
 TAIL = 0.25
@@ -67,6 +69,8 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[st
     if abs(final) > 1e-9 and np.ptp(r) == 0.0:
         peak = float(np.max(x * math.copysign(1.0, final)))
         found["control.overshoot_pct"] = 100.0 * (peak / abs(final) - 1.0)
+    if (peak_of := first_peak(x, model)) is not None:
+        found["control.first_peak_pct"] = peak_of
     frequency = getattr(board.spec.reference.params, "frequency_hz", 0.0)
     if frequency:
         first = len(u) - len(u[tail])
@@ -80,6 +84,20 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[st
         found["control.amplitude_um"] = abs(phasor)
         found["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
     return {name: value for name, value in found.items() if math.isfinite(value)}
+
+
+def first_peak(x: FloatArray, model: FloatArray) -> float | None:
+    """Return by how much the first peak is higher than the model's, %; nothing when the model does not turn twice."""
+    slope = np.sign(np.diff(model))
+    moving = np.flatnonzero(slope)
+    if not len(moving):
+        return None
+    way = slope[moving[0]]
+    back = moving[slope[moving] == -way]
+    again = moving[(slope[moving] == way) & (moving > back[0])] if len(back) else back
+    if not len(again) or model[back[0]] * way <= 0.0:
+        return None
+    return float(100.0 * (np.max(x[: again[0] + 1] * way) / (model[back[0]] * way) - 1.0))
 
 
 def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str, float]:
@@ -103,6 +121,30 @@ def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str
     return found
 
 
+def identify_metrics(board: Board, name: str, error: FloatArray | None, options: dict[str, Any]) -> dict[str, float]:
+    """Return how well one identifier knows the device, and whether the input lets it.
+
+    ``error_pct`` is the mean over the tail of the largest relative error of a coefficient; the settling time is the
+    last moment it was above 10 %, counted from ``metrics.since_ms``. ``mass_error_pct`` and the others are those of the
+    estimates at the end.
+    """
+    prefix = f"identify.{name}"
+    last = {
+        "excitation": board.value(f"{name}.excitation"),
+        "excitation_relative": board.value(f"{name}.excitation_relative"),
+        "identifiable": board.value(f"{name}.identifiable"),
+    }
+    if error is not None:
+        start = min(round(float(options.get("since_ms", 0.0)) / board.dt_ms), len(error) - 1)
+        outside = np.flatnonzero(error[start:] > IDENTIFIED_PCT)
+        last["settling_ms"] = (float(outside[-1]) + 1.0) * board.dt_ms if len(outside) else 0.0
+        last["error_pct"] = float(np.mean(error[int(len(error) * (1.0 - float(options.get("tail_share", TAIL)))) :]))
+        for part in ("mass", "stiffness", "damping"):
+            estimate, truth = (board.value(f"{name}.{port}.{part}") for port in ("estimate", "truth"))
+            last[f"{part}_error_pct"] = 100.0 * (estimate / truth - 1.0)
+    return {f"{prefix}.{key}": value for key, value in last.items() if math.isfinite(value)}
+
+
 def step_lengths(truth: FloatArray) -> list[int]:
     """Return the number of samples of each stretch of one truth."""
     edges = np.flatnonzero(np.diff(truth)) + 1
@@ -121,6 +163,8 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
         found |= sensing_metrics(board, trace, options)
+    for name in board.spec.identifiers if board.tick > 1 else ():
+        found |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), options)
     scores = board.scores()
     for name in board.spec.diagnosers:
         found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))

@@ -189,6 +189,7 @@ def _figures(
 ) -> dict[str, float]:
     """Return the figures of a board from the trace, or of a twin from the trace of all."""
     names = [*TRACED_FIGURES, *(f"{name}.truth" for name in board.spec.diagnosers)]
+    names += [f"{name}.error_pct" for name in board.spec.identifiers if f"{name}.error_pct" in board.wiring.index]
     table = signals or board.signals
     trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
     return measure(board, trace, scenario.head.metrics)

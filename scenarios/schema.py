@@ -114,7 +114,7 @@ class Head(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     schema_: Literal[1] = Field(1, alias="schema")
-    id: str = Field("unnamed", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")
+    id: str = Field("unnamed", pattern=r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$")
     title: str = Field("", max_length=200)
     source: str = Field("", max_length=500)
     summary: str = Field("", max_length=2000)

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from scipy import signal
 
-from core.block import FloatArray, Oscillator
+from core import estimation, registry
+from core.block import FloatArray, Oscillator, kernel
 from core.board import program
 from core.board.board import CHUNK, Board
 from core.device.oscillator import transition
@@ -120,6 +121,14 @@ def filterpy_step(board: Board, steps: int = 300) -> Callable[[], float]:
     return measure
 
 
+def interconnected_sample(board: Board, samples: int = 20) -> Callable[[], float]:
+    """Return the measurement of python-control's simulation of the same adaptive loop, ns per sample of 10 us."""
+    from scenarios.interconnected import adaptive_loop, simulate
+
+    loop = adaptive_loop(board.spec.context())
+    return lambda: cpu_ns(lambda: simulate(loop, board.dt_ms * samples), samples)
+
+
 def lsim_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
     """Return the measurement of ``scipy.signal.lsim`` on the same record, ns per sample."""
     system = (
@@ -129,6 +138,77 @@ def lsim_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
     t = np.arange(len(voltage)) * 0.01
     return lambda: cpu_ns(lambda: signal.lsim(system, voltage, t), len(voltage))
 
+
+@kernel
+def estimate_record(
+    s: FloatArray, regressors: FloatArray, measured: FloatArray, forgetting: float, limit: float
+) -> None:
+    """Run recursive least squares with four parameters over a record.
+
+    Parameters
+    ----------
+    s : ndarray
+        Estimate, lower triangle of the covariance, and eight scratch numbers.
+    regressors, measured : ndarray, shape (m, 4) and (m,)
+        The record.
+    forgetting, limit : float
+        Forgetting factor and largest trace.
+    """
+    n, at = 4, 14  # known when it is compiled, so that the loops are unrolled
+    for i in range(regressors.shape[0]):
+        error = measured[i]
+        for j in range(n):
+            s[at + j] = regressors[i, j]
+            error -= s[j] * regressors[i, j]
+        estimation.least_squares(s, 0, n, at, at + n, n, error, forgetting, forgetting, limit)
+
+
+def estimate_start(covariance: float) -> FloatArray:
+    """Return the state of ``estimate_record`` before the first sample."""
+    return np.array([0.0] * 4 + estimation.diagonal(4, covariance) + [0.0] * 8)
+
+
+def regressors_of(u: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the regressors [u, u, -y, -y] of a record and what they should give."""
+    return np.column_stack([u[1:-1], u[:-2], -y[1:-1], -y[:-2]]), y[2:]
+
+
+def estimate_sample(regressors: FloatArray, measured: FloatArray) -> Callable[[], float]:
+    """Return the measurement of recursive least squares with four parameters, ns per update."""
+    start = estimate_start(1e8)
+
+    def measure() -> float:
+        s = start.copy()
+        return cpu_ns(lambda: estimate_record(s, regressors, measured, 0.98, 1e10), len(measured))
+
+    return measure
+
+
+def padasip_sample(regressors: FloatArray, measured: FloatArray, updates: int = 2000) -> Callable[[], float]:
+    """Return the measurement of padasip's filter on the same record, ns per update."""
+    import padasip
+
+    def measure() -> float:
+        peer = padasip.filters.FilterRLS(n=4, mu=0.98, eps=1e-8, w="zeros")
+
+        def work() -> None:
+            for i in range(updates):
+                peer.adapt(measured[i], regressors[i])
+
+        return cpu_ns(work, updates)
+
+    return measure
+
+
+ADAPTIVE = {
+    "device": {"id": "ch3"},
+    "plant": {"model": "linear", "thermal_noise": False},
+    "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 159.15494309189535},
+    "controller": {"kind": "mrac"},
+    "sensor": {"kind": "ideal"},
+    "sample_rate_khz": 100,
+}
+"""Direct MRAC at 1 krad/s."""
 
 PLANAR = {
     "device": {"id": "lcr-350"},
@@ -143,25 +223,36 @@ PLANAR = {
 
 def speed() -> dict[str, Any]:
     """Measure everything and return it with the targets, JSON-ready."""
+    identifiers = {f"identifiers.{name}.kind": name for name in registry.blocks("identify")}
     bench = _board({"plant.drive_noise_v": 0.01})
+    estimating = _board({"plant.drive_noise_v": 0.01, **identifiers})
     plane = Board(PLANAR)
     plane.advance(CHUNK)
     device = bench.spec.context().device
     sine = 10.0 * np.sin(2.0 * np.pi * 2.0 * 0.01 * np.arange(SECOND))
-    hot = ["plant", *[i.key for i in bench.wiring.instances if i.block.family == "control"], "kalman"]
+    controllers = [i.key for i in bench.wiring.instances if i.block.family == "control"]
+    hot = ["plant", "open_loop", "pid", "mrac", "kalman"]
+    loop = Board(ADAPTIVE)
+    loop.advance(CHUNK)
     candidates = {
         "bench_tick": lambda: advance_cost(bench),
         "plant_3_controllers_bank": lambda: loop_cost(bench, hot),
+        "controllers": lambda: loop_cost(bench, controllers),
         "bank": lambda: loop_cost(bench, ["kalman"]),
+        "mrac_loop": lambda: loop_cost(loop, ["plant", "effects", "sensor", "reference", "model", "mrac", "drive"]),
         "planar": lambda: loop_cost(plane, [*ALIVE], 2_000),
         "plant_record": lambda: cpu_ns(lambda: held_response(device, sine, 0.01), SECOND),
         "lsim": lsim_sample(device, sine),
     }
+    tones = sine + 5.0 * np.sin(2.0 * np.pi * 4.5 * 0.01 * np.arange(SECOND))
+    record = regressors_of(tones, held_response(device, tones, 0.01))
+    candidates["least_squares"] = estimate_sample(*record)
     missing = ""
     try:
         candidates["filterpy_bank"] = filterpy_step(bench)
+        candidates["padasip"] = padasip_sample(*record)
     except ImportError:
-        missing = "filterpy is not installed (make setup-test installs it)"
+        missing = "filterpy or padasip is not installed (make setup-test installs them)"
     ns = interleaved(candidates)
     figures = [
         _figure("cost of a tick of a bench (blocks, trace, log, digest)", ns["bench_tick"] / 1e3, "us"),
@@ -172,6 +263,7 @@ def speed() -> dict[str, Any]:
             "us",
             most=0.6,
         ),
+        _figure(f"all {len(controllers)} controllers, per sample", ns["controllers"] / 1e3, "us", most=0.6),
         _figure("6-model bank, per step", ns["bank"] / 1e3, "us", most=0.15),
         _figure(
             "planar plant with noise at 0.25 us, of real time at 100 kHz", SAMPLE_NS / ns["planar"], "x", least=1.0
@@ -183,6 +275,12 @@ def speed() -> dict[str, Any]:
             least=1000.0,
         ),
     ]
+    figures.append(
+        _figure("recursive least squares, 4 parameters, per update", ns["least_squares"] / 1e3, "us", most=0.03)
+    )
+    if "padasip" in ns:
+        ratio = ns["padasip"] / ns["least_squares"]
+        figures.append(_figure("recursive least squares over padasip's FilterRLS", ratio, "x", least=150.0))
     if "filterpy_bank" in ns:
         figures.append(
             _figure(
@@ -192,11 +290,20 @@ def speed() -> dict[str, Any]:
                 least=800.0,
             )
         )
+    if "interconnected_mrac" in ns:
+        figures.append(
+            _figure(
+                "MRAC loop of 21 states over python-control's interconnected simulation",
+                ns["interconnected_mrac"] / ns["mrac_loop"],
+                "x",
+                least=700.0,
+            )
+        )
     return {
         "figures": figures,
         "ns": {name: round(value, 1) for name, value in ns.items()},
-        "blocks_ns": block_costs(bench),
-        "missing": missing,
+        "blocks_ns": block_costs(estimating),
+        "missing": "; ".join(missing),
         "ok": all(figure["ok"] for figure in figures),
     }
 

@@ -21,6 +21,7 @@ from server.api import (
     scenarios,
     snapshots,
     stream,
+    theory,
     trace,
 )
 from server.page import Page
@@ -34,7 +35,7 @@ from server.settings import Settings
 from server.version import VERSION
 
 API = "/api/v1"
-ROUTERS = (catalog, devices, scenarios, benches, experiments, snapshots, recordings, trace, runs, stream)
+ROUTERS = (catalog, devices, scenarios, benches, experiments, snapshots, recordings, trace, runs, theory, stream)
 
 
 def create_app(settings: Settings) -> FastAPI:

@@ -193,10 +193,12 @@ def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], 
         before = getattr(spec, key)
         for name, section in getattr(new, key).items():
             _check_section(f"{key}.{name}", before[name], section)
-    if list(new.diagnosers) != list(spec.diagnosers):
-        raise _not_live("diagnosers")
-    for name, section in new.diagnosers.items():
-        _check_section(f"diagnosers.{name}", spec.diagnosers[name], section)
+    for key in ("identifiers", "diagnosers"):
+        before, after = getattr(spec, key), getattr(new, key)
+        if list(after) != list(before):
+            raise _not_live(key)
+        for name, section in after.items():
+            _check_section(f"{key}.{name}", before[name], section)
     return new, {path: _get(spec, path) for path in values}, dict(values)
 
 
@@ -205,7 +207,7 @@ def _check_section(path: str, old: Section, new: Section) -> None:
         raise _not_live(f"{path}.every")
     if old.block is not new.block:
         ports = [(port.name, port.labels) for port in (*old.block.outputs, *old.block.taps)]
-        if path.startswith("diagnosers") or ports != [
+        if path.startswith(("identifiers", "diagnosers")) or ports != [
             (p.name, p.labels) for p in (*new.block.outputs, *new.block.taps)
         ]:
             raise _not_live(f"{path}.kind")
@@ -226,7 +228,7 @@ def _get(spec: Spec, path: str) -> Any:
     if path in in_use:
         return in_use[path]
     sections: dict[str, Section] = {key: getattr(spec, key) for key in LIVE_SECTIONS}
-    for key in ("controllers", "sensors", "diagnosers"):
+    for key in ("controllers", "sensors", "identifiers", "diagnosers"):
         sections |= {f"{key}.{name}": section for name, section in getattr(spec, key).items()}
     sections["controller"] = spec.controllers[spec.active]
     sections["sensor"] = spec.sensors[spec.measuring]

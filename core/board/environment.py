@@ -128,7 +128,8 @@ class Environment(Block):
                 1.0 / ageing_ratio(params.age_weeks),
                 *drawn(context).film,
                 1e3 * device.natural_frequency,
-                structural_share(0.5 / device.damping_ratio),
+                # what is no resonator has no air around it either
+                structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0,
             ]
         )
 

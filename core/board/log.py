@@ -8,7 +8,7 @@ from typing import Any
 
 from core.board.commands import Command, LogEntry
 
-FINDINGS = ("truth_changed", "recognised")
+FINDINGS = ("truth_changed", "recognised", "warning")
 KEPT = 10_000
 """Findings kept at least: an intermittent fault makes thousands a second, and to repeat a run only deeds matter."""
 

@@ -2,36 +2,47 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from dataclasses import replace
+from typing import Any, Literal, Self
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
-from core.device.oscillator import transition
+from core.device.oscillator import held, transition
+from core.device.transfer_function import TransferFunction
+from core.errors import InputError
 
-PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT = range(6)
+PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT, REACH, PUSH, ZEROTH, FIRST, SLOPE_X, SLOPE_V, SLOPE_IN, DT = range(14)
 X, V, HELD, STARTED = range(4)
 
 
 def model_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Advance the model over the interval that ends now."""
     if p[DIRECT] != 0.0:
+        w[io[3]] = (p[STATIC] * w[io[0]] - w[io[2]]) / p[DT] if s[STARTED] != 0.0 else 0.0
         w[io[2]] = p[STATIC] * w[io[0]]
+        s[STARTED] = 1.0
         return
     if s[STARTED] != 0.0:
         rest = p[STATIC] * s[HELD]
         x = s[X] - rest
         v = s[V]
-        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest)
-        s[V] = settled(p[PHI21] * x + p[PHI22] * v)
+        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest + p[REACH] * s[HELD])
+        s[V] = settled(p[PHI21] * x + p[PHI22] * v + p[PUSH] * s[HELD])
     s[STARTED] = 1.0
     # half a sample later is the mean of an analogue drive, and the same as now for a held one
     s[HELD] = w[io[1]]
-    w[io[2]] = s[X]
+    w[io[2]] = p[ZEROTH] * s[X] + p[FIRST] * s[V]
+    w[io[3]] = p[SLOPE_X] * s[X] + p[SLOPE_V] * s[V] + p[SLOPE_IN] * s[HELD]
 
 
 class Model(Block):
-    r"""Reference model, :math:`\ddot y_m+a_{m1}\dot y_m+a_{m2}y_m=k_mr`."""
+    r"""Reference model, :math:`\ddot y_m+a_{m1}\dot y_m+a_{m2}y_m=k_mr`.
+
+    Or any :math:`\frac{b_1s+b_0}{a_2s^2+a_1s+a_0}` in the unit of time of a plant given as a transfer function
+    (:math:`1/\omega_0` of a resonator).
+    """
 
     title = "Reference model"
     inputs = (
@@ -39,22 +50,63 @@ class Model(Block):
         Port("middle", "V", "reference half a sample later", source="reference.middle"),
     )
     outputs = (Port("displacement", "um", "where the shuttle should be"),)
-    equations = (Equation("model", r"\ddot y_m+a_{m1}\dot y_m+a_{m2}y_m=k_mr", "3.1.2.4"),)
+    taps = (Port("velocity", "um/ms", "how fast it should move"),)
+    equations = (
+        Equation("model", r"\ddot y_m+a_{m1}\dot y_m+a_{m2}y_m=k_mr", "3.1.2.4"),
+        Equation("transfer function", r"y_m=\frac{b_1s+b_0}{a_2s^2+a_1s+a_0}\,r", "4.3.1.2"),
+    )
 
     class Params(BlockParams):
         """Which model."""
 
-        kind: Literal["copy", "damped", "direct"] = parameter(
+        kind: Literal["copy", "damped", "direct", "transfer_function"] = parameter(
             "copy",
-            "the nominal device, a damped one of the same resonance, or just the displacement at rest",
+            "the nominal device, a damped one of the same resonance, just the displacement at rest, or a "
+            "transfer function",
             live=False,
+        )
+        numerator: list[float] = Field(
+            [1.0],
+            min_length=1,
+            max_length=2,
+            description="of the transfer function, highest power first",
+            json_schema_extra={"unit": "", "live": False, "equation": "4.3.1.2"},
+        )
+        denominator: list[float] = Field(
+            [1.0, 1.0],
+            min_length=2,
+            max_length=3,
+            description="of the transfer function, highest power first",
+            json_schema_extra={"unit": "", "live": False, "equation": "4.3.1.2"},
         )
         damping_ratio: float = parameter(0.7, "damping ratio of the damped model", gt=0, le=10, live=False)
 
+        @model_validator(mode="after")
+        def _proper(self) -> Self:
+            if self.denominator[0] <= 0.0:
+                raise ValueError("the first coefficient of the denominator must be > 0")
+            if len(self.numerator) >= len(self.denominator):
+                raise ValueError("the numerator must be shorter than the denominator")
+            return self
+
     @classmethod
     def oscillator(cls, params: Any, device: Oscillator) -> Oscillator:
-        """Return the model that belongs to a device."""
-        if params.kind != "damped":
+        """Return the model that belongs to a device; a zero of its transfer function is left out.
+
+        Raises
+        ------
+        InputError
+            For a model this device cannot have.
+        """
+        if params.kind == "transfer_function":
+            unit = 1.0 / device.natural_frequency
+            given = TransferFunction(gain=params.numerator[-1], denominator=params.denominator, time_unit_ms=unit)
+            return replace(given.oscillator(), time_unit_ms=device.time_unit_ms)
+        if params.kind == "copy":
+            return device
+        if device.mass <= 0.0 or device.stiffness <= 0.0:
+            raise InputError(f"{params.kind} needs a device with mass and spring", "model.kind", "choose another")
+        if params.kind == "direct":
             return device
         critical = 2.0 * (device.stiffness * device.mass) ** 0.5
         return Oscillator(device.mass, params.damping_ratio * critical, device.stiffness, device.force)
@@ -63,8 +115,29 @@ class Model(Block):
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         model = context.model
-        phi = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
-        return np.array([*phi, model.static_gain, float(params.kind == "direct")])
+        resonator = params.kind != "transfer_function" and context.device.time_unit_ms == 0.0
+        if resonator or params.kind == "direct":
+            phi = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
+            plain = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0)
+            return np.array([*phi, model.static_gain, float(params.kind == "direct"), *plain, context.dt_ms])
+        *free, reach, push = held(model.mass, model.damping, model.stiffness, context.dt_ms)
+        gain, unit = model.force, 1.0 / context.device.natural_frequency
+        first, zeroth = 0.0, 1.0
+        if params.kind == "transfer_function":
+            # the zero works on the output: the state is that of a unit numerator
+            gain = 1.0
+            first, zeroth = [0.0, 0.0, *params.numerator][-2:]
+        first *= unit
+        if model.mass == 0.0:
+            slope = (-zeroth * model.stiffness / model.damping, 0.0, zeroth * gain / model.damping)
+        else:
+            inverse = 1.0 / model.mass
+            slope = (
+                -first * model.stiffness * inverse,
+                zeroth - first * model.damping * inverse,
+                first * gain * inverse,
+            )
+        return np.array([*free, 0.0, 0.0, gain * reach, gain * push, zeroth, first, *slope, context.dt_ms])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

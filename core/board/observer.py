@@ -1,4 +1,4 @@
-"""Observer: puts into words what the diagnosers found."""
+"""Observer: puts into words what the diagnosers found, and what blocks warn of."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.board.wiring import Wiring
 
 
 class Observer:
-    """Sees changes of the truth, and its recognition, in the rows of a board."""
+    """Sees changes of the truth, its recognition, and warnings, in the rows of a board."""
 
     def __init__(self, spec: Spec, wiring: Wiring) -> None:
         signals = wiring.signals
@@ -26,10 +26,23 @@ class Observer:
             for name, section in spec.diagnosers.items()
         }
         self._last = dict.fromkeys(self._watched, (-2.0, -1.0))
+        self._warnings = [
+            (signals.index(f"{instance.prefix}.{port.name}") - signals.outputs, f"{instance.key}: {port.warning}")
+            for instance in wiring.instances
+            for port in instance.block.taps
+            if port.warning
+        ]
+        self._warned = [0.0] * len(self._warnings)
 
     def look(self, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[dict[str, Any]]:
         """Return what happened in some rows, as the fields of log entries."""
         found: list[dict[str, Any]] = []
+        for which, (column, text) in enumerate(self._warnings):
+            flag = taps[:, column]
+            if self._warned[which] != 0.0 or flag.any():
+                rises = np.flatnonzero(np.diff(flag, prepend=self._warned[which]) > 0.0).tolist()
+                found += [{"kind": "warning", "text": text, "tick": first_tick + at} for at in rises]
+                self._warned[which] = float(flag[-1]) if len(flag) else self._warned[which]
         for name, (labels, truth_column, delay_column) in self._watched.items():
             truth, delay = outputs[:, truth_column], taps[:, delay_column]
             last_truth, last_delay = self._last[name]

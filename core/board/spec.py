@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from core import registry
-from core.block import Block, BlockParams, Context
+from core.block import Block, BlockParams, Context, Oscillator
 from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
@@ -33,7 +33,7 @@ ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_u
 
 DEFAULTS: Document = {
     "device": {"id": "ch3"},
-    "plant": {"model": "linear"},
+    "plant": {},
     "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 1000.0},
     "controller": {"kind": "open_loop"},
     "sensor": {"kind": "ideal"},
@@ -70,6 +70,7 @@ SECTIONS = (
     "sensors",
     "drive",
     "guard",
+    "identifiers",
     "diagnosers",
     "twins",
 )
@@ -97,6 +98,7 @@ class Spec:
     sensors: dict[str, Section]
     active: str
     controllers: dict[str, Section]
+    identifiers: dict[str, Section]
     diagnosers: dict[str, Section]
 
     @property
@@ -152,15 +154,22 @@ def parse(document: Document) -> Spec:
 
 def _parse(doc: Document) -> Spec:
     frame = _frame({key: doc[key] for key in doc if key not in SECTIONS})
+    identifiers, diagnosers = doc.get("identifiers", {}), doc.get("diagnosers", {})
+    for name in identifiers:
+        if name in diagnosers:
+            raise InputError("is the name of a diagnoser as well", f"identifiers.{name}", "choose another")
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
     if "drive" in plant:
         drive["kind"] = plant.pop("drive")
-    plant_kind = plant.pop("model", "linear")
-    return Spec(
+    device = build_device(doc["device"])
+    usual = "transfer_function" if device.transfer_function is not None else "linear"
+    plant_kind = plant.pop("model", usual)
+    doc["plant"].setdefault("model", usual)
+    spec = Spec(
         document=doc,
         frame=frame,
-        device=build_device(doc["device"]),
+        device=device,
         environment=Section(Environment, _params(Environment, doc.get("environment", {}), "environment")),
         plant=_section("plant", plant_kind, plant, "plant", "model"),
         reference=_chosen("reference", doc["reference"], "reference"),
@@ -171,8 +180,32 @@ def _parse(doc: Document) -> Spec:
         sensors=_shadowed("sense", "sensors", doc),
         active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
         controllers=_shadowed("control", "controllers", doc),
-        diagnosers={name: _diagnoser(name, table) for name, table in doc.get("diagnosers", {}).items()},
+        identifiers={name: _named("identify", "identifiers", name, table) for name, table in identifiers.items()},
+        diagnosers={name: _named("diagnose", "diagnosers", name, table) for name, table in diagnosers.items()},
     )
+    return _suited(spec)
+
+
+def _suited(spec: Spec) -> Spec:
+    """Leave out controllers and sensors that are not for this device; refuse what was asked for and is not."""
+    nominal = spec.device.oscillator()
+    pair = nominal, Model.oscillator(spec.model.params, nominal)
+    fields = {
+        "plant.model": spec.plant.block,
+        "controller.kind": spec.controllers[spec.active].block,
+        "sensor.kind": spec.sensors[spec.measuring].block,
+    }
+    for key in ("identifiers", "diagnosers"):
+        fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
+    for field, block in fields.items():
+        reason = block.unsuited(*pair)
+        if reason:
+            raise InputError(f"{block.name}: {reason}", field)
+    return replace(spec, controllers=_for(pair, spec.controllers), sensors=_for(pair, spec.sensors))
+
+
+def _for(pair: tuple[Oscillator, Oscillator], sections: dict[str, Section]) -> dict[str, Section]:
+    return {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
 
 
 def _as_written(error: InputError, document: Document) -> InputError:
@@ -194,7 +227,7 @@ def normal_form(document: Document) -> Document:
     for key in SECTIONS:
         if key in doc and not isinstance(doc[key], dict):
             raise InputError(f"must be a table, got {short(doc[key])}", key)
-    for key in ("controllers", "sensors", "diagnosers"):
+    for key in ("controllers", "sensors", "identifiers", "diagnosers"):
         for name, table in doc.get(key, {}).items():
             if not isinstance(table, dict):
                 raise InputError(f"must be a table, got {short(table)}", f"{key}.{name}")
@@ -288,10 +321,10 @@ def _measuring(kind: object) -> str:
     return block.name
 
 
-def _diagnoser(name: str, table: Document) -> Section:
+def _named(family: str, key: str, name: str, table: Document) -> Section:
     if not IDENTIFIER.match(name):
-        raise InputError("must be a short name of small letters, digits and _", f"diagnosers.{name}")
-    return _chosen("diagnose", table, f"diagnosers.{name}")
+        raise InputError("must be a short name of small letters, digits and _", f"{key}.{name}")
+    return _chosen(family, table, f"{key}.{name}")
 
 
 def _params(block: type[Block], values: Document, field: str) -> BlockParams:

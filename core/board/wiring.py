@@ -92,6 +92,7 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     for recovers in (False, True):
         order += [own(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers]
     order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
+    order += [own(name, section) for name, section in spec.identifiers.items()]
     for name, section in spec.diagnosers.items():
         order.append(own(name, section))
         order.append(Instance(f"{name}.score", name, Score, _scored(section.params), section.every))

@@ -7,28 +7,40 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, kernel, parameter, settled
-from core.control.controller import APPLIED, INPUTS, MEASURED, MODEL, OUTPUT, REFERENCE, normalised
-from core.device.oscillator import transition
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, kernel, parameter, settled
+from core.control.controller import (
+    APPLIED,
+    INPUTS,
+    MEASURED,
+    MODEL,
+    OUTPUT,
+    REFERENCE,
+    TRUTH,
+    advance_model,
+    coefficients,
+    matching,
+    model_filter,
+    true_plant,
+    unsuited_second_order,
+)
 
 H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
 MODEL_GAIN, MODEL_A1, MODEL_A2, PLANT_A1, PLANT_A2, PLANT_GAIN, SIGN, FILTER_DECAY, FILTER_GAIN = range(10, 19)
-PHI11, PHI12, PHI21, PHI22, STATIC = range(19, 24)
-THETA, ALPHA, W1, W2, LAST = 0, 4, 5, 6, 7  # LAST: the regressor of the sample before
-FILTERED, APPLIED_FILTER, START = 11, 19, 21  # two states for each of the four regressors, then of the input
-MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE = 5, 6, 7
-OWN_VOLTAGE = 8
+BIAS, MODEL_FILTER = 19, 20
+R, FILTERED_INPUT, FILTERED_OUTPUT, Y, CONSTANT, N = range(6)
+"""The regressors; the constant takes part only if it is not 0."""
+THETA, ALPHA, W1, W2, LAST = 0, N, N + 1, N + 2, N + 3  # LAST: the regressor of the sample before
+FILTERED, APPLIED_FILTER, START, STATES = LAST + N, LAST + 3 * N, LAST + 3 * N + 2, LAST + 3 * N + 3
+FIRST_TRUTH = len(INPUTS)
+DRIVE_OFFSET = FIRST_TRUTH + len(TRUTH)
+OWN_VOLTAGE = DRIVE_OFFSET + 1
 TAPS = OWN_VOLTAGE + 1
 
 
 @kernel
-def advance(p: Any, s: Any, at: int, held: float) -> None:
-    """Advance one copy of the model over an interval with a held input."""
-    rest = p[STATIC] * held
-    x = s[at] - rest
-    v = s[at + 1]
-    s[at] = settled(p[PHI11] * x + p[PHI12] * v + rest)
-    s[at + 1] = settled(p[PHI21] * x + p[PHI22] * v)
+def weight(p: Any, i: int) -> float:
+    """Return the adaptation weight of a regressor: w2 and y are micrometres, the others volts."""
+    return float(p[WEIGHT_OUTPUT] if i == FILTERED_OUTPUT or i == Y else p[WEIGHT_INPUT])
 
 
 def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -36,30 +48,32 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
     y = w[io[MEASURED]]
     r = w[io[REFERENCE]]
     u = w[io[APPLIED]]
+    n = CONSTANT if p[BIAS] == 0.0 else N
     if s[START] != 0.0:
-        for i in range(4):
-            advance(p, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
-        advance(p, s, APPLIED_FILTER, u)  # G_m[u]
+        for i in range(n):
+            advance_model(p, MODEL_FILTER, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
+        advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u)  # G_m[u]
         s[W1] = settled(p[FILTER_DECAY] * s[W1] + p[FILTER_GAIN] * u)  # w1' = -lam w1 + u
-        s[W2] = settled(p[FILTER_DECAY] * s[W2] + p[FILTER_GAIN] * s[LAST + 3])  # w2' = -lam w2 + y
+        s[W2] = settled(p[FILTER_DECAY] * s[W2] + p[FILTER_GAIN] * s[LAST + Y])  # w2' = -lam w2 + y
     s[START] = 1.0
-    s[LAST], s[LAST + 1], s[LAST + 2], s[LAST + 3] = r, s[W1], s[W2], y
+    s[LAST], s[LAST + 1], s[LAST + 2], s[LAST + 3], s[LAST + 4] = r, s[W1], s[W2], y, p[BIAS]
 
     e = settled(y - w[io[MODEL]])
     eta = -s[APPLIED_FILTER]
     den = 1.0
-    for i in range(4):
+    for i in range(n):
         filtered = s[FILTERED + 2 * i]
         eta += s[THETA + i] * filtered
-        den += (p[WEIGHT_INPUT] if i < 2 else p[WEIGHT_OUTPUT]) * filtered * filtered
+        den += weight(p, i) * filtered * filtered
     eta = settled(eta)
     den += eta * eta
     if p[NORMALISE] == 0.0:
         den = 1.0
     eps = settled(e + s[ALPHA] * eta) if p[AUGMENT] != 0.0 else e
     rate = p[H] * p[GAIN] / den
-    for i in range(4):
-        g = p[WEIGHT_INPUT] if i < 2 else p[WEIGHT_OUTPUT]
+    voltage = 0.0
+    for i in range(n):
+        g = weight(p, i)
         theta = s[THETA + i]
         theta += -p[SIGN] * rate * g * eps * s[FILTERED + 2 * i] - p[H] * p[LEAKAGE] * p[GAIN] * theta
         if p[BOUND] > 0.0:
@@ -67,32 +81,27 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
             bound = p[BOUND] * math.sqrt(g)
             theta = min(max(theta, -bound), bound)
         s[THETA + i] = theta
+        voltage += theta * s[LAST + i]
     if p[ADAPT_ALPHA] != 0.0:
         s[ALPHA] -= rate * eps * eta
-
-    voltage = 0.0
-    for i in range(4):
-        voltage += s[THETA + i] * s[LAST + i]
     w[io[OWN_VOLTAGE]] = voltage
 
-    # what the gains should be, from the truth the bench knows
-    mass = w[io[MASS_SCALE]]
-    a1 = p[PLANT_A1] * w[io[DAMPING_SCALE]] / mass
-    a2 = p[PLANT_A2] * w[io[STIFFNESS_SCALE]] / mass
-    gain = p[PLANT_GAIN] / mass
-    ideal_r = p[MODEL_GAIN] / gain
-    ideal_w1 = a1 - p[MODEL_A1]
-    ideal_y = (a2 + (p[POLE] - ideal_w1) * a1 - p[MODEL_A2] - p[POLE] * p[MODEL_A1]) / gain
-    ideal_w2 = ((p[POLE] - ideal_w1) * a2 - p[POLE] * p[MODEL_A2]) / gain - p[POLE] * ideal_y
+    a1, a2, gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
     t = io[TAPS]
     ideal = io[TAPS + 1]
-    w[ideal], w[ideal + 1], w[ideal + 2], w[ideal + 3] = ideal_r, ideal_w1, ideal_w2, ideal_y
+    w[ideal], w[ideal + 1], w[ideal + 2], w[ideal + 3] = matching(
+        a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE]
+    )
+    # what takes a constant voltage at the comb out again
+    offset = w[io[DRIVE_OFFSET]] / w[io[FIRST_TRUTH + 3]]
+    w[ideal + CONSTANT] = -(1.0 - w[ideal + 1] / p[POLE]) * offset / p[BIAS] if n == N else 0.0
+    w[t + CONSTANT] = s[THETA + CONSTANT]
     lyapunov = 0.0
-    for i in range(4):
+    for i in range(n):
         w[t + i] = s[THETA + i]
         phi = s[THETA + i] - w[ideal + i]
-        lyapunov += phi * phi / (p[WEIGHT_INPUT] if i < 2 else p[WEIGHT_OUTPUT])
-    inverse = 1.0 / ideal_r
+        lyapunov += phi * phi / weight(p, i)
+    inverse = 1.0 / w[ideal]
     lyapunov = 0.5 * (abs(inverse) * lyapunov + (s[ALPHA] - inverse) * (s[ALPHA] - inverse)) / p[GAIN]
     w[io[TAPS + 2]] = s[ALPHA]
     w[io[TAPS + 3]] = e
@@ -102,23 +111,7 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
     w[io[TAPS + 7]] = -eps * eps / den
 
 
-def matching(
-    plant: tuple[float, float, float], model: tuple[float, float, float], pole: float
-) -> tuple[float, float, float, float]:
-    r"""Return the gains on r, w1, w2, y that make the loop equal the model.
-
-    .. math:: k=\frac{k_m}{k_p},\quad \theta_1=a_{p1}-a_{m1},\quad
-        \theta_0=\frac{a_{p2}+(\lambda-\theta_1)a_{p1}-a_{m2}-\lambda a_{m1}}{k_p},\quad
-        \theta_2=\frac{(\lambda-\theta_1)a_{p2}-\lambda a_{m2}}{k_p}-\lambda\theta_0
-    """
-    a1, a2, gain = plant
-    m1, m2, model_gain = model
-    first = a1 - m1
-    zero = (a2 + (pole - first) * a1 - m2 - pole * m1) / gain
-    return model_gain / gain, first, ((pole - first) * a2 - pole * m2) / gain - pole * zero, zero
-
-
-LABELS = ("r", "w1", "w2", "y")
+LABELS = ("r", "w1", "w2", "y", "bias")
 
 
 class Mrac(Block):
@@ -139,13 +132,12 @@ class Mrac(Block):
     title = "Direct MRAC"
     inputs = (
         *INPUTS,
-        Port("mass_scale", "1", "true mass over nominal, for the ideal gains", source="effects.mass_scale"),
-        Port("stiffness_scale", "1", "true stiffness over nominal", source="effects.stiffness_scale"),
-        Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
+        *TRUTH,
+        Port("drive_offset", "V", "voltage at the comb that nobody applied", source="effects.drive_offset"),
     )
     outputs = (OUTPUT,)
     taps = (
-        Port("gain", "mixed", "adapted gains on r, w1, w2 and y", labels=LABELS),
+        Port("gain", "mixed", "adapted gains on r, w1, w2, y and a constant", labels=LABELS),
         Port("gain_ideal", "mixed", "gains that would match the model exactly", labels=LABELS),
         Port("alpha", "1", "adapted gain of the auxiliary error"),
         Port("error", "um", "measured minus model displacement"),
@@ -195,15 +187,18 @@ class Mrac(Block):
             True, "adapt on the augmented error; off adapts on the plain one", equation="3.1.2.14"
         )
         adapt_alpha: bool = parameter(True, "adapt alpha as well")
+        bias_v: float = parameter(0.0, "constant regressor against a constant load, 0 for none", "V", ge=0, le=100)
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants and models that are not of second order."""
+        return unsuited_second_order(device, model)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        w0 = context.device.natural_frequency
-        h = context.dt_ms * w0
-        a1, a2, gain = normalised(context.device, w0)
-        m1, m2, model_gain = normalised(context.model, w0)
-        gain, model_gain = gain or 1.0, model_gain or 1.0  # identical stators give no gain to match
+        h = context.dt_ms * context.device.natural_frequency
+        (a1, a2, gain), (m1, m2, model_gain) = coefficients(context)
         weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
         pole = params.filter_pole
         decay = math.exp(-pole * h)
@@ -228,20 +223,18 @@ class Mrac(Block):
                 math.copysign(1.0, gain * model_gain),
                 decay,
                 (1.0 - decay) / pole,
-                *transition(1.0, m1, m2, h),
-                model_gain / m2,
+                params.bias_v,
+                *model_filter(context),
             ]
         )
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """Gains that match the nominal device, everything else at rest."""
-        w0 = context.device.natural_frequency
-        plant, model = normalised(context.device, w0), normalised(context.model, w0)
-        start = np.zeros(22)
-        if plant[2] != 0.0:
-            start[THETA : THETA + 4] = matching(plant, model, params.filter_pole)
-        start[ALPHA] = 1.0 / (start[THETA] or 1.0)
+        plant, model = coefficients(context)
+        start = np.zeros(STATES)
+        start[THETA : THETA + CONSTANT] = matching(*plant, *model, params.filter_pole)
+        start[ALPHA] = 1.0 / start[THETA]
         return start
 
     step = mrac_step

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.control.controller import (
     APPLIED,
     ENGAGED,
+    FIRST_ORDER,
     INPUTS,
     MEASURED,
     MODEL,
@@ -76,6 +77,11 @@ class Pid(Block):
         derivative_v_ms_um: float | None = parameter(None, "derivative gain", "V ms/um", ge=0)
         derivative_filter: float = parameter(0.2, "time constant of the derivative filter over 1/w0", gt=0, le=10)
         feedforward: float = parameter(0.0, "share of the reference voltage added", ge=-2, le=2)
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants of first order."""
+        return FIRST_ORDER if device.mass == 0.0 else ""
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

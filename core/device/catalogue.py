@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from core.block import BlockParams
 from core.device.device import Device, Printed
 from core.device.geometry import Geometry
+from core.device.transfer_function import TransferFunction
 from core.errors import from_validation, unknown
 
 
@@ -41,7 +42,12 @@ def device(overrides: dict[str, Any]) -> Device:
     try:
         return Device.model_validate(merged)
     except ValidationError as error:
-        tables: dict[str, type[BlockParams]] = {"": Device, "geometry": Geometry, "printed": Printed}
+        tables: dict[str, type[BlockParams]] = {
+            "": Device,
+            "geometry": Geometry,
+            "transfer_function": TransferFunction,
+            "printed": Printed,
+        }
         fields = {name: list(table.model_fields) for name, table in tables.items()}
         raise from_validation(error, fields).under("device") from None
 

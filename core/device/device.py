@@ -11,6 +11,8 @@ from core.block import BlockParams, Oscillator, parameter
 from core.device.environment import ROOM_K
 from core.device.frequency import figures
 from core.device.geometry import Geometry
+from core.device.transfer_function import TransferFunction
+from core.errors import InputError
 from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
 
 
@@ -42,7 +44,8 @@ class Device(BlockParams):
     so a positive voltage pulls towards -x. Equation 5.2.1 puts *identical* voltages on both stators, which
     gives no force at all.
 
-    Either mass, damping and stiffness are given, or ``geometry``; a value given beside a geometry wins.
+    Either mass, damping and stiffness are given, or ``geometry``; a value given beside a geometry wins. A
+    ``transfer_function`` stands for a plant that is no resonator, and has none of these.
     """
 
     id: str = parameter("custom", "name in the catalogue", live=False)
@@ -64,10 +67,13 @@ class Device(BlockParams):
     fingers: int | None = parameter(None, "rotor fingers per side", ge=1, live=False)
     thickness_um: float | None = parameter(None, "structural thickness", "um", gt=0, live=False)
     finger_gap_um: float | None = parameter(None, "gap between fingers as etched", "um", gt=0, live=False)
+    transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
     printed: Printed | None = parameter(None, "what the dissertation prints of it", live=False)
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
+        if self.transfer_function is not None:
+            return self
         missing = [
             name
             for name in ("mass_kg", "damping_ns_m", "stiffness_n_m")
@@ -84,7 +90,15 @@ class Device(BlockParams):
 
     @property
     def resolved(self) -> dict[str, float]:
-        """Mass, damping and stiffness in SI units."""
+        """Mass, damping and stiffness in SI units.
+
+        Raises
+        ------
+        InputError
+            For a transfer function, which has none.
+        """
+        if self.transfer_function is not None:
+            raise InputError("is a transfer function, without mass or stiffness; choose a resonator", "device.id")
         drawn: dict[str, Any] = {}
         if self.geometry is not None:
             drawn = {
@@ -120,7 +134,9 @@ class Device(BlockParams):
 
     @property
     def capacitance_gradient(self) -> float:
-        """dC/dx of one comb, F/m."""
+        """dC/dx of one comb, F/m; a transfer function has no comb."""
+        if self.transfer_function is not None:
+            return 0.0
         if self.force_n_per_v is not None:
             return self.force_n_per_v / (2.0 * abs(self.bias_v))
         drawn = self.drawing
@@ -134,6 +150,8 @@ class Device(BlockParams):
 
     def oscillator(self) -> Oscillator:
         """Return the device in the units of the loop."""
+        if self.transfer_function is not None:
+            return self.transfer_function.oscillator()
         si = self.resolved
         return Oscillator(
             mass=mass_mg(si["mass_kg"]),
@@ -154,6 +172,8 @@ class Device(BlockParams):
         temperature_k : float
             Temperature of the thermomechanical noise, :math:`x_{rms}=\sqrt{k_BT/k}`.
         """
+        if self.transfer_function is not None:
+            return self.transfer_function.metrics()
         si = self.resolved
         mass, force = si["mass_kg"], self.signed_force_n_per_v
         stiffness, damping = si["stiffness_n_m"] * stiffness_scale, si["damping_ns_m"] * damping_scale

@@ -45,3 +45,41 @@ def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple
         c = 1.0
         s = h
     return decay * (c + sigma * s), decay * s, -square * decay * s, decay * (c - sigma * s)
+
+
+@kernel
+def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float, float, float, float, float, float]:
+    r"""Return transition and effect of a unit force held over ``h``, for any :math:`m\ddot x+\beta\dot x+kx=f`.
+
+    Mass, stiffness and damping may be 0 and the last two negative, as those of a transfer function are:
+
+    .. math:: \gamma_2=\frac{\varphi_{12}}{m},\quad
+        \gamma_1=\frac{1-\varphi_{11}}{k}\;\Big(\frac{h-\varphi_{12}}{\beta},\;\frac{h^2}{2m}\text{ without spring,
+        and without damper}\Big)
+
+    and without mass :math:`\varphi_{11}=e^{-kh/\beta}`.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : float
+        mg, uN ms/um, uN/um; not all of mass and damping 0.
+    h : float
+        Interval, ms.
+
+    Returns
+    -------
+    tuple of float
+        phi11, phi12, phi21, phi22, gamma1 (um/uN), gamma2 (um/ms/uN); without mass all but phi11 and gamma1 are 0.
+    """
+    if mass == 0.0:
+        decay = math.exp(-stiffness * h / damping)
+        reach = h / damping if stiffness == 0.0 else -math.expm1(-stiffness * h / damping) / stiffness
+        return decay, 0.0, 0.0, 0.0, reach, 0.0
+    a, b, c, d = transition(mass, damping, stiffness, h)
+    if stiffness != 0.0:
+        reach = (1.0 - a) / stiffness
+    elif damping != 0.0:
+        reach = (h - b) / damping
+    else:
+        reach = 0.5 * h * h / mass
+    return a, b, c, d, reach, b / mass

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, Context, Equation, FloatArray, Port, parameter, settled
+from core.block import Block, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.device.oscillator import transition
 from core.diagnose.hypothesis import BankParams, assumed_noise
 
@@ -187,6 +187,11 @@ class Mmae(Block):
         initial_std_um: float = parameter(
             1.0, "uncertainty of the displacement at the start", "um", gt=0, le=100, live=False
         )
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants without mass or spring."""
+        return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

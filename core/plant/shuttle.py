@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from core.block import Block, BlockParams, Context, Port, inlined, kernel, parameter
+from core.block import Block, BlockParams, Context, Oscillator, Port, inlined, kernel, parameter
 from core.noise import key, normal
 from core.units import UN_PER_N, thermal_force_un
 
@@ -87,6 +87,11 @@ class Shuttle(Block):
         Port("contact", "1", "1 while fingers touch a stator"),
         Port("short", "1", "shorted combs, until the board is reset: 1 at +x, 2 at -x, 3 both"),
     )
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse what is no resonator."""
+        return "" if device.time_unit_ms == 0.0 else "this device is no resonator; choose transfer_function"
 
     @classmethod
     def shared(cls, params: Any, context: Context) -> list[float]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, Port
+from core.block import TICK, Context, Equation, FloatArray, Oscillator, Port
 from core.sense import tracker
 from core.sense.dual_beam import DualBeam
 from core.sense.sensor import (
@@ -88,6 +88,11 @@ class QuadratureKalman(Sensor):
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of the phase as displacement; the filter's own error is smaller but not white."""
         return calibrated(context, "dual_beam", DualBeam.Params).phase_noise_um
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse what its model cannot be."""
+        return tracker.unsuited(device)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

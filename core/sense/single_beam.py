@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, Port, parameter
+from core.block import TICK, Context, Equation, FloatArray, Oscillator, Port, parameter
 from core.sense import tracker
 from core.sense.grating import WAVE
 from core.sense.hypotheses import (
@@ -137,6 +137,11 @@ class SingleBeam(Sensor):
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of a pair of beams of the same quality; the filter's own error is close to it."""
         return calibrated(context, "through_wafer", ThroughWafer.Params).phase_noise_um
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse what its model cannot be."""
+        return tracker.unsuited(device)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

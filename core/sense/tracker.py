@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, Port, kernel, parameter, settled
+from core.block import Context, Equation, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
 from core.sense.sensor import SensorParams
 
@@ -33,6 +33,11 @@ class TrackerParams(SensorParams):
         0.1, "force the model may lack, over the spring force at that amplitude", ge=0.001, le=10
     )
     force_rate_per_ms: float = parameter(4.0, "how fast that force may wander", "1/ms", gt=0, le=1e4)
+
+
+def unsuited(device: Oscillator) -> str:
+    """Say why a device cannot be tracked by a model of mass and spring."""
+    return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
 
 def pack_model(params: TrackerParams, context: Context) -> list[float]:

@@ -29,7 +29,7 @@ class NewBench(StrictBody):
         DEFAULT_SCALE,
         ge=MIN_SCALE,
         le=MAX_SCALE,
-        description="Device seconds per wall second; null: as fast as possible",
+        description="Device seconds per wall second; null: as fast as possible. Unless given, that of the device",
     )
 
 
@@ -71,7 +71,10 @@ class ForkFrom(StrictBody):
 @router.post("", status_code=201, dependencies=[RateLimited])
 async def create_bench(body: NewBench, service: ServiceDep, response: Response) -> Bench:
     """Make a bench and let it run."""
-    session = await service.benches.create(body.scenario, body.set, body.seed, body.paused, body.time_scale)
+    given = "time_scale" in body.model_fields_set
+    session = await service.benches.create(
+        body.scenario, body.set, body.seed, body.paused, body.time_scale, own_scale=not given
+    )
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
     return service.view(session)
 

@@ -12,7 +12,7 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.commands import Reset
+from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, Reset
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.recorder import Recorder
@@ -71,8 +71,10 @@ class Benches:
         seed: int | None,
         paused: bool,
         time_scale: float | None,
+        *,
+        own_scale: bool = False,
     ) -> Session:
-        """Make a bench from a library id, a TOML text or a document.
+        """Make a bench from a library id, a TOML text or a document; at the pace of its device if that is wanted.
 
         Raises
         ------
@@ -85,6 +87,8 @@ class Benches:
         self._coming += 1
         try:
             scenario, board = await asyncio.to_thread(prepare, source, values, seed)
+            if own_scale:
+                time_scale = usual_scale(board)
             session = Session(
                 scenario, board, time_scale, self._settings.history_ticks, self._metrics, self._engine.clock
             )
@@ -210,3 +214,8 @@ def read_scenario(source: str | dict[str, Any]) -> Scenario:
     if "=" in source or "\n" in source:
         return Scenario.load(source)
     return get(source)
+
+
+def usual_scale(board: Board) -> float:
+    """Return the time scale that suits a device: that of a resonator, or near real time for a plant in seconds."""
+    return min(MAX_SCALE, DEFAULT_SCALE * max(1.0, board.spec.device.oscillator().time_unit_ms))

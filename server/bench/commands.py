@@ -12,6 +12,7 @@ from core.errors import InputError, from_validation, unknown
 
 DEFAULT_SCALE = 0.002
 MIN_SCALE, MAX_SCALE = 1e-6, 1.0
+
 MAX_STEP = 10_000
 
 

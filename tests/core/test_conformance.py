@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from core import registry
 from core.block import Block
 from core.board.board import Board
+from core.device.catalogue import device
 from core.errors import InputError
 from tests.lab import RICH, STORY, do, document, inner_digest, make, play, run_digest
 
@@ -24,6 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TICKS = 120
 SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
 KIND = {"plant": "model"}
+RESONATOR = device({}).oscillator()
 ALL = [entry for family in registry.FAMILIES for entry in registry.blocks(family).values()]
 
 
@@ -35,6 +37,8 @@ def path_of(entry: type[Block]) -> str:
     """Return the table of the document in which a block's parameters stand."""
     if entry.family == "diagnose":
         return "diagnosers.kalman"
+    if entry.family == "identify":
+        return "identifiers.own"
     if entry.family == "board":
         return entry.name
     if entry.family == "sense":
@@ -50,7 +54,12 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         table = {KIND.get(entry.family, "kind"): entry.name}
         if entry.family == "reference":
             table["amplitude_v"] = 8.0
+        if entry.unsuited(RESONATOR, RESONATOR):
+            plain = {"model": "transfer_function"}
+            return {"device": {"id": "second-order-gain"}, "plant": plain, SECTION[entry.family]: table}
         return {SECTION[entry.family]: table}
+    if entry.family == "identify":
+        return {"identifiers.own.kind": entry.name}
     if entry.family == "diagnose":
         return {"diagnosers.kalman.kind": entry.name, "diagnosers.slow.kind": entry.name}
     return {}

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import InputError
-from scenarios.metrics import fundamental, step_lengths
+from scenarios.metrics import first_peak, fundamental, step_lengths
 from scenarios.run import run
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds
@@ -154,3 +154,15 @@ def test_bad_seeds(text):
 
 def test_seeds_include_both_ends():
     assert list(parse_seeds("4:6")) == [4, 5, 6] and list(parse_seeds("7:7")) == [7]
+
+
+def test_first_peak_is_over_the_first_peak_of_the_model():
+    t = np.arange(1000) * 1e-3
+    model = np.sin(2 * np.pi * 2 * t)
+    for sign in (1.0, -1.0):
+        assert first_peak(sign * 1.3 * model, sign * model) == pytest.approx(30.0, abs=1e-6)
+        assert first_peak(sign * 0.8 * model, sign * model) == pytest.approx(-20.0, abs=1e-6)
+    late = np.where(t < 0.4, model, 5.0)  # the model turns again at 3/8 s: what comes then is not the first peak
+    assert first_peak(late, model) == pytest.approx(0.0, abs=1e-6)
+    assert first_peak(model, np.zeros(1000)) is None
+    assert first_peak(model, t) is None

@@ -13,6 +13,7 @@ from core import registry
 from core.board.drive import Drive
 from core.board.guard import Guard
 from core.board.model import Model
+from core.device.catalogue import device
 from core.device.device import Device
 from core.device.geometry import Geometry
 from core.errors import InputError
@@ -22,6 +23,7 @@ from scenarios.run import build, run
 from scenarios.schema import Event, Expectation, Head, Scenario
 from tests.lab import document
 
+RESONATOR = device({}).oscillator()
 LIBRARY = [pytest.param(entry, id=entry.id) for entry in library()]
 
 
@@ -112,6 +114,8 @@ def leaves() -> list[Any]:
 
     def add(table: str, block: Any, base: dict[str, Any]) -> None:
         card = registry.card(block)
+        if block.unsuited(RESONATOR, RESONATOR):
+            base = {**base, "device": {"id": "second-order-gain"}, "plant": {"model": "transfer_function"}}
         for parameter in card.parameters:
             if parameter.type in ("list", "table"):
                 continue
@@ -136,6 +140,8 @@ def leaves() -> list[Any]:
         add(f"controllers.{block.name}", block, {})
     for block in registry.blocks("diagnose").values():
         add("diagnosers.bank", block, {"diagnosers": {"bank": {"kind": block.name}}})
+    for block in registry.blocks("identify").values():
+        add("identifiers.one", block, {"identifiers": {"one": {"kind": block.name}}})
     for block in (Drive, Guard, Model):
         add(block.name, block, {})
     return found
@@ -154,6 +160,8 @@ def test_set_reaches_every_parameter(base, table, name, value):
         section = spec.sensors[table.removeprefix("sensors.")]
     elif table.startswith("diagnosers."):
         section = spec.diagnosers["bank"]
+    elif table.startswith("identifiers."):
+        section = spec.identifiers["one"]
     elif table == "sensor":
         section = spec.sensors[spec.measuring]
     else:
@@ -176,7 +184,7 @@ def test_set_reaches_every_length_of_a_drawing(name):
         assert before != after, "a length that changes nothing"
 
 
-@pytest.mark.parametrize("name", sorted(set(Device.model_fields) - {"id", "geometry", "printed"}))
+@pytest.mark.parametrize("name", sorted(set(Device.model_fields) - {"id", "geometry", "transfer_function", "printed"}))
 def test_set_reaches_every_value_of_a_device(name):
     value: Any = {"title": "x", "source": "y", "fingers": 25}.get(name, 2.5)
     found = with_values(Scenario.load(document()), {f"device.{name}": value})

@@ -628,6 +628,86 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/theory/positive-real": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Judge Positive Real
+         * @description Judge a transfer function, and return its Nyquist curve over the frequencies that matter.
+         */
+        post: operations["judge_positive_real_api_v1_theory_positive_real_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/theory/positive-definite": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Judge Positive Definite
+         * @description Judge a matrix.
+         */
+        post: operations["judge_positive_definite_api_v1_theory_positive_definite_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/theory/persistency": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Judge Persistency
+         * @description Judge an input in its steady state.
+         */
+        post: operations["judge_persistency_api_v1_theory_persistency_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/theory/instability-map": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Map Instability
+         * @description Map where a rule of appendix B is unstable under a sine.
+         */
+        post: operations["map_instability_api_v1_theory_instability_map_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/health/live": {
         parameters: {
             query?: never;
@@ -987,6 +1067,28 @@ export interface components {
             high: number[];
         };
         /**
+         * DefinitenessReport
+         * @description Whether x'Ax is positive for every x.
+         */
+        DefinitenessReport: {
+            /** Positive Definite */
+            positive_definite: boolean;
+            /** Semidefinite */
+            semidefinite: boolean;
+            /** Symmetric */
+            symmetric: boolean;
+            /**
+             * Eigenvalues
+             * @description Of the symmetric part, smallest first
+             */
+            eigenvalues: number[];
+            /**
+             * Minors
+             * @description Leading principal minors of the symmetric part
+             */
+            minors: number[];
+        };
+        /**
          * Design
          * @description A device and the air around it, as in a scenario.
          */
@@ -1159,6 +1261,56 @@ export interface components {
             last: number;
             /** Lost */
             lost: number;
+        };
+        /**
+         * ExcitationReport
+         * @description How well the input excites the regressor [u, -y', -y]/(s + pole)^2.
+         */
+        ExcitationReport: {
+            /** Eigenvalues */
+            eigenvalues: number[];
+            /** Smallest */
+            smallest: number;
+            /**
+             * Relative
+             * @description Smallest eigenvalue with every component scaled to a unit mean square
+             */
+            relative: number;
+            /**
+             * Condition
+             * @description Null: infinite
+             */
+            condition: number | null;
+            /** Exciting */
+            exciting: boolean;
+        };
+        /**
+         * ExcitationSource
+         * @description An input, and the second-order plant whose parameters it should tell apart, in one unit of time.
+         */
+        ExcitationSource: {
+            /** Tones */
+            tones: components["schemas"]["Line"][];
+            /**
+             * Gain
+             * @default 1
+             */
+            gain?: number;
+            /**
+             * A1
+             * @default 0.2
+             */
+            a1?: number;
+            /**
+             * A2
+             * @default 1
+             */
+            a2?: number;
+            /**
+             * Filter Pole
+             * @default 1
+             */
+            filter_pole?: number;
         };
         /**
          * Extremes
@@ -1378,6 +1530,118 @@ export interface components {
             };
         };
         /**
+         * InstabilityMap
+         * @description Growth rate of the worst solution for each frequency (rows) and adaptation gain (columns); below 0 it decays.
+         */
+        InstabilityMap: {
+            /** Frequency */
+            frequency: number[];
+            /** Gain */
+            gain: number[];
+            /** Growth */
+            growth: number[][];
+            /**
+             * Critical Gain Constant
+             * @description Limit under a constant; null: none on the map
+             */
+            critical_gain_constant: number | null;
+        };
+        /**
+         * Line
+         * @description A tone, or a constant at frequency 0.
+         */
+        Line: {
+            /** Amplitude */
+            amplitude: number;
+            /** Frequency */
+            frequency: number;
+        };
+        /**
+         * MapSource
+         * @description Which rule, on which plant kv/(b2 s^2 + b1 s + 1), and the axes of the map.
+         */
+        MapSource: {
+            /**
+             * Rule
+             * @default mit
+             * @enum {string}
+             */
+            rule?: "mit" | "parks" | "lyapunov" | "dressler" | "price" | "monopoli";
+            /**
+             * B1
+             * @default 0.2
+             */
+            b1?: number;
+            /**
+             * B2
+             * @default 1
+             */
+            b2?: number;
+            /**
+             * Gain
+             * @default 1
+             */
+            gain?: number;
+            /**
+             * Model Gain
+             * @default 1
+             */
+            model_gain?: number;
+            /**
+             * Amplitude
+             * @default 1
+             */
+            amplitude?: number;
+            /**
+             * Error Weight
+             * @default 0.1
+             */
+            error_weight?: number;
+            /**
+             * Proportional
+             * @default 5
+             */
+            proportional?: number;
+            /**
+             * Filter Time
+             * @default 6
+             */
+            filter_time?: number;
+            /**
+             * Lowest Frequency
+             * @default 0.2
+             */
+            lowest_frequency?: number;
+            /**
+             * Highest Frequency
+             * @default 2
+             */
+            highest_frequency?: number;
+            /**
+             * Highest Gain
+             * @default 1
+             */
+            highest_gain?: number;
+            /**
+             * Frequencies
+             * @default 60
+             */
+            frequencies?: number;
+            /**
+             * Gains
+             * @default 60
+             */
+            gains?: number;
+        };
+        /**
+         * MatrixSource
+         * @description A square matrix.
+         */
+        MatrixSource: {
+            /** Matrix */
+            matrix: number[][];
+        };
+        /**
          * MeasuredPlant
          * @description CPU time of one tick of the whole bench with this plant; null when it cannot have it.
          */
@@ -1444,7 +1708,7 @@ export interface components {
             paused?: boolean;
             /**
              * Time Scale
-             * @description Device seconds per wall second; null: as fast as possible
+             * @description Device seconds per wall second; null: as fast as possible. Unless given, that of the device
              * @default 0.002
              */
             time_scale?: number | null;
@@ -1568,6 +1832,40 @@ export interface components {
             labels: string[];
             /** Each */
             each: string;
+        };
+        /**
+         * PositiveRealReport
+         * @description Whether a transfer function is positive real, why not, and its Nyquist curve.
+         */
+        PositiveRealReport: {
+            /** Strictly Positive Real */
+            strictly_positive_real: boolean;
+            /** Positive Real */
+            positive_real: boolean;
+            /** Hurwitz */
+            hurwitz: boolean;
+            /** Minimum Phase */
+            minimum_phase: boolean;
+            /** Relative Degree */
+            relative_degree: number;
+            /**
+             * Least Real
+             * @description Smallest real part on the imaginary axis
+             */
+            least_real: number | null;
+            /**
+             * At
+             * @description Frequency where it is; null: at infinity
+             */
+            at: number | null;
+            /** Reasons */
+            reasons: string[];
+            /** Frequency */
+            frequency: number[];
+            /** Real */
+            real: (number | null)[];
+            /** Imaginary */
+            imaginary: (number | null)[];
         };
         /**
          * ProcessSpread
@@ -2110,6 +2408,16 @@ export interface components {
             signals: {
                 [key: string]: components["schemas"]["Extremes"];
             };
+        };
+        /**
+         * TransferFunctionSource
+         * @description A transfer function; coefficients with the highest power first.
+         */
+        TransferFunctionSource: {
+            /** Numerator */
+            numerator: number[];
+            /** Denominator */
+            denominator: number[];
         };
         /**
          * Trip
@@ -3684,6 +3992,138 @@ export interface operations {
                     "text/csv; charset=utf-8": unknown;
                     "application/vnd.apache.parquet": unknown;
                     "application/octet-stream": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    judge_positive_real_api_v1_theory_positive_real_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TransferFunctionSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PositiveRealReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    judge_positive_definite_api_v1_theory_positive_definite_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["MatrixSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DefinitenessReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    judge_persistency_api_v1_theory_persistency_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ExcitationSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ExcitationReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    map_instability_api_v1_theory_instability_map_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["MapSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["InstabilityMap"];
                 };
             };
             /** @description Refused or failed */

@@ -1,0 +1,53 @@
+r"""A plant that is no resonator: the examples of chapter 4 and appendix B."""
+
+from __future__ import annotations
+
+import math
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from core.block import BlockParams, Oscillator, parameter
+
+
+class TransferFunction(BlockParams):
+    r"""A plant :math:`\frac{b_0}{a_2s^2+a_1s+a_0}` in its own unit of time; a volt in, a micrometre out."""
+
+    gain: float = parameter(1.0, "numerator b0", live=False)
+    denominator: list[float] = Field(
+        min_length=2,
+        max_length=3,
+        description="coefficients of the denominator, highest power first",
+        json_schema_extra={"unit": "", "live": False, "equation": "4.3.1.1"},
+    )
+    time_unit_ms: float = parameter(1000.0, "unit of time", "ms", gt=0, le=1e6, live=False)
+
+    @model_validator(mode="after")
+    def _leads(self) -> Self:
+        if self.denominator[0] <= 0.0:
+            raise ValueError("the first coefficient of the denominator must be > 0")
+        return self
+
+    def oscillator(self) -> Oscillator:
+        """Return it in the units of the loop: coefficients are mass, damping and stiffness."""
+        second, first, last = [0.0] * (3 - len(self.denominator)) + self.denominator
+        unit = self.time_unit_ms
+        return Oscillator(second * unit * unit, first * unit, last, self.gain, unit)
+
+    def metrics(self) -> dict[str, float]:
+        """Return the figures that mean something without units; a pole to the right of 0 is one that grows."""
+        plant = self.oscillator()
+        found = {"slowest_pole_per_s": 1e3 * slowest_pole(plant)}
+        if plant.stiffness != 0.0:
+            found["static_gain_um_per_v"] = plant.static_gain
+        if plant.mass > 0.0 and plant.stiffness > 0.0:
+            found["f0_hz"] = 1e3 * math.sqrt(plant.stiffness / plant.mass) / (2.0 * math.pi)
+        return found
+
+
+def slowest_pole(plant: Oscillator) -> float:
+    """Return the largest real part of the poles, rad/ms."""
+    if plant.mass == 0.0:
+        return -plant.stiffness / plant.damping
+    half = 0.5 * plant.damping / plant.mass
+    return math.sqrt(max(0.0, half * half - plant.stiffness / plant.mass)) - half

@@ -1,0 +1,171 @@
+r"""Kernels that controllers and identifiers estimate with: least squares on half a covariance, state filters.
+
+All work on one flat state array and are told where in it things stand. Of a covariance only the lower triangle is kept,
+row by row, so that it stays symmetric whatever the rounding.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from core.block import kernel, settled
+from core.device.oscillator import transition
+
+FILTER_SIZE = 7
+"""Packed numbers of a state filter."""
+
+
+def triangle(n: int) -> int:
+    """Return the numbers in the lower triangle of an n by n matrix."""
+    return n * (n + 1) // 2
+
+
+def diagonal(n: int, value: float) -> list[float]:
+    """Return the lower triangle of a multiple of the unit matrix."""
+    return [value if row == column else 0.0 for row in range(n) for column in range(row + 1)]
+
+
+@kernel
+def entry(row: int, column: int) -> int:
+    """Return where an element stands in the lower triangle."""
+    return row * (row + 1) // 2 + column if row >= column else column * (column + 1) // 2 + row
+
+
+@kernel
+def trace(s: Any, covariance: int, n: int) -> float:
+    """Return the trace of a covariance."""
+    total = 0.0
+    for i in range(n):
+        total += s[covariance + entry(i, i)]
+    return total
+
+
+@kernel
+def least_squares(
+    s: Any,
+    theta: int,
+    covariance: int,
+    regressor: int,
+    product: int,
+    n: int,
+    error: float,
+    noise: float,
+    forgetting: float,
+    limit: float,
+) -> float:
+    r"""Update an estimate by one sample of least squares with forgetting, and return its gain :math:`\phi^TP\phi`.
+
+    .. math:: K=\frac{P\phi}{r+\phi^TP\phi},\quad \theta\leftarrow\theta+Ke,\quad
+        P\leftarrow\frac{P-K\phi^TP}{\mu}
+
+    so that :math:`P^{-1}\leftarrow\mu(P^{-1}+\phi\phi^T/r)`: with :math:`r=\mu` the usual discrete recursion, with
+    :math:`r=m^2\mu/h,\;\mu=e^{-Bh}` the exact sample of the continuous law with rate B and normaliser m. A covariance
+    whose trace would grow beyond the limit stays as it is (Ioannou and Sun, Robust Adaptive Control, 4.3.6): the
+    estimate goes on learning, and what is not excited does not wind up.
+
+    Parameters
+    ----------
+    s : array
+        State that holds everything below.
+    theta, covariance, regressor, product : int
+        Where the estimate, the lower triangle of its covariance, the regressor and n scratch numbers begin.
+    n : int
+        Number of parameters.
+    error : float
+        What was measured minus what the estimate said.
+    noise : float
+        Variance r of that error, > 0.
+    forgetting : float
+        Factor mu per sample, in (0, 1].
+    limit : float
+        Largest trace of the covariance, 0 for none.
+    """
+    # one pass over the triangle serves both halves of the matrix
+    for i in range(n):
+        s[product + i] = 0.0
+    at = covariance
+    for i in range(n):
+        value = s[regressor + i]
+        total = 0.0
+        for j in range(i):
+            total += s[at] * s[regressor + j]
+            s[product + j] += s[at] * value
+            at += 1
+        s[product + i] += total + s[at] * value
+        at += 1
+    information = 0.0
+    before = 0.0
+    lost = 0.0
+    for i in range(n):
+        value = s[product + i]
+        information += s[regressor + i] * value
+        lost += value * value
+        before += s[covariance + entry(i, i)]
+    inverse = 1.0 / (noise + information)
+    for i in range(n):
+        s[theta + i] += s[product + i] * inverse * error
+    after = (before - lost * inverse) / forgetting
+    if limit <= 0.0 or after <= limit or after <= before:
+        grow = 1.0 / forgetting
+        at = covariance
+        for i in range(n):
+            gain = s[product + i] * inverse
+            for j in range(i + 1):
+                s[at] = settled((s[at] - gain * s[product + j]) * grow)
+                at += 1
+    return information
+
+
+@kernel
+def project(s: Any, theta: int, covariance: int, n: int, which: int, low: float, high: float) -> None:
+    r"""Bring one parameter back into its bounds, and the others along by what is known of them together.
+
+    .. math:: \theta\leftarrow\theta+\frac{Pe_i}{P_{ii}}(\text{bound}-\theta_i)
+
+    is the nearest estimate within the bounds in the metric of :math:`P^{-1}`, so the projection never undoes what the
+    update has gained.
+    """
+    value = s[theta + which]
+    missing = min(max(value, low), high) - value
+    variance = s[covariance + entry(which, which)]
+    if missing == 0.0:
+        return
+    if variance > 0.0:
+        for i in range(n):
+            s[theta + i] += s[covariance + entry(i, which)] / variance * missing
+    s[theta + which] = min(max(value, low), high)
+
+
+def state_filter(pole: float, h: float) -> list[float]:
+    r"""Pack :math:`1/(s+\lambda)^2` for an interval: its transition, :math:`2\lambda`, :math:`\lambda^2`, and h."""
+    return [*transition(1.0, 2.0 * pole, pole * pole, h), 2.0 * pole, pole * pole, h]
+
+
+@kernel
+def advance_filter(p: Any, packed: int, s: Any, at: int, before: float, now: float) -> None:
+    r"""Advance :math:`\ddot q+2\lambda\dot q+\lambda^2q=x` over an interval, exact for an input on a straight line.
+
+    A held input has ``before`` equal to ``now``; for a measured one the line between two samples is right to second
+    order, while holding it lags by half a sample.
+
+    Parameters
+    ----------
+    p, packed
+        Packed parameters, and where those of ``state_filter`` begin.
+    s, at
+        State, and where q and its derivative stand.
+    before, now : float
+        Input at the start and at the end of the interval.
+    """
+    slope = (now - before) / (p[packed + 6] * p[packed + 5])
+    rest = (before - p[packed + 4] * slope) / p[packed + 5]
+    q = s[at] - rest
+    rate = s[at + 1] - slope
+    s[at] = settled(p[packed] * q + p[packed + 1] * rate + rest + slope * p[packed + 6])
+    s[at + 1] = settled(p[packed + 2] * q + p[packed + 3] * rate + slope)
+
+
+@kernel
+def second_derivative(p: Any, packed: int, s: Any, at: int, now: float) -> float:
+    """Return the filtered second derivative of the input."""
+    return float(now - p[packed + 4] * s[at + 1] - p[packed + 5] * s[at])

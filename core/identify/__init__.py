@@ -1,0 +1,1 @@
+"""Identifiers: what the device is, from voltage and displacement."""

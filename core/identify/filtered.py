@@ -1,0 +1,161 @@
+r"""Identifiers of the continuous plant: voltage and displacement filtered by :math:`1/(s+\lambda)^2` (3.2.3, 3.3.2)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from core.block import Context, FloatArray, Port, kernel, parameter
+from core.estimation import FILTER_SIZE, advance_filter, second_derivative, state_filter
+from core.identify.identifier import (
+    CHARGE,
+    DAMPING_SCALE,
+    DRIVE_GAIN,
+    ERROR,
+    ESTIMATE,
+    EXCITATION,
+    MASS_SCALE,
+    MEASURED,
+    OWN_PARAMETER,
+    OWN_PORT,
+    STIFFNESS_SCALE,
+    TRUTH,
+    ExcitationParams,
+    Identifier,
+    IdentifierParams,
+    coefficients,
+    excite,
+    room,
+    show_truth,
+    voltage,
+    worst,
+)
+
+HELD, FILTER, NOMINAL, RANGE = (
+    OWN_PARAMETER,
+    OWN_PARAMETER + 1,
+    OWN_PARAMETER + 1 + FILTER_SIZE,
+    OWN_PARAMETER + 4 + FILTER_SIZE,
+)
+OWN_P = RANGE + 1
+START, LAST_Y, LAST_CHARGE, U_FILTER, Y_FILTER, PHI, THETA = 0, 1, 2, 3, 5, 7, 10
+GRAM = THETA + 3
+OWN_S = GRAM + room(3)
+ESTIMATE_PORT, ERROR_PORT, TRUTH_PORT, COEFFICIENT, COEFFICIENT_TRUE, RESIDUAL, EXCITATION_PORT = range(
+    OWN_PORT, OWN_PORT + 7
+)
+OWN_TAP = EXCITATION_PORT + 3
+COEFFICIENTS = ("gain", "a1", "a2")
+TAPS = (
+    TRUTH,
+    Port("coefficient", "mixed", "estimated kp, a1 and a2, in um, V and 1/w0", labels=COEFFICIENTS),
+    Port("coefficient_true", "mixed", "true kp, a1 and a2", labels=COEFFICIENTS),
+    Port("residual", "um", "filtered acceleration minus what the estimate says it is"),
+    *EXCITATION,
+)
+
+
+class FilterParams(ExcitationParams):
+    """The filters."""
+
+    filter_pole: float = parameter(
+        1.0, "double pole of the filters over w0", equation="3.2.3.4", gt=0.05, le=10, live=False
+    )
+    between: Literal["line", "held"] = parameter(
+        "line",
+        "displacement between samples: on a straight line, or held, which biases by half a sample",
+        equation="3.3.2.5",
+    )
+
+
+class FilteredParams(FilterParams, IdentifierParams):
+    """What every identifier of kp, a1 and a2 may be told."""
+
+    start: Literal["nominal", "zero"] = parameter("nominal", "estimate at the start", equation="3.3.2.8", live=False)
+    range_ratio: float = parameter(100.0, "largest coefficient over nominal (projection), 0 for none", ge=0, le=1e6)
+
+
+class Filtered(Identifier):
+    """Base of the identifiers of kp, a1 and a2."""
+
+    outputs: ClassVar[tuple[Port, ...]] = (ESTIMATE, ERROR)
+    taps: ClassVar[tuple[Port, ...]] = TAPS
+
+    @classmethod
+    def filters(cls, params: Any, context: Context) -> list[float]:
+        """Pack everything up to what the law itself needs."""
+        h = context.dt_ms * context.device.natural_frequency
+        held = float(params.between == "held")
+        filters = state_filter(params.filter_pole, h)
+        return [
+            *cls.shared(params, context),
+            held,
+            *filters,
+            *coefficients(context.device),
+            getattr(params, "range_ratio", 0.0),
+        ]
+
+    @classmethod
+    def begin(cls, params: Any, context: Context) -> FloatArray:
+        """Return filters at rest and the estimate at the start."""
+        start = np.zeros(OWN_S)
+        if getattr(params, "start", "nominal") == "nominal":
+            start[THETA : THETA + 3] = coefficients(context.device)
+        return start
+
+
+@kernel
+def observe(p: Any, s: Any, w: Any, io: Any) -> tuple[bool, float]:
+    r"""Advance the filters, and return whether there was a sample and :math:`z-\theta^T\varphi` (3.3.2.6-7)."""
+    y = w[io[MEASURED]]
+    seen = math.isfinite(y)
+    if not seen:
+        y = s[LAST_Y]
+    if s[START] == 0.0:
+        s[START] = 1.0
+        s[LAST_Y] = y
+        s[LAST_CHARGE] = w[io[CHARGE]]
+        return False, 0.0
+    u = voltage(p, s, LAST_CHARGE, w, io)
+    advance_filter(p, FILTER, s, U_FILTER, u, u)
+    advance_filter(p, FILTER, s, Y_FILTER, s[LAST_Y], s[LAST_Y] if p[HELD] != 0.0 else y)
+    s[LAST_Y] = y
+    s[PHI], s[PHI + 1], s[PHI + 2] = s[U_FILTER], -s[Y_FILTER + 1], -s[Y_FILTER]
+    return seen, second_derivative(p, FILTER, s, Y_FILTER, y) - prediction(s)
+
+
+@kernel
+def prediction(s: Any) -> float:
+    """Return theta' phi."""
+    return float(s[THETA] * s[PHI] + s[THETA + 1] * s[PHI + 1] + s[THETA + 2] * s[PHI + 2])
+
+
+@kernel
+def bounds(p: Any, i: int) -> tuple[float, float]:
+    """Return the interval of a coefficient: its nominal value over and times the range."""
+    near, far = p[NOMINAL + i] / p[RANGE], p[NOMINAL + i] * p[RANGE]
+    return min(near, far), max(near, far)
+
+
+@kernel
+def report(p: Any, s: Any, w: Any, io: Any, residual: float) -> None:
+    """Write estimate, truth, error and excitation."""
+    show_truth(w, io, TRUTH_PORT)
+    mass = w[io[MASS_SCALE]]
+    true = io[COEFFICIENT_TRUE]
+    w[true] = p[NOMINAL] * w[io[DRIVE_GAIN]] / mass
+    w[true + 1] = p[NOMINAL + 1] * w[io[DAMPING_SCALE]] / mass
+    w[true + 2] = p[NOMINAL + 2] * w[io[STIFFNESS_SCALE]] / mass
+    at = io[COEFFICIENT]
+    for i in range(3):
+        w[at + i] = s[THETA + i]
+    if s[THETA] != 0.0:
+        heavier = p[NOMINAL] / s[THETA]
+        w[io[ESTIMATE_PORT]] = heavier
+        w[io[ESTIMATE_PORT] + 1] = heavier * s[THETA + 2] / p[NOMINAL + 2]
+        w[io[ESTIMATE_PORT] + 2] = heavier * s[THETA + 1] / p[NOMINAL + 1]
+    w[io[RESIDUAL]] = residual
+    w[io[ERROR_PORT]] = worst(s, THETA, w, true, 3)
+    excite(p, s, GRAM, PHI, 3, w, io, EXCITATION_PORT)

@@ -1,0 +1,1 @@
+"""Theory: what can be said of a system before anything is run."""

@@ -1,0 +1,153 @@
+r"""Stability of the rules that adapt one gain (appendix B), by eigenvalues and by Floquet's theorem.
+
+With the gain error :math:`x=k-k_vk_c` the error :math:`e=y_m-y` of :math:`k_v/(b_2s^2+b_1s+1)` obeys
+:math:`b_2\ddot e+b_1\dot e+e=x\,r`, and each rule makes the whole linear with coefficients as periodic as r.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.block import FloatArray, kernel
+
+MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = range(6)
+"""``PARKS`` is the rule as derived, on the slope of the error alone; ``LYAPUNOV`` adds the error itself."""
+RULES = {"mit": MIT, "parks": PARKS, "lyapunov": LYAPUNOV, "dressler": DRESSLER, "price": PRICE, "monopoli": MONOPOLI}
+STEPS = 200
+"""Steps of a period."""
+MARGIN = 1e-7
+"""Growth rate, 1/time, that counts as none."""
+
+
+@dataclass(frozen=True)
+class GainLoop:
+    """A plant of unknown gain, and what its rule needs, in its own unit of time.
+
+    Parameters
+    ----------
+    b1, b2 : float
+        Coefficients of the plant; b2 = 0 for first order is not covered, all rules being stable there.
+    gain, model_gain : float
+        kv and k.
+    amplitude : float
+        R of the reference R sin wt, or of the constant.
+    error_weight, proportional, filter_time : float
+        c of ``LYAPUNOV``, gamma of ``PRICE``, q of ``MONOPOLI``.
+    """
+
+    b1: float = 1.0
+    b2: float = 1.0
+    gain: float = 1.0
+    model_gain: float = 1.0
+    amplitude: float = 1.0
+    error_weight: float = 0.5
+    proportional: float = 1.0
+    filter_time: float = 1.5
+
+    def packed(self) -> FloatArray:
+        """Return the numbers in the order given."""
+        return np.array(
+            [
+                self.b1,
+                self.b2,
+                self.gain,
+                self.model_gain,
+                self.amplitude,
+                self.error_weight,
+                self.proportional,
+                self.filter_time,
+            ]
+        )
+
+
+@kernel
+def _coefficients(p: FloatArray, rule: int, rate: float, r: float, ym: float, y: float) -> tuple[float, float, float]:
+    """Return what e and e' put into the slope of x, and what e puts into the plant at once."""
+    strength = -p[2] * rate
+    if rule == MIT:
+        return strength * ym, 0.0, 0.0
+    if rule == PARKS:
+        return 0.0, strength * r, 0.0
+    if rule == LYAPUNOV:
+        return strength * p[5] * r, strength * r, 0.0
+    if rule == MONOPOLI:
+        return strength * y, 0.0, p[7] * strength * y * y
+    if rule == PRICE:
+        return strength * r, 0.0, p[6] * strength * r * r
+    return strength * r, 0.0, 0.0
+
+
+@kernel
+def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
+    """Return the transition over one period of a sine (w > 0), or the matrix of the system for a constant."""
+    b1, b2, k, amplitude, q = p[0], p[1], p[3], p[4], p[7]
+    found = np.zeros((3, 3))
+    if w == 0.0:
+        on_e, on_v, at_once = _coefficients(p, rule, rate, amplitude, k * amplitude, amplitude)
+        found[0, 1] = 1.0
+        found[1, 0], found[1, 1], found[1, 2] = (at_once - 1.0) / b2, -b1 / b2, amplitude / b2
+        found[2, 0], found[2, 1] = on_e, on_v
+        return found
+    for i in range(3):
+        found[i, i] = 1.0
+    # model and filter answer R sin wt with a real and an imaginary part
+    real, imaginary = 1.0 - b2 * w * w, b1 * w
+    model = k * amplitude / (real * real + imaginary * imaginary)
+    filtered = amplitude / (1.0 + q * q * w * w)
+    h = 2.0 * math.pi / w / STEPS
+    r1 = 0.0
+    e1, v1, g1 = _coefficients(p, rule, rate, 0.0, -model * imaginary, -filtered * q * w)
+    for i in range(STEPS):
+        sine, cosine = math.sin(w * h * (i + 0.5)), math.cos(w * h * (i + 0.5))
+        ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
+        r2 = amplitude * sine
+        e2, v2, g2 = _coefficients(p, rule, rate, r2, ym, y)
+        sine, cosine = math.sin(w * h * (i + 1.0)), math.cos(w * h * (i + 1.0))
+        ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
+        r3 = amplitude * sine
+        e3, v3, g3 = _coefficients(p, rule, rate, r3, ym, y)
+        for c in range(3):
+            e, v, x = found[0, c], found[1, c], found[2, c]
+            ka, la, ma = v, (x * r1 + (g1 - 1.0) * e - b1 * v) / b2, e1 * e + v1 * v
+            et, vt, xt = e + 0.5 * h * ka, v + 0.5 * h * la, x + 0.5 * h * ma
+            kb, lb, mb = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
+            et, vt, xt = e + 0.5 * h * kb, v + 0.5 * h * lb, x + 0.5 * h * mb
+            kc, lc, mc = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
+            et, vt, xt = e + h * kc, v + h * lc, x + h * mc
+            kd, ld, md = vt, (xt * r3 + (g3 - 1.0) * et - b1 * vt) / b2, e3 * et + v3 * vt
+            found[0, c] = e + h / 6.0 * (ka + 2.0 * kb + 2.0 * kc + kd)
+            found[1, c] = v + h / 6.0 * (la + 2.0 * lb + 2.0 * lc + ld)
+            found[2, c] = x + h / 6.0 * (ma + 2.0 * mb + 2.0 * mc + md)
+        r1, e1, v1, g1 = r3, e3, v3, g3
+    return found
+
+
+def growth(loop: GainLoop, rule: int, rate: float, w: float) -> float:
+    """Return the growth rate of the worst solution, 1/time: negative when all decay."""
+    matrix = monodromy(loop.packed(), rule, rate, w)
+    roots = np.linalg.eigvals(matrix)
+    if w == 0.0:
+        return float(np.max(roots.real))
+    return float(np.log(max(float(np.max(np.abs(roots))), 1e-300)) * w / (2.0 * math.pi))
+
+
+def critical_gain(loop: GainLoop, rule: int, w: float, most: float = 10.0, points: int = 200) -> float:
+    """Return the first adaptation gain beyond which a solution grows; ``most`` when none does up to there."""
+    below = 0.0
+    for rate in np.linspace(most / points, most, points):
+        if growth(loop, rule, float(rate), w) > MARGIN:
+            low, high = below, float(rate)
+            for _ in range(40):
+                middle = 0.5 * (low + high)
+                low, high = (low, middle) if growth(loop, rule, middle, w) > MARGIN else (middle, high)
+            return high
+        below = float(rate)
+    return most
+
+
+def instability_map(loop: GainLoop, rule: int, rates: FloatArray, frequencies: FloatArray) -> FloatArray:
+    """Return the growth rate for each frequency (rows) and adaptation gain (columns)."""
+    return np.array([[growth(loop, rule, float(rate), float(w)) for rate in rates] for w in frequencies])

@@ -1,0 +1,150 @@
+r"""Persistency of excitation: whether the parameters can be found from this input at all.
+
+A regressor is persistently exciting when :math:`\alpha_1I\le\int_t^{t+\delta}\varphi\varphi^T\,d\tau\le\alpha_2I` for
+every t (A.9.1): the smallest eigenvalue of its mean Gram matrix stays above zero. Each tone of the input adds two
+directions, a constant one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from core.block import FloatArray, kernel
+
+SWEEPS = 10
+ROUNDING = 1e-13
+"""Eigenvalues this much smaller than the largest are 0."""
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """How well an input excites a regressor.
+
+    Parameters
+    ----------
+    eigenvalues : ndarray, shape (n,)
+        Of the mean of phi phi', smallest first, in the units of the regressor.
+    relative : float
+        Smallest eigenvalue once every component has unit mean square: 1 at best, 0 when one is lost.
+    """
+
+    eigenvalues: FloatArray
+    relative: float
+
+    @property
+    def smallest(self) -> float:
+        """Level of excitation alpha_1 per unit of time."""
+        return float(self.eigenvalues[0])
+
+    @property
+    def condition(self) -> float:
+        """Largest over smallest eigenvalue; infinite without excitation."""
+        least = max(self.smallest, 0.0)
+        return float(self.eigenvalues[-1] / least) if least > 0.0 else math.inf
+
+
+def excitation(gram: FloatArray) -> Excitation:
+    """Judge a mean Gram matrix, shape (n, n)."""
+    size = np.sqrt(np.diag(gram))
+    scale = np.outer(size, size)
+    relative = 0.0 if np.any(size == 0.0) else float(_eigenvalues(gram / scale)[0])
+    return Excitation(_eigenvalues(gram), relative)
+
+
+def _eigenvalues(matrix: FloatArray) -> FloatArray:
+    """Return the eigenvalues, smallest first; what is rounding beside the largest is 0."""
+    found = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
+    return np.where(np.abs(found) < ROUNDING * np.abs(found[-1]), 0.0, found)
+
+
+def gram_of_tones(
+    tones: Sequence[tuple[float, float]], plant: tuple[float, float, float], pole: float = 1.0
+) -> FloatArray:
+    r"""Return the mean of :math:`\varphi\varphi^T` in the steady state under a sum of tones.
+
+    .. math:: \varphi=\frac1{(s+\lambda)^2}[u,\,-sy,\,-y]^T,\quad y=\frac{k_p}{s^2+a_1s+a_2}u,\quad
+        \overline{\varphi\varphi^T}=\sum_i\tfrac12A_i^2\,\mathrm{Re}\,v(j\omega_i)v(j\omega_i)^*
+
+    Parameters
+    ----------
+    tones : sequence of tuple of float
+        Amplitude (V) and frequency of each, distinct, in the unit of time of the plant; frequency 0 is a constant.
+    plant : tuple of float
+        kp, a1, a2.
+    pole : float
+        Pole of the filters.
+    """
+    gain, a1, a2 = plant
+    total = np.zeros((3, 3))
+    for amplitude, w in tones:
+        s = 1j * w
+        y = gain / (s * s + a1 * s + a2)
+        v = np.array([1.0, -s * y, -y]) / (s + pole) ** 2
+        total += (0.5 if w else 1.0) * amplitude * amplitude * np.real(np.outer(v, np.conj(v)))
+    return total
+
+
+@kernel
+def gather(s: Any, gram: int, regressor: int, n: int) -> None:
+    """Add the outer product of a regressor to the lower triangle of a Gram matrix."""
+    at = gram
+    for i in range(n):
+        for j in range(i + 1):
+            s[at] += s[regressor + i] * s[regressor + j]
+            at += 1
+
+
+@kernel
+def smallest_eigenvalue(s: Any, gram: int, scratch: int, n: int, relative: bool) -> float:
+    r"""Return the smallest eigenvalue of a symmetric matrix, by cyclic Jacobi rotations.
+
+    Parameters
+    ----------
+    s : array
+        State that holds what follows.
+    gram, scratch : int
+        Where the lower triangle and :math:`n^2` scratch numbers begin.
+    n : int
+        Size.
+    relative : bool
+        Of the matrix with rows and columns scaled to a unit diagonal, which the rotations keep accurate in every
+        digit; 0 when a diagonal element is 0.
+    """
+    for i in range(n):
+        for j in range(n):
+            low, high = min(i, j), max(i, j)
+            value = s[gram + high * (high + 1) // 2 + low]
+            if relative:
+                size = s[gram + i * (i + 3) // 2] * s[gram + j * (j + 3) // 2]
+                if size <= 0.0:
+                    return 0.0
+                value /= math.sqrt(size)
+            s[scratch + i * n + j] = value
+    for _ in range(SWEEPS):
+        for i in range(n):
+            for j in range(i + 1, n):
+                off = s[scratch + i * n + j]
+                if off == 0.0:
+                    continue
+                half = 0.5 * (s[scratch + j * n + j] - s[scratch + i * n + i]) / off
+                t = 1.0 / (abs(half) + math.sqrt(half * half + 1.0))
+                if half < 0.0:
+                    t = -t
+                c = 1.0 / math.sqrt(t * t + 1.0)
+                for k in range(n):
+                    a, b = s[scratch + i * n + k], s[scratch + j * n + k]
+                    s[scratch + i * n + k] = c * (a - t * b)
+                    s[scratch + j * n + k] = c * (b + t * a)
+                for k in range(n):
+                    a, b = s[scratch + k * n + i], s[scratch + k * n + j]
+                    s[scratch + k * n + i] = c * (a - t * b)
+                    s[scratch + k * n + j] = c * (b + t * a)
+    least = s[scratch]
+    for i in range(1, n):
+        least = min(least, s[scratch + i * n + i])
+    return float(max(least, 0.0))

@@ -1,0 +1,111 @@
+"""Stability of a gain-adaptation rule, simulated and by theory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import Field
+
+from core.block import BlockParams, FloatArray, parameter
+from core.errors import InputError
+from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, growth
+from scenarios.studies.study import Study
+
+if TYPE_CHECKING:
+    from core.board.board import Board
+
+NAME = "gain_adaptation"
+
+
+class GainAdaptation(Study):
+    """Runs the loop of the bench, and finds where its rule becomes unstable.
+
+    ``adaptation.growth_per_s`` is the growth of the error from the second to the last quarter of the run,
+    ``growth_theory_per_s`` the largest real part of the eigenvalues; ``period_s`` that of its swing;
+    ``critical_gain`` and ``critical_gain_<frequency>`` the first adaptation gain that is unstable under a constant
+    and under a sine of that frequency (rad/s), on a plant whose damping coefficient is ``sine_b1``.
+    """
+
+    title = "Gain adaptation"
+
+    class Params(BlockParams):
+        """How long, and which sines."""
+
+        duration_s: float = parameter(60.0, "time simulated", "s", gt=1, le=10_000)
+        frequencies: list[float] = Field([], max_length=20, description="frequencies of the sines, rad/s")
+        sine_b1: float = parameter(0.2, "coefficient b1 of the plant under a sine", "s", gt=0, le=100)
+        most: float = parameter(10.0, "largest adaptation gain looked at", gt=0, le=1e4)
+
+    @classmethod
+    def figures(cls, board: Board, params: Any) -> dict[str, float]:
+        """Return the figures."""
+        if board.spec.active != NAME:
+            raise InputError(f"must be {NAME} for this study", "controller.kind")
+        law: Any = board.spec.controllers[NAME].params
+        rule = rule_of(law.rule, law.form)
+        loop = loop_of(board)
+        found = _simulated(board, params.duration_s)
+        if rule is not None and loop.b2 > 0.0:
+            found["adaptation.growth_theory_per_s"] = growth(loop, rule, law.adaptation_gain, 0.0)
+            found["adaptation.critical_gain"] = critical_gain(loop, rule, 0.0, params.most)
+            sine = loop_of(board, params.sine_b1)
+            for w in params.frequencies:
+                name = f"{w:g}".replace(".", "_")
+                found[f"adaptation.critical_gain_{name}"] = critical_gain(sine, rule, w, params.most)
+        return found
+
+
+def rule_of(rule: str, form: str) -> int | None:
+    """Return the rule that is meant; none for one that is no adaptation at all."""
+    if form != "corrected" and rule in ("mit", "lyapunov"):
+        named = {("lyapunov", "derived"): "parks", ("lyapunov", "printed"): "dressler", ("mit", "derived"): "mit"}
+        found = named.get((rule, form))
+        return None if found is None else RULES[found]
+    return RULES[rule]
+
+
+def loop_of(board: Board, b1: float | None = None) -> GainLoop:
+    """Return the loop of a bench, with another damping if given; gains of the rules scale with what keeps them safe."""
+    context = board.spec.context()
+    plant, unit = context.device, 1.0 / context.device.natural_frequency
+    law: Any = board.spec.controllers[NAME].params
+    own = plant.damping / plant.stiffness / unit
+    chosen = own if b1 is None else b1
+    return GainLoop(
+        b1=chosen,
+        b2=plant.mass / plant.stiffness / unit**2,
+        gain=plant.static_gain,
+        model_gain=context.model.static_gain,
+        amplitude=getattr(board.spec.reference.params, "amplitude_v", None) or 1.0,
+        error_weight=law.error_weight * chosen / own,
+        proportional=law.proportional * own / chosen,
+        filter_time=law.filter_time * own / chosen,
+    )
+
+
+def _simulated(board: Board, duration_s: float) -> dict[str, float]:
+    column = board.signals.index(f"{NAME}.error") - board.signals.outputs
+    parts: list[FloatArray] = []
+    ticks = round(duration_s * 1e3 / board.dt_ms)
+    while board.tick < ticks:
+        rows = board.advance(ticks - board.tick)
+        if rows.count == 0:
+            break
+        parts.append(rows.taps[:, column].copy())
+    error = np.concatenate(parts)
+    quarter = len(error) // 4
+    dt_s = board.dt_ms * 1e-3
+    early, late = (float(np.max(np.abs(part))) for part in (error[quarter : 2 * quarter], error[-quarter:]))
+    found = {
+        "adaptation.final_error_um": float(error[-1]),
+        "adaptation.peak_error_um": float(np.max(np.abs(error))),
+        "adaptation.ratio": late / early if early > 0.0 else 0.0,
+        "adaptation.tripped": float(board.trip is not None),
+    }
+    if early > 0.0 and late > 0.0:
+        found["adaptation.growth_per_s"] = float(np.log(late / early) / (2 * quarter * dt_s))
+    rising = np.flatnonzero((error[:-1] < 0.0) & (error[1:] >= 0.0))
+    if len(rising) > 2:
+        found["adaptation.period_s"] = float(rising[-1] - rising[0]) / (len(rising) - 1) * dt_s
+    return found

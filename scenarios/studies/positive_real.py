@@ -1,0 +1,57 @@
+"""Positive real transfer functions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field
+
+from core.block import BlockParams
+from core.control.controller import normalised
+from core.theory.positive_real import positive_real
+from scenarios.studies.study import Study
+
+if TYPE_CHECKING:
+    from core.board.board import Board
+
+
+class Case(BlockParams):
+    """A transfer function, highest power first."""
+
+    name: str = Field(pattern=r"^[a-z0-9_]{1,32}$", description="name in the figures")
+    numerator: list[float] = Field(min_length=1, max_length=21, description="highest power first")
+    denominator: list[float] = Field(min_length=1, max_length=21, description="highest power first")
+
+
+class PositiveReal(Study):
+    """Judges transfer functions: ``spr.<name>`` is 2 if strictly positive real, 1 if positive real, 0 if neither.
+
+    With them the device of the bench in time of 1/w0: its displacement, its velocity, and displacement plus velocity
+    over nine tenths of the damping.
+    """
+
+    title = "Positive real"
+
+    class Params(BlockParams):
+        """Which transfer functions."""
+
+        cases: list[Case] = Field([], max_length=100, description="transfer functions to judge")
+
+    @classmethod
+    def figures(cls, board: Board, params: Any) -> dict[str, float]:
+        """Return the verdicts, and the smallest real part on the axis where it is finite."""
+        device = board.spec.context().device
+        a1, a2, _ = normalised(device, device.natural_frequency)
+        below = [1.0, a1, a2]
+        cases = [(case.name, case.numerator, case.denominator) for case in params.cases]
+        cases += [
+            ("displacement", [1.0], below),
+            ("velocity", [1.0, 0.0], below),
+            ("with_velocity", [1.0, 0.9 * a1], below),
+        ]
+        found = {}
+        for name, numerator, denominator in cases:
+            verdict = positive_real(numerator, denominator)
+            found[f"spr.{name}"] = 2.0 if verdict.strictly_positive_real else 1.0 if verdict.positive_real else 0.0
+            found[f"spr.{name}_relative_degree"] = float(verdict.relative_degree)
+        return found

@@ -1,0 +1,36 @@
+"""The adaptive loop against python-control, in continuous time, and how much faster the board is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.board.board import CHUNK, Board
+from scenarios.interconnected import adaptive_loop, simulate
+from scenarios.speed import ADAPTIVE, advance_cost, interconnected_sample
+from tests.lab import inject, make, play
+
+pytest.importorskip("control")
+
+
+@pytest.mark.parametrize("rate_khz", [500, 1000])
+def test_mrac_is_what_python_control_simulates(rate_khz):
+    """A board that samples and holds differs by half a sample of delay: 0.5 w0 dt of what moves."""
+    board = make({"controller": {"kind": "mrac"}, "sample_rate_khz": rate_khz})
+    inject(board, stiffness=1.0)
+    trace = play(board, 3 * rate_khz + 1)
+    found = simulate(adaptive_loop(board.spec.context(), 2.0), 3.0, 3 * rate_khz + 1)
+    delay = 0.5 * 15.606 / rate_khz
+    assert np.abs(found.outputs[0] - trace["plant.displacement"]).max() < delay
+    assert np.abs(found.outputs[1] - trace["model.displacement"]).max() < delay
+    gains = np.array([trace[f"mrac.gain.{name}"][-1] for name in ("r", "w1", "w2", "y")])
+    np.testing.assert_allclose(found.states[-5:-1, -1], gains, atol=delay)
+    assert np.abs(gains - [1, 0, 0, 0]).max() > 0.2
+
+
+@pytest.mark.slow
+def test_board_is_much_faster_than_the_interconnected_simulation():
+    board = Board(ADAPTIVE)
+    board.advance(CHUNK)
+    # even with everything else on the board
+    assert interconnected_sample(board)() > 100 * advance_cost(board, 10 * CHUNK)
