@@ -187,6 +187,8 @@ class Context:
         Whether the reference drives the plant between samples.
     limit_v : float
         Limit of the drive to either side.
+    tone_hz : float
+        Frequency of the reference, 0 if it has none.
     sensors : mapping of str to BlockParams
         Parameters of every sensor: what calibrating it would tell.
     """
@@ -203,6 +205,7 @@ class Context:
     sensor_noise_um: float = 0.0
     analogue: bool = False
     limit_v: float = 30.0
+    tone_hz: float = 0.0
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
 
 

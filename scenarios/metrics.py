@@ -15,6 +15,7 @@ from core.board.spec import Spec
 from core.errors import unknown
 from scenarios.lateral_metrics import lateral_metrics
 from scenarios.sensing_metrics import sensing_metrics
+from scenarios.verdict_metrics import verdict_metrics
 
 IDENTIFIED_PCT = 10.0
 """Error of the worst coefficient within which an identifier counts as settled."""
@@ -167,8 +168,9 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
         found |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), options)
     scores = board.scores()
     for name in board.spec.diagnosers:
-        found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
-    return found
+        if name in scores:
+            found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
+    return found | verdict_metrics(board, trace)
 
 
 def _rms(values: FloatArray) -> float:

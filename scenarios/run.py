@@ -17,6 +17,7 @@ from core.errors import InputError
 from core.signals import SignalTable
 from scenarios.metrics import device_metrics, measure
 from scenarios.schema import Scenario
+from scenarios.verdict_metrics import TRACED_VERDICTS
 
 TRACED_FIGURES = (
     "plant.displacement",
@@ -188,9 +189,10 @@ def _figures(
     board: Board, outputs: FloatArray, scenario: Scenario, signals: SignalTable | None = None, prefix: str = ""
 ) -> dict[str, float]:
     """Return the figures of a board from the trace, or of a twin from the trace of all."""
-    names = [*TRACED_FIGURES, *(f"{name}.truth" for name in board.spec.diagnosers)]
-    names += [f"{name}.error_pct" for name in board.spec.identifiers if f"{name}.error_pct" in board.wiring.index]
     table = signals or board.signals
+    names = [*TRACED_FIGURES, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
+    names += [f"{name}.error_pct" for name in board.spec.identifiers]
+    names = [name for name in names if prefix + name in table]
     trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
     return measure(board, trace, scenario.head.metrics)
 

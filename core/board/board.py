@@ -17,7 +17,7 @@ from core.board.guard import REASONS
 from core.board.log import Log
 from core.board.observer import Observer
 from core.board.spec import Document, Section, Spec, parse
-from core.board.wiring import Wiring, wire
+from core.board.wiring import Wiring, scored, wire
 from core.errors import InputError
 from core.signals import SignalTable
 
@@ -128,9 +128,11 @@ class Board:
         return self._sha.hexdigest()
 
     def scores(self) -> dict[str, score.Scores]:
-        """Return the score of every diagnoser."""
+        """Return the score of every diagnoser that chooses between hypotheses."""
         found = {}
         for name, section in self.spec.diagnosers.items():
+            if not scored(section.block):
+                continue
             names = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
             found[name] = score.read(self.wiring.state_of(f"{name}.score"), names, int(self.value(f"{name}.winner")))
         return found

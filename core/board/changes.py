@@ -141,7 +141,7 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
     for key in keep:
         fresh.state_of(key)[:] = board.wiring.state_of(key)
     index = fresh.index
-    for name in board.spec.diagnosers:
+    for name in (key.removesuffix(".score") for key in keep):
         for port in ("correct_fraction", "false_switches", "delay", "truth", "winner"):
             fresh.w[index[f"{name}.{port}"]] = board.value(f"{name}.{port}")
     board.wiring = fresh

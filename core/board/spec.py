@@ -133,6 +133,7 @@ class Spec:
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=getattr(self.drive.params, "kind", "held") == "analogue",
             limit_v=float(getattr(self.drive.params, "limit_v", 30.0)),
+            tone_hz=float(getattr(self.reference.params, "frequency_hz", 0.0)),
             sensors={name: section.params for name, section in self.sensors.items()},
         )
 

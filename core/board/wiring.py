@@ -95,7 +95,8 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     order += [own(name, section) for name, section in spec.identifiers.items()]
     for name, section in spec.diagnosers.items():
         order.append(own(name, section))
-        order.append(Instance(f"{name}.score", name, Score, _scored(section.params), section.every))
+        if scored(section.block):
+            order.append(Instance(f"{name}.score", name, Score, _scored(section.params), section.every))
     order += [own("reference", spec.reference), own("model", spec.model)]
     order += [own(name, section) for name, section in spec.controllers.items()]
     order += [own("drive", spec.drive), own("guard", spec.guard)]
@@ -105,6 +106,11 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
 def recovered(block: type[Block]) -> bool:
     """Say whether a sensor puts out a displacement."""
     return any(port.name == "displacement" for port in block.outputs)
+
+
+def scored(block: type[Block]) -> bool:
+    """Say whether a diagnoser chooses between hypotheses, so that it can be right or wrong."""
+    return any(port.name == "probability" and port.each == "hypotheses" for port in block.outputs)
 
 
 def _scored(params: BlockParams) -> BlockParams:
@@ -188,10 +194,11 @@ def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
 
 
 def needed(spec: Spec) -> set[str]:
-    """Return the sensor in use, those that always run, and all they read from."""
+    """Return the sensor in use, those that always run or that a diagnoser reads, and all they read from."""
     found: set[str] = set()
     always = [name for name, section in spec.sensors.items() if getattr(section.params, "always", False)]
-    waiting = [spec.measuring, *always]
+    read = [port.source.split(".")[0] for section in spec.diagnosers.values() for port in section.block.inputs]
+    waiting = [spec.measuring, *always, *read]
     while waiting:
         name = waiting.pop()
         if name in spec.sensors and name not in found:

@@ -7,7 +7,7 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.linalg import solve_discrete_are
 
-from core.diagnose.mmae import steady_gain
+from core.diagnose.kalman import steady_gain
 from tests.physics.bank import FACTORS, NAMES, K, M, model, of_bank, signals
 
 

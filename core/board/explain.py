@@ -1,0 +1,141 @@
+"""A single sample explained: from prior and residual to posterior, in numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel
+
+from core.board.spec import Spec
+from core.board.wiring import scored
+from core.errors import InputError, unknown
+
+SMALLEST = 1e-30
+"""Square of a residual below which the covariance cannot be read from it."""
+
+
+class ModelAccount(BaseModel):
+    """What one sample did to one hypothesis."""
+
+    name: str
+    residual_um: float
+    covariance_um2: float | None
+    log_likelihood: float | None
+    prior: float
+    posterior: float
+    recorded: float
+
+
+class Account(BaseModel):
+    """What one sample did to all of them; the recorded probabilities stand beside those worked out here."""
+
+    diagnoser: str
+    kind: str
+    tick: int
+    time_ms: float
+    floor: float
+    models: list[ModelAccount]
+
+
+def signals_of(spec: Spec, name: str) -> list[str]:
+    """Return the signals whose values at two samples explain a verdict.
+
+    Raises
+    ------
+    InputError
+        When there is no such diagnoser, or its probabilities do not come from prior and likelihood.
+    """
+    if name not in spec.diagnosers:
+        raise unknown("diagnoser", name, spec.diagnosers, "diagnoser")
+    section = spec.diagnosers[name]
+    if not scored(section.block) or not getattr(section.block, "sample_by_sample", False):
+        raise InputError(f"{section.block.name} does not weigh sample by sample", "diagnoser")
+    ports = ["probability", "residual", "nis"]
+    if any(port.name == "tone" for port in section.block.taps):
+        ports.append("tone")
+    labels = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
+    return [f"{name}.{port}.{label}" for port in ports for label in labels]
+
+
+def explain(spec: Spec, name: str, tick: int, before: Mapping[str, float] | None, now: Mapping[str, float]) -> Account:
+    """Work out the posterior of every hypothesis at a sample.
+
+    Parameters
+    ----------
+    spec : Spec
+        The bench.
+    name : str
+        The diagnoser.
+    tick : int
+        The sample.
+    before, now : mapping
+        Values of ``signals_of`` at the sample before and at this one; nothing before the first.
+    """
+    section = spec.diagnosers[name]
+    block: Any = section.block
+    params: Any = section.params
+    context = spec.context(section.every)
+    labels = [item.name for item in params.hypotheses]
+
+    def read(values: Mapping[str, float], port: str, label: str) -> float:
+        return float(values.get(f"{name}.{port}.{label}", 0.0))
+
+    last = [1.0 / len(labels)] * len(labels) if before is None else [read(before, "probability", x) for x in labels]
+    priors = block.prior(params, last)
+    rows: list[tuple[float, float | None, float | None]] = []
+    for label in labels:
+        residual = read(now, "residual", label)
+        covariance = _covariance(residual, read(now, "nis", label))
+        if covariance is None and before is not None:
+            covariance = _covariance(read(before, "residual", label), read(before, "nis", label))
+        density = (
+            block.log_likelihood(params, context, residual, covariance, read(now, "tone", label))
+            if covariance is not None
+            else None
+        )
+        rows.append((residual, covariance, density))
+    floor = float(getattr(params, "probability_floor", 0.0))
+    posteriors = _posteriors(priors, [row[2] for row in rows], floor)
+    return Account(
+        diagnoser=name,
+        kind=block.name,
+        tick=tick,
+        time_ms=tick * spec.dt_ms,
+        floor=floor,
+        models=[
+            ModelAccount(
+                name=label,
+                residual_um=residual,
+                covariance_um2=covariance,
+                log_likelihood=density,
+                prior=prior,
+                posterior=posterior,
+                recorded=read(now, "probability", label),
+            )
+            for label, (residual, covariance, density), prior, posterior in zip(
+                labels, rows, priors, posteriors, strict=True
+            )
+        ],
+    )
+
+
+def _covariance(residual: float, nis: float) -> float | None:
+    square = residual * residual
+    return square / nis if square > SMALLEST and nis > 0.0 else None
+
+
+def _posteriors(priors: list[float], densities: list[float | None], floor: float) -> list[float]:
+    """Multiply, normalise, lift to the floor, normalise."""
+    logs = [
+        math.log(prior) + density if prior > 0.0 and density is not None else -math.inf
+        for prior, density in zip(priors, densities, strict=True)
+    ]
+    best = max(logs)
+    if not math.isfinite(best):
+        return priors
+    shares = [math.exp(log - best) for log in logs]
+    total = sum(shares)
+    lifted = [max(share / total, floor) for share in shares]
+    return [share / sum(lifted) for share in lifted]

@@ -1,0 +1,144 @@
+r"""Aliases: which hypotheses, and which other changes, have the same response at a tone.
+
+.. math:: D=kf_k-mf_m\omega^2+j\beta f_\beta\omega,\qquad Y=\frac{f_gF}{D}V
+
+One tone in steady state tells D and nothing else, two numbers, so mass and stiffness can stand for one another:
+:math:`\Delta k/k=-(\omega/\omega_0)^2\,\Delta m/m`. A second tone parts them.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+
+from pydantic import BaseModel
+
+from core.block import Oscillator
+from core.diagnose.hypothesis import Hypothesis
+
+FACTORS = ("mass", "stiffness", "damping", "gain")
+SAME = 1e-3
+"""Share of the response by which an equivalent change may miss."""
+
+
+class Response(BaseModel):
+    """The motion of a hypothesis at the tones, and the changes of one parameter that have the same."""
+
+    name: str
+    amplitudes_um: list[float]
+    phases_deg: list[float]
+    equivalents: dict[str, float]
+
+
+class Pair(BaseModel):
+    """How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it."""
+
+    first: str
+    second: str
+    distance_um: float
+    coincident: bool
+
+
+class AliasMap(BaseModel):
+    """Responses of all hypotheses, distances between them, and what mass and stiffness are worth in one another."""
+
+    tones_hz: list[float]
+    stiffness_per_mass: float
+    responses: list[Response]
+    pairs: list[Pair]
+
+
+def alias_map(
+    hypotheses: Sequence[Hypothesis],
+    nominal: Oscillator,
+    tones: Sequence[tuple[float, float]],
+    within_um: float = 0.0,
+) -> AliasMap:
+    """Return where the hypotheses lie in the plane of the response, and what coincides there.
+
+    Parameters
+    ----------
+    hypotheses : sequence of Hypothesis
+        The models.
+    nominal : Oscillator
+        The device they are factors on.
+    tones : sequence of (float, float)
+        Frequency in Hz and amplitude in V of every tone of the drive.
+    within_um : float
+        Distance below which two hypotheses count as coincident, beside rounding.
+    """
+    phasors = [[_phasor(item, nominal, f) * volts for f, volts in tones] for item in hypotheses]
+    responses = [
+        Response(
+            name=item.name,
+            amplitudes_um=[abs(value) for value in found],
+            phases_deg=[math.degrees(cmath.phase(value)) for value in found],
+            equivalents=_equivalents(item, nominal, [f for f, _ in tones]),
+        )
+        for item, found in zip(hypotheses, phasors, strict=True)
+    ]
+    pairs = []
+    for i, first in enumerate(hypotheses):
+        for j in range(i + 1, len(hypotheses)):
+            squares = [abs(a - b) ** 2 for a, b in zip(phasors[i], phasors[j], strict=True)]
+            distance = math.sqrt(sum(squares) / max(len(squares), 1))
+            size = max((abs(value) for value in phasors[i]), default=0.0)
+            same = distance <= max(within_um, SAME * size)
+            pairs.append(Pair(first=first.name, second=hypotheses[j].name, distance_um=distance, coincident=same))
+    omega = 2.0 * math.pi * tones[0][0] / 1e3 if tones else 0.0
+    return AliasMap(
+        tones_hz=[f for f, _ in tones],
+        stiffness_per_mass=-nominal.mass * omega * omega / nominal.stiffness,
+        responses=responses,
+        pairs=sorted(pairs, key=lambda pair: pair.distance_um),
+    )
+
+
+def _stiffness(item: Hypothesis, nominal: Oscillator, hz: float) -> complex:
+    """Return the dynamic stiffness per gain: what one tone tells."""
+    omega = 2.0 * math.pi * hz / 1e3
+    device = item.oscillator(nominal)
+    return complex(device.stiffness - device.mass * omega**2, device.damping * omega) / item.gain
+
+
+def _phasor(item: Hypothesis, nominal: Oscillator, hz: float) -> complex:
+    return nominal.force / _stiffness(item, nominal, hz)
+
+
+def _equivalents(item: Hypothesis, nominal: Oscillator, tones: Sequence[float]) -> dict[str, float]:
+    """Return the factor on each single parameter of the nominal device that has the same response at every tone."""
+    found: dict[str, float] = {}
+    for name in FACTORS:
+        factors = [_single(name, _stiffness(item, nominal, f), nominal, f) for f in tones]
+        if not factors or any(factor is None for factor in factors):
+            continue
+        values = [factor for factor in factors if factor is not None]
+        changed = abs(values[0] - 1.0) > SAME * SAME
+        own = values[0] == getattr(item, name) or abs(values[0] - getattr(item, name)) < SAME * SAME
+        if max(values) - min(values) <= SAME * abs(values[0]) and changed and not own:
+            found[name] = values[0]
+    return found
+
+
+def _single(name: str, wanted: complex, nominal: Oscillator, hz: float) -> float | None:
+    """Return the factor on one parameter that gives a dynamic stiffness, none when no positive one does."""
+    omega = 2.0 * math.pi * hz / 1e3
+    now = complex(nominal.stiffness - nominal.mass * omega**2, nominal.damping * omega)
+    if name == "gain":
+        factor = (now / wanted).real
+    elif name == "damping":
+        factor = wanted.imag / now.imag if now.imag else 0.0
+    elif name == "mass":
+        factor = (nominal.stiffness - wanted.real) / (nominal.mass * omega**2)
+    else:
+        factor = (wanted.real + nominal.mass * omega**2) / nominal.stiffness
+    if not factor > 0.0:
+        return None
+    reached = {
+        "gain": now / factor,
+        "damping": complex(now.real, nominal.damping * factor * omega),
+        "mass": complex(nominal.stiffness - nominal.mass * factor * omega**2, now.imag),
+        "stiffness": complex(nominal.stiffness * factor - nominal.mass * omega**2, now.imag),
+    }[name]
+    return float(factor) if abs(reached - wanted) <= SAME * abs(wanted) else None

@@ -1,0 +1,125 @@
+r"""Difference equations of the hypotheses: what every self-tuning bank shares.
+
+.. math:: z_i=b_0u_{i-1}+b_1u_{i-2}-a_1z_{i-1}-a_2z_{i-2}=h_i^T\theta
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+
+from core.block import Block, Context, Oscillator, Port, kernel, parameter, settled
+from core.device.oscillator import transition
+from core.diagnose.hypothesis import BankParams, assumed_noise
+from core.diagnose.kalman import gaussian
+
+COUNT, EVERY, FILTER1, FILTER2, LANES = range(5)
+"""Packed parameters of every bank; the lanes of the hypotheses follow, then a bank's own."""
+THETA, VARIANCE, HALF_LOG, WIDTH = 0, 4, 5, 6
+"""Lanes of the parameters: the four coefficients, the variance of the equation error, half its logarithm."""
+LAST_CHARGE, U1, U2, Z1, Z2, OWN = range(6)
+"""State of every bank: the charge, and the two samples before of voltage and measurement, behind the filter."""
+MEASURED, MIDDLE, CHARGE, PROBABILITY = range(4)
+"""Ports of every bank."""
+SIZE = 4
+"""Number of coefficients."""
+
+
+def coefficients(device: Oscillator, dt_ms: float) -> tuple[float, float, float, float]:
+    """Return b0, b1, a1, a2 of a device under a held voltage."""
+    f11, f12, f21, f22 = transition(device.mass, device.damping, device.stiffness, dt_ms)
+    g1, g2 = (1.0 - f11) * device.static_gain, -f21 * device.static_gain
+    return g1, f12 * g2 - f22 * g1, -(f11 + f22), f11 * f22 - f12 * f21
+
+
+@kernel
+def regress(p: Any, s: Any, w: Any, io: Any, h: int) -> float:
+    """Write the regressor of this sample to ``h`` in the state, and return what it should explain.
+
+    Voltage and measurement pass the same filter 1/A(q), if there is one. What was not measured is taken to be where
+    the sample before was.
+    """
+    z = w[io[MEASURED]]
+    u = w[io[MIDDLE]] if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
+    s[LAST_CHARGE] = w[io[CHARGE]]
+    a1 = p[FILTER1]
+    a2 = p[FILTER2]
+    if not math.isfinite(z):
+        z = (1.0 + a1) * s[Z1] + a2 * s[Z2]
+    u = settled(u - a1 * s[U1] - a2 * s[U2])
+    z = settled(z - a1 * s[Z1] - a2 * s[Z2])
+    s[h] = u
+    s[h + 1] = s[U1]
+    s[h + 2] = -s[Z1]
+    s[h + 3] = -s[Z2]
+    s[U2] = s[U1]
+    s[U1] = u
+    s[Z2] = s[Z1]
+    s[Z1] = z
+    return float(z)
+
+
+@kernel
+def said(p: Any, s: Any, h: int, i: int, n: int) -> float:
+    """Return what hypothesis i makes of the regressor."""
+    at = LANES + i
+    return float(s[h] * p[at] + s[h + 1] * p[at + n] + s[h + 2] * p[at + 2 * n] + s[h + 3] * p[at + 3 * n])
+
+
+class ArxParams(BankParams):
+    """What every self-tuning bank assumes."""
+
+    sensor_noise_um: float | None = parameter(
+        None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
+    )
+    assumed_noise_scale: float = parameter(1.0, "factor on the assumed variance", gt=0, le=1e4)
+
+
+class ArxBank(Block):
+    """Base of every self-tuning bank."""
+
+    inputs: ClassVar[tuple[Port, ...]] = (
+        Port("measured", "um", "measured displacement", source="sensor.displacement"),
+        Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
+        Port("charge", "V", "running sum of the applied voltage", source="drive.charge"),
+    )
+    outputs: ClassVar[tuple[Port, ...]] = (
+        Port("probability", "1", "probability of the hypothesis", each="hypotheses"),
+    )
+    taps: ClassVar[tuple[Port, ...]] = (
+        Port("residual", "um", "what the difference equation does not explain", each="hypotheses"),
+        Port("nis", "1", "the same squared over its variance", each="hypotheses"),
+    )
+
+    sample_by_sample: ClassVar[bool] = True
+    """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+
+    @classmethod
+    def prior(cls, params: Any, before: list[float]) -> list[float]:
+        """Return the probabilities before a measurement from those after the one before."""
+        return before
+
+    @classmethod
+    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
+        """Return the logarithm of the density of a residual."""
+        return gaussian(residual, covariance)
+
+    @classmethod
+    def equations_of(cls, params: Any, context: Context) -> list[float]:
+        r"""Pack the difference equations, and the variance of their error.
+
+        White sensor noise of variance :math:`\sigma^2` makes an equation error of
+        :math:`\sigma^2(1+a_1^2+a_2^2)`; behind the filter 1/A it is white again, and as large as the noise.
+        """
+        variance = (params.sensor_noise_um or assumed_noise(context)) ** 2 * params.assumed_noise_scale
+        filtered = getattr(params, "prefilter", False)
+        nominal = coefficients(context.device, context.dt_ms)
+        lanes = np.zeros((WIDTH, len(params.hypotheses)))
+        for i, hypothesis in enumerate(params.hypotheses):
+            theta = coefficients(hypothesis.oscillator(context.device), context.dt_ms)
+            error = variance if filtered else variance * (1.0 + theta[2] ** 2 + theta[3] ** 2)
+            lanes[:, i] = (*theta, error, 0.5 * math.log(error))
+        head = [len(params.hypotheses), context.every, *(nominal[2:] if filtered else (0.0, 0.0))]
+        return [*map(float, head), *lanes.ravel().tolist()]

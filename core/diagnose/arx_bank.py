@@ -1,0 +1,77 @@
+"""Difference equations identified beforehand, weighed like the filters of a Kalman bank."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from core.block import Context, Equation, FloatArray, parameter
+from core.diagnose.arx import (
+    COUNT,
+    HALF_LOG,
+    LANES,
+    OWN,
+    PROBABILITY,
+    VARIANCE,
+    WIDTH,
+    ArxBank,
+    ArxParams,
+    regress,
+    said,
+)
+from core.diagnose.weights import weigh
+
+FLOOR, LOG_FLOOR = range(2)
+H, LOG = OWN, OWN + 4
+RESIDUAL_TAP, NIS_TAP = PROBABILITY + 1, PROBABILITY + 2
+
+
+def arx_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Weigh every hypothesis by the error of its difference equation."""
+    n = int(p[COUNT])
+    own = LANES + WIDTH * n
+    z = regress(p, s, w, io, H)
+    best = -math.inf
+    for i in range(n):
+        residual = z - said(p, s, H, i, n)
+        nis = residual * residual / p[LANES + VARIANCE * n + i]
+        w[io[RESIDUAL_TAP] + i] = residual
+        w[io[NIS_TAP] + i] = nis
+        log = s[LOG + i] - 0.5 * nis - p[LANES + HALF_LOG * n + i]
+        s[LOG + n + i] = log
+        best = max(best, log)
+    weigh(s, LOG, LOG + n, w, io[PROBABILITY], n, best, p[own + FLOOR], p[own + LOG_FLOOR])
+
+
+class FixedBank(ArxBank):
+    r"""Banks that were tuned beforehand, each to its own sub-system, and are fixed now.
+
+    .. math:: r_k=z_i-h_i^T\theta_k,\qquad R_e=\sigma^2(1+a_1^2+a_2^2)
+
+    No forgetting is left in it, and nothing of a filter either: good at 10 to 20 kHz, lost in noise at 50.
+    """
+
+    title = "Bank of difference equations"
+    equations = (Equation("residual", r"r_k=z_i-h_i^T\theta_k", "5.3.3.10, theta identified beforehand"),)
+
+    class Params(ArxParams):
+        """Noise and floor."""
+
+        probability_floor: float = parameter(1e-3, "smallest probability", equation="5.2.3.2.6", ge=0, le=0.05)
+        prefilter: bool = parameter(False, "pass both signals through 1/A(q) of the healthy device", live=False)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the parameters for the step."""
+        floor = params.probability_floor
+        return np.array([*cls.equations_of(params, context), floor, math.log(floor) if floor > 0 else 0.0])
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> FloatArray:
+        """At rest, all hypotheses alike."""
+        n = len(params.hypotheses)
+        return np.array([0.0] * LOG + [-math.log(n)] * n + [0.0] * n)
+
+    step = arx_bank_step

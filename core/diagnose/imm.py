@@ -1,0 +1,177 @@
+"""Interacting multiple models."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from core.block import Context, Equation, FloatArray, Port, kernel, parameter
+from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
+from core.diagnose.kalman import (
+    COUNT,
+    DEPTH,
+    HALF_LOG,
+    LANES,
+    MEASURED,
+    OWN,
+    P11,
+    P12,
+    P22,
+    PROBABILITY,
+    RESIDUAL,
+    STARTED,
+    WIDTH,
+    X1,
+    X2,
+    KalmanBank,
+    KalmanParams,
+    applied_voltage,
+    correct,
+    driven,
+    predict,
+)
+
+OTHER = 0
+"""Parameter of its own."""
+WEIGHT, LIKELIHOOD, SEPARATION = DEPTH, DEPTH + 1, DEPTH + 2
+"""Lanes of its own."""
+RESIDUAL_TAP, NIS_TAP, INFORMATION, UNEXCITED = range(PROBABILITY + 1, PROBABILITY + 5)
+
+
+@kernel
+def mix(s: Any, n: int, other: float) -> None:
+    r"""Give every filter the mixture of states it may have come from, and its weight before the measurement.
+
+    With :math:`\pi_{ij}=e+(1-ne)\delta_{ij}` the sums over i are the same for all j but for one term, so mixing costs
+    n terms and not n squared. Spreads are taken about the common mean.
+    """
+    keep = 1.0 - n * other
+    x1 = 0.0
+    x2 = 0.0
+    for i in range(n):
+        b = OWN + i
+        weight = s[b + WEIGHT * n]
+        x1 += weight * s[b + X1 * n]
+        x2 += weight * s[b + X2 * n]
+    m11 = 0.0
+    m12 = 0.0
+    m22 = 0.0
+    for i in range(n):
+        b = OWN + i
+        weight = s[b + WEIGHT * n]
+        d1 = s[b + X1 * n] - x1
+        d2 = s[b + X2 * n] - x2
+        m11 += weight * (s[b + P11 * n] + d1 * d1)
+        m12 += weight * (s[b + P12 * n] + d1 * d2)
+        m22 += weight * (s[b + P22 * n] + d2 * d2)
+    for i in range(n):
+        b = OWN + i
+        own = keep * s[b + WEIGHT * n]
+        before = other + own
+        own /= before
+        rest = other / before
+        d1 = s[b + X1 * n] - x1
+        d2 = s[b + X2 * n] - x2
+        k1 = own * d1
+        k2 = own * d2
+        s[b + X1 * n] = x1 + k1
+        s[b + X2 * n] = x2 + k2
+        s[b + P11 * n] = rest * m11 + own * (s[b + P11 * n] + d1 * d1) - k1 * k1
+        s[b + P12 * n] = rest * m12 + own * (s[b + P12 * n] + d1 * d2) - k1 * k2
+        s[b + P22 * n] = rest * m22 + own * (s[b + P22 * n] + d2 * d2) - k2 * k2
+        s[b + WEIGHT * n] = before
+
+
+def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Mix, predict and correct, weigh."""
+    n = int(p[COUNT])
+    z = w[io[MEASURED]]
+    u = applied_voltage(p, s, w, io)
+    first = s[STARTED] == 0.0
+    s[STARTED] = 1.0
+    seen = math.isfinite(z)
+    evidence = seen and driven(p, s)
+    if evidence and not first:
+        mix(s, n, p[LANES + WIDTH * n + OTHER])
+    best = -math.inf
+    for i in range(n):
+        if not first:
+            predict(p, s, i, n, u)
+        nis = correct(p, s, i, n, z, seen)
+        w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
+        w[io[NIS_TAP] + i] = nis
+        log = -0.5 * nis - s[OWN + HALF_LOG * n + i]
+        s[OWN + LIKELIHOOD * n + i] = log
+        best = max(best, log)
+    if evidence:
+        total = 0.0
+        for i in range(n):
+            share = s[OWN + WEIGHT * n + i] * math.exp(s[OWN + LIKELIHOOD * n + i] - best)
+            s[OWN + WEIGHT * n + i] = share
+            total += share
+        for i in range(n):
+            s[OWN + WEIGHT * n + i] /= total
+    at = io[PROBABILITY]
+    for i in range(n):
+        w[at + i] = s[OWN + WEIGHT * n + i]
+    information = nearest_rival(p, s, OWN + SEPARATION * n, n, w, at)
+    w[io[INFORMATION]] = information
+    w[io[UNEXCITED]] = 1.0 if information < LEAST_INFORMATION else 0.0
+
+
+class Imm(KalmanBank):
+    r"""Kalman filters that exchange their states, because the device may change from one hypothesis to another.
+
+    .. math:: c_j=\sum_i\pi_{ij}\mu_i,\quad \bar x_j=\frac{1}{c_j}\sum_i\pi_{ij}\mu_ix_i,\quad
+        \bar P_j=\frac{1}{c_j}\sum_i\pi_{ij}\mu_i\left[P_i+(x_i-\bar x_j)(x_i-\bar x_j)^T\right],\quad
+        \mu_j\propto c_j\,\psi_j^{-1/2}e^{-r_j^2/2\psi_j}
+
+    The text's bank keeps its filters apart. Here a filter that becomes the right one starts from the right state, so
+    no pseudo-noise has to make it forget, and the chance of a change takes the place of the floor (Blom and Bar-Shalom
+    1988).
+    """
+
+    title = "Interacting multiple models (IMM)"
+    taps = (
+        *KalmanBank.taps,
+        Port("information", "nat", "evidence per sample against the nearest rival of the winner"),
+        Port("unexcited", "1", "1 while the drive hardly tells the winner from its nearest rival"),
+    )
+    equations = (
+        Equation(
+            "mixing",
+            r"\bar x_j=\tfrac{1}{c_j}\textstyle\sum_i\pi_{ij}\mu_ix_i,\quad c_j=\sum_i\pi_{ij}\mu_i",
+            "Blom and Bar-Shalom 1988",
+        ),
+        Equation("weights", r"\mu_j\propto c_j\,\psi_j^{-1/2}e^{-r_j^2/2\psi_j}"),
+    )
+
+    class Params(KalmanParams):
+        """Assumptions of the bank."""
+
+        process_noise_v: float = parameter(
+            0.01, "assumed noise on the voltage, rms per sample", "V", equation="5.2.3.1.2", ge=0, le=100
+        )
+        switching: float = parameter(1e-4, "probability of a change to another hypothesis, per sample", gt=0, le=0.5)
+
+    @classmethod
+    def prior(cls, params: Any, before: list[float]) -> list[float]:
+        """Return the weights after mixing."""
+        other = params.switching / (len(before) - 1)
+        return [other + (1.0 - len(before) * other) * weight for weight in before]
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the parameters for the step."""
+        other = params.switching / (len(params.hypotheses) - 1)
+        return np.array([*cls.filters(params, context), other])
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> FloatArray:
+        """All filters at rest, all hypotheses alike."""
+        n = len(params.hypotheses)
+        return np.array(cls.at_rest(params, context) + [1.0 / n] * n + [0.0] * (2 * n))
+
+    step = imm_step

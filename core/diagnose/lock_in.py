@@ -1,0 +1,137 @@
+"""Multiple-model estimation that only listens at the frequency of the drive."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from core.block import Context, Equation, FloatArray, Port, parameter
+from core.diagnose import window
+from core.diagnose.kalman import (
+    COUNT,
+    COVARIANCE,
+    DEPTH,
+    LANES,
+    MEASURED,
+    OWN,
+    PROBABILITY,
+    RESIDUAL,
+    STARTED,
+    WIDTH,
+    KalmanBank,
+    KalmanParams,
+    applied_voltage,
+    correct,
+    driven,
+    predict,
+)
+from core.diagnose.weights import weigh
+
+FLOOR, LOG_FLOOR, CYCLES, DT, WINDOW, CAPACITY = range(6)
+LOG, LIKELIHOOD, SLIDING = DEPTH, DEPTH + 1, DEPTH + 2
+RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 1, PROBABILITY + 4)
+
+
+def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
+    """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
+    n = int(p[COUNT])
+    own = LANES + WIDTH * n
+    z = w[io[MEASURED]]
+    u = applied_voltage(p, s, w, io)
+    first = s[STARTED] == 0.0
+    s[STARTED] = 1.0
+    seen = math.isfinite(z)
+    evidence = seen and driven(p, s)
+    at = OWN + SLIDING * n
+    capacity = int(p[own + CAPACITY])
+    place = window.begin(s, at, n, capacity, p[own + WINDOW])
+    turn = window.angle(w, p[own + CYCLES], p[own + DT])
+    cosine = math.cos(turn)
+    sine = math.sin(turn)
+    half = 0.5 / p[own + WINDOW]
+    best = -math.inf
+    for i in range(n):
+        if not first:
+            predict(p, s, i, n, u)
+        nis = correct(p, s, i, n, z, seen)
+        residual = s[OWN + RESIDUAL * n + i]
+        w[io[RESIDUAL_TAP] + i] = residual
+        w[io[NIS_TAP] + i] = nis
+        window.push(s, at, n, capacity, i, place, residual / math.sqrt(s[OWN + COVARIANCE * n + i]), cosine, sine)
+        tone = window.tone(s, at, n, i)
+        w[io[TONE_TAP] + i] = tone
+        log = s[OWN + LOG * n + i]
+        if evidence:
+            log -= half * tone
+        s[OWN + LIKELIHOOD * n + i] = log
+        best = max(best, log)
+    window.end(s, at, n, capacity, place, cosine, sine)
+    weigh(
+        s,
+        OWN + LOG * n,
+        OWN + LIKELIHOOD * n,
+        w,
+        io[PROBABILITY],
+        n,
+        best,
+        p[own + FLOOR],
+        p[own + LOG_FLOOR],
+    )
+
+
+class LockIn(KalmanBank):
+    r"""Residual correlation: only what of a residual is at the frequency of the drive is evidence.
+
+    .. math:: T_k=\frac{2}{W}\Bigl|\sum_W\frac{r_k}{\sqrt{\psi_k}}e^{-j\omega t}\Bigr|^2,\qquad
+        \ell_k\leftarrow\ell_k-\frac{T_k}{2W}
+
+    A fault of the device moves the response at the tone, hum and noise stated wrongly do not. It needs a known tone
+    and is about a quarter of a window slower (the idea of Hanlon and Maybeck 2000, which the text cites and does not
+    use).
+    """
+
+    title = "Residual-correlation bank (lock-in)"
+    taps = (*KalmanBank.taps, Port("tone", "1", "part of the residuals at the tone, 2 on average", each="hypotheses"))
+    equations = (
+        Equation("tone", r"T_k=\frac{2}{W}\Bigl|\sum_W\frac{r_k}{\sqrt{\psi_k}}e^{-j\omega t}\Bigr|^2"),
+        Equation("evidence", r"\ell_k\leftarrow\ell_k-\frac{T_k}{2W}", "Hanlon and Maybeck 2000, in idea"),
+    )
+
+    class Params(KalmanParams):
+        """Assumptions of the bank."""
+
+        probability_floor: float = parameter(1e-3, "smallest probability", equation="5.2.3.2.6", ge=0, le=0.05)
+        window: int | None = parameter(
+            None, "samples of the window; a period of the tone unless given", ge=2, le=4096, live=False
+        )
+        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+
+    @classmethod
+    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
+        """Return the evidence of a sample: what of the residuals is at the tone, spread over the window."""
+        return -0.5 * tone / window.length(params, context)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> FloatArray:
+        """Pack the parameters for the step."""
+        floor = params.probability_floor
+        own = [
+            floor,
+            math.log(floor) if floor > 0 else 0.0,
+            window.tone_hz(params, context) / 1e3,
+            context.dt_ms / context.every,
+            float(window.length(params, context)),
+            float(window.room(params)),
+        ]
+        return np.array(cls.filters(params, context) + own)
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> FloatArray:
+        """All filters at rest, all hypotheses alike, the window empty."""
+        n = len(params.hypotheses)
+        sliding = [0.0] * window.size(n, window.room(params))
+        return np.array(cls.at_rest(params, context) + [-math.log(n)] * n + [0.0] * n + sliding)
+
+    step = lock_in_step

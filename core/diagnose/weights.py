@@ -1,0 +1,60 @@
+"""Probabilities from logarithms, and a floor under them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from core.block import kernel
+
+
+@kernel
+def weigh(
+    s: Any, log: int, likelihood: int, w: Any, probability: int, n: int, best: float, floor: float, log_floor: float
+) -> None:
+    r"""Turn unnormalised logarithms into probabilities, :math:`p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})`.
+
+    Parameters
+    ----------
+    s : array
+        State that holds both lanes of logarithms.
+    log, likelihood : int
+        Where the normalised logarithms go, and where those of this sample stand.
+    w, probability
+        Signals, and where the probabilities go.
+    n : int
+        Number of hypotheses.
+    best : float
+        Largest of the logarithms of this sample.
+    floor, log_floor : float
+        Smallest probability, 0 for none, and its logarithm.
+    """
+    total = 0.0
+    for i in range(n):
+        share = math.exp(s[likelihood + i] - best)
+        w[probability + i] = share
+        total += share
+    after = 0.0
+    for i in range(n):
+        share = max(w[probability + i] / total, floor)
+        w[probability + i] = share
+        after += share
+    shift = best + math.log(total * after)
+    log_floor -= math.log(after)
+    for i in range(n):
+        share = w[probability + i]
+        floored = floor > 0.0 and share == floor
+        s[log + i] = log_floor if floored else s[likelihood + i] - shift
+        w[probability + i] = share / after
+
+
+@kernel
+def share_out(s: Any, likelihood: int, w: Any, probability: int, n: int, best: float) -> None:
+    """Turn unnormalised logarithms into probabilities that nothing remembers."""
+    total = 0.0
+    for i in range(n):
+        share = math.exp(s[likelihood + i] - best)
+        w[probability + i] = share
+        total += share
+    for i in range(n):
+        w[probability + i] /= total
