@@ -247,12 +247,16 @@ def speed() -> dict[str, Any]:
     tones = sine + 5.0 * np.sin(2.0 * np.pi * 4.5 * 0.01 * np.arange(SECOND))
     record = regressors_of(tones, held_response(device, tones, 0.01))
     candidates["least_squares"] = estimate_sample(*record)
-    missing = ""
-    try:
-        candidates["filterpy_bank"] = filterpy_step(bench)
-        candidates["padasip"] = padasip_sample(*record)
-    except ImportError:
-        missing = "filterpy or padasip is not installed (make setup-test installs them)"
+    missing = []
+    for peer, name, prepare in (
+        ("filterpy", "filterpy_bank", partial(filterpy_step, bench)),
+        ("padasip", "padasip", partial(padasip_sample, *record)),
+        ("control", "interconnected_mrac", partial(interconnected_sample, loop)),
+    ):
+        try:
+            candidates[name] = prepare()
+        except ImportError:
+            missing.append(f"{peer} is not installed (make setup-test installs it)")
     ns = interleaved(candidates)
     figures = [
         _figure("cost of a tick of a bench (blocks, trace, log, digest)", ns["bench_tick"] / 1e3, "us"),
