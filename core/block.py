@@ -170,8 +170,8 @@ class Context:
         The nominal device.
     model : Oscillator
         The reference model the shuttle should follow.
-    film : tuple of float
-        Plan area over the gas film (um^2) and its thickness (um), facing area of the combs (um^2) and their gap (um).
+    drawing : BlockParams, optional
+        Drawing of the device (``core.device.geometry``).
     temperature_k : float
         Temperature of the device.
     stator_voltages : tuple of float
@@ -193,7 +193,7 @@ class Context:
     seed: int
     device: Oscillator
     model: Oscillator
-    film: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    drawing: BlockParams | None = None
     temperature_k: float = 300.0
     stator_voltages: tuple[float, float] = (0.0, 0.0)
     capacitance_gradient: float = 0.0

@@ -11,7 +11,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from core.block import Block, Port
+from core.block import Block, BlockParams, Equation, Port
 from core.errors import unknown
 
 FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", "board")
@@ -127,6 +127,16 @@ def catalog(family: str | None = None) -> list[BlockCard]:
     return [card(entry) for name in chosen for entry in blocks(name).values()]
 
 
+def equation_card(e: Equation) -> EquationCard:
+    """Return an equation as people see it."""
+    return EquationCard(label=e.label, latex=e.latex, source=e.source, printed=e.printed or None, why=e.why or None)
+
+
+def parameter_cards(params: type[BlockParams]) -> list[ParameterCard]:
+    """Return the parameters of a table as people see them."""
+    return [_parameter(name, info) for name, info in params.model_fields.items()]
+
+
 def card(entry: type[Block]) -> BlockCard:
     """Return the card of a block."""
     return BlockCard(
@@ -137,11 +147,8 @@ def card(entry: type[Block]) -> BlockCard:
         changes=getattr(entry, "changes", None),
         shows=getattr(entry, "shows", None),
         suggested=getattr(entry, "suggested", None),
-        equations=[
-            EquationCard(label=e.label, latex=e.latex, source=e.source, printed=e.printed or None, why=e.why or None)
-            for e in entry.equations
-        ],
-        parameters=[_parameter(name, info) for name, info in entry.Params.model_fields.items()],
+        equations=[equation_card(equation) for equation in entry.equations],
+        parameters=parameter_cards(entry.Params),
         inputs=[_port(port) for port in entry.inputs],
         outputs=[_port(port) for port in entry.outputs],
         taps=[_port(port) for port in entry.taps],

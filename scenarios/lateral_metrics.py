@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -10,14 +10,12 @@ from core.block import FloatArray
 from core.board import program
 from core.board.board import Board
 from core.device.device import Device
-from core.device.frame import stiffness
 from core.device.geometry import Geometry
+from core.device.lateral import lateral
 from core.device.pull_in import rotation_pull_in_v
-from core.plant import planar, slaved_lateral
+from core.plant import body, slaved_lateral
 from core.plant.equilibrium import Fold, bias_pull_in, fold, planar_force, slaved_force, stators_of, voltage_at
 
-FAR_UM = 344.0
-"""Distance of the outermost finger from the x axis."""
 SMALL_UM = 1.0
 """Travel at which the rotation is read."""
 
@@ -40,35 +38,35 @@ def lateral_metrics(board: Board) -> dict[str, float]:
         ratio = float(p[slaved_lateral.KAPPA])
         return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state[0]))
     if kind == "planar":
-        return _planar(p, state)
-    pull_in = device_pull_in(board.spec.device)
-    return {} if pull_in is None else {"device.pull_in_v": pull_in}
+        return _planar(p, state, board.spec.device.drawing.far_finger_um)
+    return {"device.pull_in_v": device_pull_in(board.spec.device)}
 
 
-def device_pull_in(device: Device) -> float | None:
-    """Return the bias of pull-in of a device with a drawing, perfectly aligned; none without a drawing."""
-    return None if device.geometry is None else geometry_pull_in(device.geometry, device.capacitance_gradient)
+def device_pull_in(device: Device) -> float:
+    """Return the bias of pull-in of a device, perfectly aligned; one without a drawing has the beams of LCR-350."""
+    return geometry_pull_in(device.drawing, device.capacitance_gradient)
 
 
-@cache
+@lru_cache(maxsize=256)
 def geometry_pull_in(geometry: Geometry, gradient_f_m: float) -> float:
     """Return the bias of pull-in of a drawing, its rotational stiffness by the frame of beams."""
-    tip = 0.5 * geometry.plate_length_um + geometry.arm_width_um + geometry.finger_length_um - geometry.overlap_um
-    turning = float(stiffness(geometry)[2, 2]) * 1e-12
-    return rotation_pull_in_v(turning, gradient_f_m, geometry.gap_um, tip, geometry.overlap_um)
+    across = lateral(geometry)
+    return rotation_pull_in_v(
+        across.rotation_stiffness_nm, gradient_f_m, across.gap_um, across.stator_tip_um, across.overlap_um
+    )
 
 
-def _planar(p: FloatArray, state: FloatArray) -> dict[str, float]:
+def _planar(p: FloatArray, state: FloatArray, far_um: float) -> dict[str, float]:
     suspension = state[:9].copy()
     force, stators = planar_force(p, suspension), stators_of(p)
-    found = _folded(fold(force, stators, lambda q: float(planar.worst(p, float(q[1]), float(q[2]))), 3))
-    found |= _touched(float(state[planar.TOUCHED_MS]))
+    found = _folded(fold(force, stators, lambda q: float(body.worst(p, float(q[1]), float(q[2]))), 3))
+    found |= _touched(float(state[body.TOUCHED_MS]))
     pull_in = bias_pull_in(p, suspension)
     if pull_in is not None:
         found["device.pull_in_v"] = pull_in
     held = voltage_at(force, SMALL_UM, np.zeros(4), stators)
     if held is not None:
-        found["lateral.far_ratio"] = 1.0 + abs(float(held[0][2])) * FAR_UM / SMALL_UM
+        found["lateral.far_ratio"] = 1.0 + abs(float(held[0][2])) * far_um / SMALL_UM
     return found
 
 

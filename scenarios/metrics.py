@@ -11,6 +11,7 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.environment import Environment
 from core.board.score import Scores
+from core.board.spec import Spec
 from core.errors import unknown
 from scenarios.lateral_metrics import lateral_metrics
 from scenarios.sensing_metrics import sensing_metrics
@@ -32,9 +33,8 @@ def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tic
     return complex(coefficients[0], coefficients[1])
 
 
-def device_metrics(board: Board) -> dict[str, float]:
+def device_metrics(spec: Spec) -> dict[str, float]:
     """Return the figures of the device in its environment, before any fault."""
-    spec = board.spec
     params = spec.environment.params
     stiffness, damping = Environment.scales(params, spec.context())
     temperature = spec.context().temperature_k
@@ -143,7 +143,7 @@ def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any])
             raise unknown("metric option", key, allowed, f"metrics.{key}")
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise unknown("metric option value", value, ["a number"], f"metrics.{key}")
-    found = device_metrics(board) | lateral_metrics(board)
+    found = device_metrics(board.spec) | lateral_metrics(board)
     if board.tick > 1:
         found |= control_metrics(board, trace, options)
         found |= sensing_metrics(board, trace, options)

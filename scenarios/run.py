@@ -202,7 +202,7 @@ def _run_study(scenario: Scenario, board: Board) -> Result:
     nothing = np.empty((0, board.signals.outputs)), np.empty((0, len(board.signals) - board.signals.outputs))
     fresh = Board.restore(board.checkpoint())
     began = time.perf_counter()
-    metrics = {**device_metrics(board), **study.figures(board, params)}
+    metrics = {**device_metrics(board.spec), **study.figures(board, params)}
     elapsed = time.perf_counter() - began
     figures = np.array([metrics[name] for name in sorted(metrics)])
     digest = hashlib.sha256(figures.tobytes()).hexdigest()

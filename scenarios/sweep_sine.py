@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +19,14 @@ NEAR = 1.5
 """Range of the second pass about the resonance found, in shares of its width."""
 
 
+@dataclass(frozen=True)
+class Sweep:
+    """What was measured, by rising frequency, and what it says of the device."""
+
+    tones: list[Tone]
+    found: Identified
+
+
 def sweep_sine(
     board: Board,
     *,
@@ -27,7 +36,8 @@ def sweep_sine(
     settle: float = 12.0,
     start_hz: float | None = None,
     stop_hz: float | None = None,
-) -> Identified:
+    most_ticks: int | None = None,
+) -> Sweep:
     """Identify what a board drives, as it is now, on a copy; the board itself does not notice.
 
     A first pass of sines spans the range, a second one the resonance found. At each tone the transient is waited
@@ -47,11 +57,13 @@ def sweep_sine(
         Time constants waited before.
     start_hz, stop_hz : float, optional
         Range of the first pass instead of 0.25 to 2 natural frequencies.
+    most_ticks : int, optional
+        Refuse a pass that would take more ticks than this.
 
     Raises
     ------
     InputError
-        When the board trips, or the record does not look like a resonator.
+        When the board trips, the record does not look like a resonator, or the sweep would take too long.
     """
     copy = Board.restore(board.checkpoint())
     copy.pending = []
@@ -67,6 +79,10 @@ def sweep_sine(
     held = getattr(copy.spec.drive.params, "kind", "held") == "held"
 
     def measure(frequencies: FloatArray) -> list[Tone]:
+        ticks = (len(frequencies) * settle * decay_ms + cycles * float(np.sum(1e3 / frequencies))) / copy.dt_ms
+        if most_ticks is not None and ticks > most_ticks:
+            hint = "fewer points or cycles, less settling, or a device that rings for a shorter time"
+            raise InputError(f"would take {ticks:.3g} ticks, at most {most_ticks:.3g}", "study", hint)
         return [_measure(copy, f, amplitude_v, cycles, settle * decay_ms, held) for f in frequencies.tolist()]
 
     tones = measure(np.geomspace(start, stop, points))
@@ -76,7 +92,8 @@ def sweep_sine(
     if low < high:
         known = {entry.frequency_hz for entry in tones}
         tones += measure(np.array([f for f in np.linspace(low, high, points) if f not in known]))
-    return identify(tones, device.signed_force_n_per_v)
+    tones.sort(key=lambda entry: entry.frequency_hz)
+    return Sweep(tones, identify(tones, device.signed_force_n_per_v))
 
 
 def _measure(board: Board, hertz: float, amplitude_v: float, cycles: float, settle_ms: float, held: bool) -> Tone:

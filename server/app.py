@@ -12,6 +12,8 @@ from server import errors, openapi
 from server.api import (
     benches,
     catalog,
+    devices,
+    experiments,
     health,
     metrics,
     recordings,
@@ -33,7 +35,7 @@ from server.settings import Settings
 from server.version import VERSION
 
 API = "/api/v1"
-ROUTERS = (catalog, scenarios, benches, snapshots, recordings, trace, runs, theory, stream)
+ROUTERS = (catalog, devices, scenarios, benches, experiments, snapshots, recordings, trace, runs, theory, stream)
 
 
 def create_app(settings: Settings) -> FastAPI:

@@ -57,7 +57,7 @@ class Service:
         self.jobs = Jobs(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
         self.theatre = _theatre()
-        self.file_turn = asyncio.Semaphore(1)
+        self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
         self.is_ready = self.has_kernels = False
         self.cut: Callable[[HTTPConnection], None] = lambda _connection: None
         self._loop: asyncio.AbstractEventLoop | None = None

@@ -100,6 +100,11 @@ def do(board: Board, command: dict[str, Any], actor: str = "test") -> Any:
     return board.apply(parse_command(command), actor)
 
 
+def fault(name: str, severity: float, **rest: Any) -> dict[str, Any]:
+    """Return the command that injects a fault."""
+    return {"kind": "inject", "fault": name, "severity": severity, **rest}
+
+
 def inject(board: Board, **severities: float) -> None:
     """Inject faults at this tick."""
     for fault, severity in severities.items():

@@ -15,12 +15,13 @@ export default defineConfig({
   },
   build: {
     outDir: "dist",
-    chunkSizeWarningLimit: 900,
     rolldownOptions: {
       output: {
-        advancedChunks: {
+        codeSplitting: {
           groups: [
             { name: "katex", test: /node_modules[\\/]katex/ },
+            { name: "dock", test: /node_modules[\\/]dockview/ },
+            { name: "mantine", test: /node_modules[\\/]@(mantine|floating-ui)/ },
             { name: "vendor", test: /node_modules/ },
           ],
         },

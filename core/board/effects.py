@@ -1,4 +1,4 @@
-"""Effect channels: through which faults reach the plant."""
+"""Effect channels: through which faults reach the plant and the measurement."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from core.block import Block, BlockParams, Context, FloatArray, Port
 
-STIFFNESS_IN, DAMPING_IN, OUTPUTS = range(3)
-STIFFNESS, DAMPING = 1, 2
+STIFFNESS_IN, DAMPING_IN, FRICTION_IN, SQUEEZE_IN, OUTPUTS = range(5)
+STIFFNESS, DAMPING, FRICTION, OTHER, SQUEEZE = 1, 2, 7, 17, 22
 """Places among the outputs of the channels that start from the environment."""
 
 
@@ -35,18 +35,24 @@ def effects_step(p: Any, s: Any, w: Any, io: Any) -> None:
         w[io[OUTPUTS + i]] = p[1 + i]
     w[io[OUTPUTS + STIFFNESS]] = w[io[STIFFNESS_IN]]
     w[io[OUTPUTS + DAMPING]] = w[io[DAMPING_IN]]
+    w[io[OUTPUTS + SQUEEZE]] = w[io[SQUEEZE_IN]]
+    w[io[OUTPUTS + FRICTION]] = w[io[FRICTION_IN]]
+    w[io[OUTPUTS + OTHER]] = w[io[FRICTION_IN]]  # no hypothesis says friction
 
 
 class Effects(Block):
-    """The channels through which faults reach the plant, set back to neutral before the faults of each tick.
+    """The channels through which faults reach plant and measurement, set back to neutral before those of each tick.
 
-    Stiffness and damping start from what the environment makes of the device, which is 1 at 300 K and 1 atm.
+    Stiffness, damping, friction and squeeze film start from what the environment makes of the device; for a new one at
+    300 K and 1 atm only the last is not neutral, by its rarefaction.
     """
 
     title = "Effect channels"
     inputs = (
         Port("stiffness", "1", "stiffness over nominal in this environment", source="environment.stiffness_scale"),
         Port("damping", "1", "damping over nominal in this environment", source="environment.damping_scale"),
+        Port("rubbing", "uN", "friction in this environment", source="environment.friction"),
+        Port("rarefied", "1", "squeeze film in this environment, over the damping", source="environment.squeeze"),
     )
     outputs = (
         _scale("mass_scale", "true mass over nominal", hidden=False),
@@ -68,6 +74,10 @@ class Effects(Block):
         _sum("turn_cubic", "rad/um^3", "rotation per cubed travel"),
         _sum("other", "1", "not zero while something is wrong that no hypothesis of a bank can say"),
         _scale("vacuum", "share of the vacuum that is left"),
+        _sum("sensor_offset", "um", "added to what is measured"),
+        _sum("sensor_quantum", "um", "step what is measured is rounded to, 0 for none"),
+        _sum("sensor_held", "1", "not zero while the sample is lost"),
+        _scale("squeeze_scale", "squeeze film over that of a continuous gas at 300 K, over the damping"),
     )
 
     class Params(BlockParams):

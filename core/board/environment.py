@@ -1,4 +1,4 @@
-"""Environment: what the air around the device makes of its stiffness and damping."""
+"""Environment: what air, age and friction make of the device."""
 
 from __future__ import annotations
 
@@ -11,15 +11,19 @@ from core.device.environment import (
     ATMOSPHERE_PA,
     ROOM_K,
     adhesion_j_m2,
+    ageing_ratio,
     damping_scale,
+    friction_scale,
+    squeezed_share,
     stiffness_scale,
     structural_share,
 )
+from core.device.geometry import drawn
 
-PRESSURE_AT, TEMPERATURE_AT, HUMID, FILM = range(4)
+PRESSURE_AT, TEMPERATURE_AT, HUMID, STICKY, RUBBING, WEEKS, AGED, FILM = range(8)
 """Packed parameters; from ``FILM`` on areas and gaps, angular frequency and structural share."""
-LAST_PRESSURE, LAST_TEMPERATURE, LAST_STIFFNESS, LAST_DAMPING = range(4)
-VACUUM, STIFFNESS, DAMPING, PRESSURE, ADHESION = range(5)
+LAST_PRESSURE, LAST_TEMPERATURE, LAST_STIFFNESS, LAST_DAMPING, LAST_SQUEEZE = range(5)
+VACUUM, STIFFNESS, DAMPING, SQUEEZE, FRICTION, FRICTION_SCALE, AGE, PRESSURE, ADHESION = range(9)
 
 
 def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -42,19 +46,24 @@ def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
             p[FILM + 4],
             p[FILM + 5],
         )
-    w[io[STIFFNESS]] = s[LAST_STIFFNESS]
+        s[LAST_SQUEEZE] = squeezed_share(pressure, temperature, p[FILM + 3]) / s[LAST_DAMPING]
+    w[io[STIFFNESS]] = s[LAST_STIFFNESS] * p[AGED]
     w[io[DAMPING]] = s[LAST_DAMPING]
+    w[io[SQUEEZE]] = s[LAST_SQUEEZE]
+    w[io[FRICTION]] = p[RUBBING] * p[STICKY]
+    w[io[FRICTION_SCALE]] = p[STICKY]
+    w[io[AGE]] = p[WEEKS]
     w[io[PRESSURE]] = pressure
     w[io[ADHESION]] = p[HUMID]
 
 
 class Environment(Block):
-    r"""Temperature, pressure and humidity around the device.
+    r"""Temperature, pressure and humidity around the device, its age, and what rubs on it.
 
-    They change the true device, never the nominal one the controllers believe in, whose figures hold at 300 K and
-    1 atm; there every factor is exactly 1. A device without a drawing is given the film of the drawn LCR-350.
-    Temperature is also that of the thermomechanical noise. Humidity sets the adhesion energy, which matters only
-    once surfaces touch; its effect on viscosity is below 1 %.
+    They change the true device, never the nominal one the controllers believe in, whose figures hold for a new one at
+    300 K and 1 atm; there every factor is exactly 1. A device without a drawing is given the film of the drawn
+    LCR-350. Temperature is also that of the thermomechanical noise. Humidity sets the adhesion energy, and with it the
+    friction of what touches; its effect on viscosity is below 1 %.
     """
 
     title = "Environment"
@@ -62,6 +71,10 @@ class Environment(Block):
     outputs = (
         Port("stiffness_scale", "1", "stiffness over nominal", hidden=True),
         Port("damping_scale", "1", "damping over nominal", hidden=True),
+        Port("squeeze", "1", "squeeze film over that of a continuous gas at 300 K, over the damping", hidden=True),
+        Port("friction", "uN", "Coulomb friction without any fault", hidden=True),
+        Port("friction_scale", "1", "friction at this humidity over that at 40 %", hidden=True),
+        Port("age", "week", "age without any fault", hidden=True),
     )
     taps = (
         Port("pressure", "Pa", "pressure at the device"),
@@ -80,25 +93,40 @@ class Environment(Block):
         Equation("stiffness", r"\frac{k}{k_0}=1-63\cdot10^{-6}\,(T-300)", "recalled value"),
         Equation("pressure", r"p=p_1-v\,(p_1-p_0),\quad p_1=1\ \text{atm}", "v: share of the vacuum left"),
         Equation("adhesion", r"W=W_d(W_w/W_d)^{1/(1+e^{-(H-60)/8})}", "ends recalled, shape assumed; 1.4.4"),
+        Equation(
+            "friction", r"F_s(H)=F_s\,\frac{W(H)}{W(40)},\quad|x-x_0|\le F_s(H)/k\ \text{at rest}", "assumed; 1.5"
+        ),
+        Equation(
+            "squeeze film", r"c_s\to c_s\,\frac{\mu}{\mu_0}\frac1{1+9.638\,(\lambda/g)^{1.159}}", "Veijola, recalled"
+        ),
+        Equation("age", r"k\to k/r(t),\quad r=1-0.428\,\frac{1-e^{-t/2}}{1-e^{-2}}", "3.1.3.2; the law is assumed"),
     )
 
     class Params(BlockParams):
-        """State of the air."""
+        """State of the air and of the device in it."""
 
         temperature_k: float = parameter(300.0, "temperature of device and air", "K", ge=150, le=600)
         pressure_pa: float = parameter(101325.0, "pressure of the air", "Pa", ge=0.01, le=1e6, equation="1.3.7")
         humidity_pct: float = parameter(40.0, "relative humidity", "%", ge=0, le=100, equation="1.4.4")
+        friction_nn: float = parameter(
+            0.0, "Coulomb friction at 40 % of humidity: the shuttle sticks within F/k", "nN", ge=0, le=1e5
+        )
+        age_weeks: float = parameter(0.0, "age of the device", "week", ge=0, le=52, equation="3.1.3.2")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the state of the air and the film of the device."""
+        """Pack the state of the air and the film of the device; nN to uN."""
         device = context.device
         return np.array(
             [
                 params.pressure_pa,
                 params.temperature_k,
                 1e3 * adhesion_j_m2(params.humidity_pct),
-                *context.film,
+                friction_scale(params.humidity_pct),
+                1e-3 * params.friction_nn,
+                params.age_weeks,
+                1.0 / ageing_ratio(params.age_weeks),
+                *drawn(context).film,
                 1e3 * device.natural_frequency,
                 # what is no resonator has no air around it either
                 structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0,
@@ -108,13 +136,13 @@ class Environment(Block):
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """Pressure and temperature of the factors kept, and the factors."""
-        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0, 1.0])
+        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0, 1.0, squeezed_share(ATMOSPHERE_PA, ROOM_K, drawn(context).gap_um)])
 
     @classmethod
     def scales(cls, params: Any, context: Context) -> tuple[float, float]:
         """Return the factors of stiffness and damping before any fault."""
-        packed = [float(value) for value in cls.pack(params, context)[FILM:]]
-        damping = damping_scale(params.pressure_pa, params.temperature_k, *packed)
-        return float(stiffness_scale(params.temperature_k)), float(damping)
+        packed = [float(value) for value in cls.pack(params, context)]
+        damping = damping_scale(params.pressure_pa, params.temperature_k, *packed[FILM:])
+        return float(stiffness_scale(params.temperature_k)) * packed[AGED], float(damping)
 
     step = environment_step

@@ -127,7 +127,7 @@ class Spec:
             seed=self.seed,
             device=nominal,
             model=Model.oscillator(self.model.params, nominal),
-            film=self.device.film,
+            drawing=self.device.drawing,
             temperature_k=float(getattr(self.environment.params, "temperature_k", 300.0)),
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,

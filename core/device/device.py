@@ -113,9 +113,18 @@ class Device(BlockParams):
         return drawn
 
     @property
-    def film(self) -> tuple[float, float, float, float]:
-        """Areas and gaps the air shears in; those of the default drawing when the device has none."""
-        return (self.geometry or Geometry()).film
+    def drawing(self) -> Geometry:
+        """Drawing with the device's own thickness and gap; that of LCR-350 when the device has none.
+
+        Fingers given beside it count for the force alone: mass and damping are those of a comb that is not told.
+        """
+        drawn = self.geometry or Geometry()
+        own: dict[str, float] = {}
+        if self.thickness_um is not None:
+            own["thickness_um"] = self.thickness_um
+        if self.finger_gap_um is not None:
+            own["finger_gap_um"] = self.finger_gap_um - 2.0 * drawn.comb_bias_um
+        return drawn.model_copy(update=own)
 
     @property
     def stators_v(self) -> tuple[float, float]:
@@ -130,11 +139,8 @@ class Device(BlockParams):
             return 0.0
         if self.force_n_per_v is not None:
             return self.force_n_per_v / (2.0 * abs(self.bias_v))
-        drawn = self.geometry
-        fingers = self.fingers or (drawn.fingers if drawn else 0)
-        thickness = self.thickness_um or (drawn.thickness_um if drawn else 0.0)
-        gap = self.finger_gap_um or (drawn.gap_um if drawn else 1.0)
-        return 2.0 * fingers * EPSILON_0 * thickness / gap
+        drawn = self.drawing
+        return 2.0 * (self.fingers or drawn.fingers) * EPSILON_0 * drawn.thickness_um / drawn.gap_um
 
     @property
     def signed_force_n_per_v(self) -> float:

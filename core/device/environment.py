@@ -15,6 +15,7 @@ GAS_CONSTANT_AIR = 287.05
 """Specific gas constant of dry air, J/(kg K)."""
 ATMOSPHERE_PA = 101325.0
 ROOM_K = 300.0
+ROOM_PCT = 40.0
 """The state of the air for which the figures of every device hold."""
 MODULUS_PER_K = 63e-6
 """Relative fall of Young's modulus of silicon per kelvin (recalled)."""
@@ -127,6 +128,20 @@ def damping_scale(
     return (1.0 - structural_share) * here / there + structural_share
 
 
+@kernel
+def squeezed_share(pressure_pa: float, temperature_k: float, gap_um: float) -> float:
+    r"""Squeeze film over that of a continuous gas at 300 K.
+
+    .. math:: \frac{\mu}{\mu_0}\,\frac1{1+9.638\,K_n^{1.159}},\quad K_n=\lambda/g
+
+    (Veijola et al. 1995, recalled.) 0.85 between fingers in the open: there a gap of 2.1 um is 31 mean free paths. The
+    gap is that at rest; one that closes is rarefied a little more.
+    """
+    knudsen = mean_free_path_um(pressure_pa, temperature_k) / gap_um
+    rarefied = 1.0 + 9.638 * math.exp(1.159 * math.log(knudsen))
+    return viscosity(temperature_k) / viscosity(ROOM_K) / rarefied
+
+
 def structural_share(quality_factor: float) -> float:
     r"""Share of the nominal damping that is not the gas, :math:`\sigma=Q_0/Q_i`, at most all of it."""
     return min(1.0, quality_factor / STRUCTURAL_QUALITY)
@@ -147,6 +162,15 @@ def adhesion_j_m2(humidity_pct: float) -> float:
     """
     wet = 1.0 / (1.0 + math.exp(-(humidity_pct - CONDENSES_PCT) / CONDENSES_OVER_PCT))
     return DRY_J_M2 * math.pow(WET_J_M2 / DRY_J_M2, wet)
+
+
+def friction_scale(humidity_pct: float) -> float:
+    r"""Friction of touching surfaces over that at 40 %, :math:`F_s(H)/F_s(40)=W(H)/W(40)`.
+
+    What presses them together is their adhesion, so friction goes with its energy. An assumption: the text says only
+    that humidity increases stiction (1.4.4, 1.5).
+    """
+    return adhesion_j_m2(humidity_pct) / adhesion_j_m2(ROOM_PCT)
 
 
 def vertical_stiffness_n_m(stiffness_n_m: float, thickness_um: float, beam_um: float) -> float:

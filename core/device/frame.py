@@ -16,8 +16,6 @@ from core.block import FloatArray
 from core.device.geometry import Geometry
 
 Beam = Literal["inner", "outer"]
-ROOT_UM = 37.5
-"""Distance of the roots of all beams from the x axis."""
 SEGMENT = (-1.5, -0.5, 0.5, 1.5)
 """Places of the four beams of a side along its truss, in truss segments."""
 
@@ -42,6 +40,25 @@ class Damage:
     side_scale: float = 1.0
 
 
+@dataclass(frozen=True)
+class Shape:
+    """A suspension that follows the shuttle.
+
+    Parameters
+    ----------
+    points : ndarray, shape (nodes, 2)
+        Where the nodes are at rest, um.
+    elements : list of (int, int)
+        The nodes at both ends of each beam, or part of a beam or truss.
+    response : ndarray, shape (nodes, 3, 3)
+        Displacement (x, y, theta) of each node per displacement of the shuttle.
+    """
+
+    points: FloatArray
+    elements: list[tuple[int, int]]
+    response: FloatArray
+
+
 @dataclass
 class _Mesh:
     """Nodes and elements: (first node, second node, E, width)."""
@@ -58,17 +75,18 @@ class _Mesh:
 
 def _mesh(geometry: Geometry, damage: Damage) -> _Mesh:
     mesh = _Mesh()
+    foot = 0.5 * geometry.plate_width_um
     for side in (1.0, -1.0):
         modulus = geometry.youngs_modulus_gpa * (damage.side_scale if side > 0.0 else 1.0)
         tops = []
         for i, place in enumerate(SEGMENT):
             x = place * geometry.truss_segment_um
-            root = mesh.node(x, side * ROOT_UM)
-            top = mesh.node(x, side * (ROOT_UM + geometry.beam_length_um))
+            root = mesh.node(x, side * foot)
+            top = mesh.node(x, side * (foot + geometry.beam_length_um))
             (mesh.rigid if i in (0, 3) else mesh.fixed).append(root)
             stuck = damage.adhesion
             if stuck is not None and side > 0.0 and i == (2 if stuck[0] == "inner" else 3):
-                middle = mesh.node(x, ROOT_UM + stuck[1] * geometry.beam_length_um)
+                middle = mesh.node(x, foot + stuck[1] * geometry.beam_length_um)
                 mesh.fixed.append(middle)
                 pairs = [(root, middle), (middle, top)]
             else:
@@ -96,7 +114,22 @@ def stiffness(geometry: Geometry, damage: Damage | None = None) -> FloatArray:
     ndarray, shape (3, 3)
         In (x, y, theta): N/m, uN/rad for the couplings, uN um/rad for the rotation.
     """
+    whole, carried = _assembled(geometry, _mesh(geometry, damage or Damage()))
+    reduced = carried.T @ whole @ carried
+    edge, corner = reduced[:-3, -3:], reduced[-3:, -3:]
+    return np.asarray(corner + edge.T @ _following(reduced))
+
+
+def shape(geometry: Geometry, damage: Damage | None = None) -> Shape:
+    """Return how every node of the suspension follows the shuttle, at rest in itself."""
     mesh = _mesh(geometry, damage or Damage())
+    whole, carried = _assembled(geometry, mesh)
+    response = carried @ np.vstack([_following(carried.T @ whole @ carried), np.eye(3)])
+    return Shape(np.array(mesh.points), [(a, b) for a, b, _, _ in mesh.elements], response.reshape(-1, 3, 3))
+
+
+def _assembled(geometry: Geometry, mesh: _Mesh) -> tuple[FloatArray, FloatArray]:
+    """Return the stiffness of all nodes, and what each freedom carries along: the free nodes, then the shuttle."""
     n = len(mesh.points)
     whole = np.zeros((3 * n, 3 * n))
     for a, b, modulus, width in mesh.elements:
@@ -106,16 +139,18 @@ def stiffness(geometry: Geometry, damage: Damage | None = None) -> FloatArray:
             mesh.points[a], mesh.points[b], modulus * 1e3, width, geometry.thickness_um
         )
     free = [i for i in range(n) if i not in mesh.fixed and i not in mesh.rigid]
-    columns = 3 * len(free) + 3
-    shape = np.zeros((3 * n, columns))
+    carried = np.zeros((3 * n, 3 * len(free) + 3))
     for j, i in enumerate(free):
-        shape[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] = np.eye(3)
+        carried[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] = np.eye(3)
     for i in mesh.rigid:
         x, y = mesh.points[i]
-        shape[3 * i : 3 * i + 3, -3:] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
-    reduced = shape.T @ whole @ shape
-    inner, edge, corner = reduced[:-3, :-3], reduced[:-3, -3:], reduced[-3:, -3:]
-    return np.asarray(corner - edge.T @ np.linalg.lstsq(inner, edge, rcond=None)[0])
+        carried[3 * i : 3 * i + 3, -3:] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
+    return whole, carried
+
+
+def _following(reduced: FloatArray) -> FloatArray:
+    """Return where the free nodes are per displacement of the shuttle."""
+    return np.asarray(-np.linalg.lstsq(reduced[:-3, :-3], reduced[:-3, -3:], rcond=None)[0])
 
 
 def along_x(stiffness: FloatArray) -> float:

@@ -7,7 +7,11 @@ structural thickness share one printed symbol and are two numbers here (``film_g
 
 from __future__ import annotations
 
-from core.block import BlockParams, parameter
+from typing import Self
+
+from pydantic import model_validator
+
+from core.block import BlockParams, Context, parameter
 from core.device.environment import ATMOSPHERE_PA, ROOM_K, penetration_depth_um, viscosity
 from core.units import EPSILON_0
 
@@ -40,6 +44,20 @@ class Geometry(BlockParams):
     youngs_modulus_gpa: float = parameter(164.0, "Young's modulus", "GPa", gt=0, live=False)
     density_kg_m3: float = parameter(2330.0, "density", "kg/m^3", gt=0, live=False)
 
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        finger = self.finger_width_um - 2.0 * self.comb_bias_um
+        for what, left in (("beams", self.beam_um), ("trusses", self.truss_um), ("fingers", finger)):
+            if left <= 0.0:
+                raise ValueError(f"nothing is left of the {what}: the etch bias per edge takes their whole width")
+        if self.gap_um <= 0.0:
+            raise ValueError("the fingers touch: the etch bias per edge closes the gap between them")
+        if self.overlap_um > self.finger_length_um:
+            raise ValueError("the fingers overlap by more than their length: overlap_um must be <= finger_length_um")
+        if self.areas_um2[0] <= 0.0:
+            raise ValueError("nothing is left of the shuttle: openings_um2 is more than plate, arms and fingers")
+        return self
+
     @property
     def beam_um(self) -> float:
         """Width of a beam as etched."""
@@ -54,6 +72,16 @@ class Geometry(BlockParams):
     def gap_um(self) -> float:
         """Gap between fingers as etched."""
         return self.finger_gap_um + 2.0 * self.comb_bias_um
+
+    @property
+    def stator_tip_um(self) -> float:
+        """Distance of the stator's finger tips from the centre: where the overlap begins."""
+        return 0.5 * self.plate_length_um + self.arm_width_um + self.finger_length_um - self.overlap_um
+
+    @property
+    def far_finger_um(self) -> float:
+        """Distance of the outermost finger from the x axis."""
+        return (self.fingers - 1) * (self.finger_width_um + self.finger_gap_um)
 
     @property
     def areas_um2(self) -> tuple[float, float, float, float]:
@@ -109,3 +137,8 @@ class Geometry(BlockParams):
     def capacitance_gradient(self) -> float:
         r"""dC/dx of one comb, F/m: :math:`2n\varepsilon_0t/g` (n rotor fingers, two gaps each)."""
         return 2.0 * self.fingers * EPSILON_0 * self.thickness_um / self.gap_um
+
+
+def drawn(context: Context) -> Geometry:
+    """Return the drawing of the device on the bench; that of LCR-350 if it has none."""
+    return context.drawing if isinstance(context.drawing, Geometry) else Geometry()

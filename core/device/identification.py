@@ -80,6 +80,9 @@ class Identified:
     f0_hz: float
     f_peak_hz: float
     quality_factor: float
+    f0_error_hz: float
+    f_peak_error_hz: float
+    quality_factor_error: float
     static_gain_um_per_v: float
     coherence: float
     read_f_peak_hz: float | None
@@ -149,6 +152,7 @@ def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
     if min(mass, damping, stiffness) <= 0.0:
         raise InputError("the sweep does not look like a resonator; widen it or raise the amplitude", "study")
     found = figures(mass, damping, stiffness)
+    wander = _figure_errors(found, (mass, damping, stiffness), covariance * np.outer(scale, scale))
     return Identified(
         mass_kg=mass,
         damping_ns_m=damping,
@@ -159,10 +163,25 @@ def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
         f0_hz=found["f0_hz"],
         f_peak_hz=found["f_peak_hz"],
         quality_factor=found["quality_factor"],
+        f0_error_hz=wander["f0_hz"],
+        f_peak_error_hz=wander["f_peak_hz"],
+        quality_factor_error=wander["quality_factor"],
         static_gain_um_per_v=force_n_per_v / stiffness * UM_PER_M,
         coherence=min(entry.coherence for entry in tones),
         **_read(omega, measured),
     )
+
+
+def _figure_errors(found: dict[str, float], fitted: tuple[float, ...], covariance: FloatArray) -> dict[str, float]:
+    """Carry the covariance of mass, damping and stiffness over to the figures of the resonance, to first order."""
+    mass, damping, stiffness = fitted
+    f0, quality, peak = found["f0_hz"], found["quality_factor"], found["f_peak_hz"]
+    by_f0 = f0 * np.array([-0.5 / mass, 0.0, 0.5 / stiffness])
+    by_quality = quality * np.array([0.5 / mass, -1.0 / damping, 0.5 / stiffness])
+    # the square of the peak is f0^2 (1 - 1 / 2Q^2); without a peak it stays at rest
+    by_peak = (peak / f0) * by_f0 + (f0 * f0 / (2.0 * quality**3 * peak) * by_quality if peak > 0.0 else 0.0 * by_f0)
+    rows = {"f0_hz": by_f0, "f_peak_hz": by_peak, "quality_factor": by_quality}
+    return {name: float(np.sqrt(slope @ covariance @ slope)) for name, slope in rows.items()}
 
 
 def _read(omega: FloatArray, measured: ComplexArray) -> dict[str, float | None]:

@@ -8,7 +8,7 @@ from core.block import TICK, Equation, Port, parameter
 from core.device.environment import ageing_ratio
 from core.faults.fault import Fault, FaultParams, channel, severity_at
 
-EFFECT, WEEKS = range(2)
+EFFECT, AGE, WEEKS = range(3)
 
 
 def ageing_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -16,21 +16,26 @@ def ageing_step(p: Any, s: Any, w: Any, io: Any) -> None:
     weeks = severity_at(p, w[TICK])
     w[io[WEEKS]] = weeks
     if weeks != 0.0:
-        w[io[EFFECT]] /= ageing_ratio(weeks)
+        age = w[io[AGE]]
+        w[io[EFFECT]] *= ageing_ratio(age) / ageing_ratio(age + weeks)
 
 
 class Ageing(Fault):
     r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less displacement at rest after four (3.1.3.2).
 
-    A ramp lets the weeks pass within the run. Only the end is the text's; the exponential and its time constant of
-    two weeks are assumed, and so is that wear and stiction act as a stiffness.
+    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. Only the end is the
+    text's; the exponential and its time constant of two weeks are assumed, and so is that wear and stiction act as a
+    stiffness.
     """
 
     title = "Ageing"
     shows = "beams"
     changes = "displacement the suspension allows, taken as stiffness; 1.748 times as stiff after four weeks"
     suggested = 4.0
-    inputs = channel("stiffness_scale")
+    inputs = (
+        *channel("stiffness_scale"),
+        Port("age", "week", "age without the fault", source="environment.age"),
+    )
     outputs = (Port("severity", "week", "age"),)
     equations = (
         Equation(

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.device.frame import Damage
+from core.device.geometry import drawn
 from core.faults.fault import Fault, FaultParams
 from core.faults.structure import STRUCTURE, Bending, effects, packed, structure_step
 
@@ -54,7 +55,7 @@ class BrokenTruss(Fault):
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack severity, profile and effects."""
         common = super().pack(params, context)
-        whole = effects(*EXTENTS[params.extent]) if params.severity != 0.0 else [0.0] * 9
+        whole = effects(drawn(context), *EXTENTS[params.extent]) if params.severity != 0.0 else [0.0] * 9
         return np.array(packed(common, params.severity, whole))
 
     step = structure_step

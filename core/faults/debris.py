@@ -7,10 +7,10 @@ from typing import Any, Literal
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
+from core.device.geometry import drawn
+from core.device.lateral import lateral
 from core.faults.fault import SEVERITY, Fault, FaultParams, channels, severity_at
 
-TURN_STIFFNESS_UN_UM = 4.51e5
-"""Stiffness against rotation of LCR-350, uN um/rad."""
 STIFFER, DAMPER, TURNING, TURN, COMBS = range(5, 10)
 COMB = {"right": 1.0, "left": 2.0}
 
@@ -59,13 +59,14 @@ class Debris(Fault):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack severity, profile and effects: the spring as seen along x with the shuttle free to turn."""
+        resists = 1e12 * lateral(drawn(context)).rotation_stiffness_nm
         spring = params.severity * context.device.stiffness
-        turning = spring * params.place_um * params.place_um / TURN_STIFFNESS_UN_UM
+        turning = spring * params.place_um * params.place_um / resists
         own = [
             params.severity / (1.0 + turning),
             params.damping,
             turning,
-            spring * params.place_um / TURN_STIFFNESS_UN_UM / (1.0 + turning),
+            spring * params.place_um / resists / (1.0 + turning),
             COMB[params.comb] if params.conductive else 0.0,
         ]
         return np.array([*super().pack(params, context).tolist(), *own])

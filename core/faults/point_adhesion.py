@@ -8,6 +8,7 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.device.frame import Damage
+from core.device.geometry import Geometry, drawn
 from core.faults.fault import Fault, FaultParams
 from core.faults.structure import STRUCTURE, Bending, effects, linear, packed, structure_step
 
@@ -63,7 +64,7 @@ class PointAdhesion(Fault):
         if params.severity == 0.0:
             return np.array(packed(common, 0.0, [0.0] * 9))
         damage = Damage(adhesion=(params.beam, params.position))
-        bending = BENDING.scaled(linear(damage)[3] / linear(FITTED)[3])
-        return np.array(packed(common, params.severity, effects(damage, bending)))
+        bending = BENDING.scaled(linear(drawn(context), damage)[3] / linear(Geometry(), FITTED)[3])
+        return np.array(packed(common, params.severity, effects(drawn(context), damage, bending)))
 
     step = structure_step

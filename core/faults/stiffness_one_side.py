@@ -8,6 +8,7 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.device.frame import Damage
+from core.device.geometry import drawn
 from core.faults.fault import Fault, FaultParams
 from core.faults.structure import STRUCTURE, Bending, effects, packed, structure_step
 
@@ -34,7 +35,7 @@ class StiffnessOneSide(Fault):
         common = super().pack(params, context)
         whole = [0.0] * 9
         if params.severity != 0.0:
-            whole = effects(Damage(side_scale=1.0 + params.severity), Bending())
+            whole = effects(drawn(context), Damage(side_scale=1.0 + params.severity), Bending())
             whole[0] = 0.5 * params.severity
         return np.array(packed(common, 1.0, whole))
 

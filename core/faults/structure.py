@@ -1,13 +1,13 @@
 """What faults of the suspension share: their effect on the whole of its elasticity.
 
-The part that is linear in the displacement comes from a frame of beams with the dimensions of LCR-350; what bends with
-the travel was fitted to the same frame at large displacements, for the named places.
+The part that is linear in the displacement comes from a frame of beams with the drawing of the device; what bends with
+the travel was fitted to the frame of LCR-350 at large displacements, for the named places.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 from core.block import FloatArray, Port
@@ -53,10 +53,10 @@ class Bending:
         )
 
 
-@cache
-def linear(damage: Damage) -> tuple[float, float, float, float]:
+@lru_cache(maxsize=256)
+def linear(geometry: Geometry, damage: Damage) -> tuple[float, float, float, float]:
     """Return the stiffness along x, along y and against rotation over nominal, and the turn per travel, rad/um."""
-    whole, hurt = stiffness(Geometry()), stiffness(Geometry(), damage)
+    whole, hurt = stiffness(geometry), stiffness(geometry, damage)
     # the turn that costs nothing at a travel, with the shuttle free sideways
     coupling = hurt[2, 0] - hurt[2, 1] * hurt[1, 0] / hurt[1, 1]
     turning = hurt[2, 2] - hurt[2, 1] * hurt[1, 2] / hurt[1, 1]
@@ -68,9 +68,9 @@ def linear(damage: Damage) -> tuple[float, float, float, float]:
     )
 
 
-def effects(damage: Damage, bending: Bending) -> list[float]:
+def effects(geometry: Geometry, damage: Damage, bending: Bending) -> list[float]:
     """Return what the whole fault does to each channel: added shares for scales, the sums themselves."""
-    along, sideways, turning, turn = linear(damage)
+    along, sideways, turning, turn = linear(geometry, damage)
     return [
         along - 1.0,
         sideways - 1.0,

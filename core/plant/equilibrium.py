@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.block import FloatArray
-from core.plant import plane, slaved_lateral
+from core.plant import contact, plane, slaved_lateral
 from core.plant.electrostatics import comb
 from core.plant.shuttle import FIRST_V, SECOND_V
 from core.plant.suspension import elastic_force
@@ -28,7 +28,7 @@ class Fold:
 
 def planar_force(p: FloatArray, suspension: FloatArray) -> Force:
     """Return the static force of a planar plant."""
-    square, limit, stator, strength = p[plane.GAP_SQUARED], p[plane.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
+    square, limit, stator, strength = p[plane.GAP_SQUARED], p[contact.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
     overlap = p[plane.ROTOR] - stator
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
@@ -150,12 +150,24 @@ def fold(
         Of the two sides the one that needs less voltage; none when both are stable as far as was looked. A device that
         is unstable without any drive has its fold at 0 V.
     """
+    ends = folds(force, stators, lateral, size, farthest, step)
+    return min(ends, key=lambda entry: abs(entry.volts)) if ends else None
+
+
+def folds(
+    force: Force,
+    stators: tuple[float, float],
+    lateral: Callable[[FloatArray], float],
+    size: int,
+    farthest: float = 20.0,
+    step: float = 0.05,
+) -> list[Fold]:
+    """Return the folds to either side, as far as there are any; arguments as for `fold`."""
     rest = rest_at(force, np.zeros(size), stators[0] * stators[0], stators[1] * stators[1])
     if rest is None or not is_stable(force, rest, stators[0] * stators[0], stators[1] * stators[1]):
-        return Fold(0.0, 0.0, 0.0)
+        return [Fold(0.0, 0.0, 0.0)]
     found = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
-    ends = [entry for entry in found if entry is not None]
-    return min(ends, key=lambda entry: abs(entry.volts)) if ends else None
+    return [entry for entry in found if entry is not None]
 
 
 def _one_side(

@@ -13,15 +13,11 @@ from core.plant.shuttle import (
     DAMPING,
     DAMPING_SCALE,
     DISPLACEMENT,
-    DRIVE_GAIN,
-    DRIVE_OFFSET,
     DT,
-    END,
     FIRST_OWN_INPUT,
     FRICTION,
     MASS,
     MASS_SCALE,
-    MIDDLE,
     OWN,
     SHORT,
     SHORTED,
@@ -29,12 +25,12 @@ from core.plant.shuttle import (
     STIFFNESS_SCALE,
     V0,
     VELOCITY,
-    VOLTAGE,
     X0,
     Shuttle,
     ShuttleParams,
     at_rest_sideways,
     comb_force,
+    comb_voltage_parabola,
     drive_noise,
     dry_friction,
     joined,
@@ -71,12 +67,7 @@ def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
     k = p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
     cubic = p[CUBIC] + w[io[CUBIC_IN]]
     tick = w[TICK] - 1.0
-    gain = w[io[DRIVE_GAIN]]
-    u0 = gain * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
-    d1 = gain * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]] - u0
-    d2 = gain * w[io[END]] + w[io[DRIVE_OFFSET]] - u0
-    rise = 4.0 * d1 - d2
-    bend = 2.0 * d2 - 4.0 * d1
+    u0, rise, bend = comb_voltage_parabola(w, io)
     noise = drive_noise(p, tick)
     other = thermal_force(p, b, tick) - m * w[io[ACCELERATION]]
     rubbing = w[io[FRICTION]]

@@ -2,70 +2,49 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, Port, inlined, kernel, settled
+from core.block import TICK, Context, Equation, FloatArray, Port, settled
 from core.noise import normal
-from core.plant.electrostatics import comb
+from core.plant.body import (
+    ACCELERATION_SIDE,
+    BETA,
+    F_X,
+    F_Y,
+    FIRST_OUTPUT,
+    PER_MASS,
+    TOUCHED_MS,
+    acceleration,
+    noise_of,
+    prepare,
+    worst,
+)
+from core.plant.contact import SHORTS, TOUCH
 from core.plant.plane import (
     COARSE,
-    CUBIC,
     FINE,
-    GAP_SQUARED,
-    LIMIT,
     NEAR,
-    PER_GAP,
     PER_INERTIA,
     ROTOR,
-    SHORTS,
-    SIDE_DAMPING,
     SIDE_KEY,
-    SIDE_REACH,
-    SIDE_STIFFNESS,
-    SIDEWAYS,
-    SQUEEZE,
-    STATOR,
-    STOP,
-    STOP_DAMPING,
-    STOP_STIFFNESS,
-    STRENGTH,
     T_MISS,
     THERMAL_COARSE,
     THERMAL_FINE,
-    TOUCH,
-    TOUCH_DAMPING,
-    TOUCH_STIFFNESS,
-    TURN,
-    TURN_CUBIC,
-    TURN_DAMPING,
     TURN_KEY,
-    TURN_REACH,
-    TURN_STIFFNESS,
     Y_MISS,
     PlaneParams,
-    packed,
 )
 from core.plant.shuttle import (
     ACCELERATION,
     CONTACT,
-    DAMPING,
-    DAMPING_SCALE,
     DISPLACEMENT,
-    DRIVE_GAIN,
-    DRIVE_OFFSET,
     DT,
-    END,
-    FIRST_OWN_INPUT,
     FIRST_V,
     FRICTION,
     LATERAL,
     LEFT,
-    MASS,
-    MASS_SCALE,
-    MIDDLE,
     RIGHT,
     ROTATION,
     ROTATION_VELOCITY,
@@ -74,102 +53,17 @@ from core.plant.shuttle import (
     SHIFT_VELOCITY,
     SHORT,
     SHORTED,
-    STIFFNESS,
-    STIFFNESS_SCALE,
     V0,
     VELOCITY,
-    VOLTAGE,
     X0,
     Shuttle,
     comb_voltage,
+    comb_voltage_parabola,
     drive_noise,
     dry_friction,
     joined,
     thermal_force,
 )
-from core.plant.suspension import K1, K3, KT, KY, T1, T3, XT, XY, Y2, elastic_force
-
-(
-    ACCELERATION_SIDE,
-    CUBIC_IN,
-    SIDE_SCALE,
-    SIDE_REACH_SCALE,
-    TURN_SCALE,
-    TURN_REACH_SCALE,
-    SIDEWAYS_IN,
-    TURN_IN,
-    TURN_CUBIC_IN,
-    FIRST_OUTPUT,
-) = range(FIRST_OWN_INPUT, FIRST_OWN_INPUT + 10)
-PER_MASS, BETA, C_SIDE, C_TURN, C_SQUEEZE, F_X, F_Y, TOUCHED_MS = range(9, 17)
-"""State: the suspension of this sample; one over its mass, dampings, outer forces; the time of the first contact."""
-
-
-@inlined
-def squeeze_factor(r: float) -> float:
-    r"""Return :math:`\tfrac12[(1-u)^{-3}+(1+u)^{-3}]=r^2(4r-3)` from :math:`r=1/(1-u^2)`."""
-    return r * r * (4.0 * r - 3.0)
-
-
-@kernel
-def touch(p: Any, corner: float, eta: float, rate: float) -> float:
-    """Return the force of a stator on the fingers at one corner, uN."""
-    over = abs(eta) - p[TOUCH]
-    if over <= 0.0:
-        return 0.0
-    push = p[TOUCH_STIFFNESS] * over
-    return float((-push if eta > 0.0 else push) - p[TOUCH_DAMPING] * rate)
-
-
-@inlined
-def acceleration(
-    p: Any,
-    s: Any,
-    x: float,
-    y: float,
-    theta: float,
-    vx: float,
-    vy: float,
-    omega: float,
-    right: float,
-    left: float,
-) -> tuple[float, float, float]:
-    """Return the accelerations along x, y and in rotation; ``right`` and ``left`` are squared voltages."""
-    fx, fy, mz = elastic_force(s, x, y, theta)
-    yy = y + p[Y_MISS]
-    tt = theta + p[T_MISS]
-    half = 0.5 * (p[ROTOR] - p[STATOR] + x)
-    x1, y1, t1, middle1, r1 = comb(p[GAP_SQUARED], p[LIMIT], p[STATOR], half, 1.0, yy, tt)
-    half = p[ROTOR] - p[STATOR] - half
-    x2, y2, t2, middle2, r2 = comb(p[GAP_SQUARED], p[LIMIT], p[STATOR], half, -1.0, yy, tt)
-    first = p[STRENGTH] * right
-    second = p[STRENGTH] * left
-    drag1 = s[C_SQUEEZE] * squeeze_factor(p[GAP_SQUARED] * r1) * (vy + omega * middle1)
-    drag2 = s[C_SQUEEZE] * squeeze_factor(p[GAP_SQUARED] * r2) * (vy + omega * middle2)
-    fx += (s[F_X] - s[BETA] * vx) + (first * x1 + second * x2)
-    fy += (s[F_Y] - s[C_SIDE] * vy) + ((first * y1 + second * y2) - (drag1 + drag2))
-    mz += ((first * t1 + second * t2) - s[C_TURN] * omega) - (middle1 * drag1 + middle2 * drag2)
-    if abs(yy) + abs(tt) * p[ROTOR] > p[TOUCH]:
-        for i in range(4):
-            corner = p[STATOR] if i < 2 else p[ROTOR]
-            if i % 2 == 1:
-                corner = -corner
-            push = touch(p, corner, yy + tt * corner, vy + omega * corner)
-            fy += push
-            mz += corner * push
-    over = abs(x) - p[STOP]
-    if over > 0.0:
-        push = p[STOP_STIFFNESS] * over
-        fx -= (push if x > 0.0 else -push) + p[STOP_DAMPING] * vx
-    return fx * s[PER_MASS], fy * s[PER_MASS], mz * p[PER_INERTIA]
-
-
-@kernel
-def worst(p: Any, y: float, theta: float) -> float:
-    """Return the lateral displacement of the corner where it is largest, um."""
-    yy = y + p[Y_MISS]
-    lever = (theta + p[T_MISS]) * p[ROTOR]
-    return float(yy + lever if abs(yy + lever) >= abs(yy - lever) else yy - lever)
 
 
 def planar_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -185,52 +79,18 @@ def planar_step(p: Any, s: Any, w: Any, io: Any) -> None:
     omega = 1e-3 * w[io[out + ROTATION_VELOCITY]]
     if w[TICK] == 0.0:
         x, vx, y, vy, theta, omega = p[X0], p[V0], 0.0, 0.0, 0.0, 0.0
-    # the suspension, as it is now
-    travel = w[io[SIDE_REACH_SCALE]] * p[SIDE_REACH]
-    turning = w[io[TURN_REACH_SCALE]] * p[TURN_REACH]
-    s[K1] = p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
-    s[K3] = p[CUBIC] + w[io[CUBIC_IN]]
-    s[KY] = p[SIDE_STIFFNESS] * w[io[SIDE_SCALE]]
-    s[XY] = 1.0 / (travel * travel)
-    s[KT] = p[TURN_STIFFNESS] * w[io[TURN_SCALE]]
-    s[XT] = 1.0 / (turning * turning)
-    s[Y2] = p[SIDEWAYS] + w[io[SIDEWAYS_IN]]
-    s[T1] = p[TURN] + w[io[TURN_IN]]
-    s[T3] = p[TURN_CUBIC] + w[io[TURN_CUBIC_IN]]
-    m = p[MASS] * w[io[MASS_SCALE]]
-    s[PER_MASS] = 1.0 / m
-    s[BETA] = p[DAMPING] * w[io[DAMPING_SCALE]]
-    s[C_SIDE] = p[SIDE_DAMPING] * w[io[DAMPING_SCALE]]
-    s[C_TURN] = p[TURN_DAMPING] * w[io[DAMPING_SCALE]]
-    s[C_SQUEEZE] = p[SQUEEZE] * w[io[DAMPING_SCALE]]
+    prepare(p, s, w, io)
+    m = 1.0 / s[PER_MASS]
     tick = w[TICK] - 1.0
-    noise_x = 0.0
-    l11 = 0.0
-    l21 = 0.0
-    l22 = 0.0
+    rest_x = -m * w[io[ACCELERATION]]
+    rest_y = -m * w[io[ACCELERATION_SIDE]]
+    l11, l21, l22 = 0.0, 0.0, 0.0
     if p[THERMAL_COARSE] > 0.0 and tick >= 0.0:
-        noise_x = thermal_force(p, s[BETA], tick)
-        # the dampings of y and theta are coupled once the arms differ; their noise is, too (Cholesky)
-        arm = 0.5 * (p[ROTOR] + p[STATOR])
-        yy = p[PER_GAP] * min(max(y + p[Y_MISS], -p[LIMIT]), p[LIMIT])
-        lever = p[PER_GAP] * min(max((theta + p[T_MISS]) * arm, -p[LIMIT]), p[LIMIT])
-        u1 = min(max(yy + lever, -0.9), 0.9)
-        u2 = min(max(yy - lever, -0.9), 0.9)
-        c1 = s[C_SQUEEZE] * squeeze_factor(1.0 / (1.0 - u1 * u1))
-        c2 = s[C_SQUEEZE] * squeeze_factor(1.0 / (1.0 - u2 * u2))
-        l11 = math.sqrt(s[C_SIDE] + c1 + c2)
-        l21 = arm * (c1 - c2) / l11
-        l22 = math.sqrt(s[C_TURN] + arm * arm * (c1 + c2) - l21 * l21)
-    gain = w[io[DRIVE_GAIN]]
-    u0 = gain * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
-    d1 = gain * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]] - u0
-    d2 = gain * w[io[END]] + w[io[DRIVE_OFFSET]] - u0
-    rise = 4.0 * d1 - d2
-    bend = 2.0 * d2 - 4.0 * d1
+        rest_x += thermal_force(p, s[BETA], tick)
+        l11, l21, l22 = noise_of(p, s, y, theta)
+    u0, rise, bend = comb_voltage_parabola(w, io)
     if tick >= 0.0:
         u0 += drive_noise(p, tick)
-    rest_x = noise_x - m * w[io[ACCELERATION]]
-    rest_y = -m * w[io[ACCELERATION_SIDE]]
     rubbing = w[io[FRICTION]]
     fine = int(p[FINE])
     total = int(p[COARSE]) * fine if tick >= 0.0 else 0
@@ -336,6 +196,7 @@ class Planar(Shuttle):
         Port("sideways", "1/um", "added sideways shift per squared travel", source="effects.sideways"),
         Port("turn", "rad/um", "added rotation per travel", source="effects.turn"),
         Port("turn_cubic", "rad/um^3", "added rotation per cubed travel", source="effects.turn_cubic"),
+        Port("squeeze_scale", "1", "squeeze film over continuous, over the damping", source="effects.squeeze_scale"),
     )
     equations = (
         Equation(
@@ -349,7 +210,12 @@ class Planar(Shuttle):
             r"U=\tfrac12k_1x^2+\tfrac14k_3x^4+\tfrac12k_y(x)(y-y_2x^2)^2"
             r"+\tfrac12k_\theta(x)(\theta-\theta_1x-\theta_3x^3)^2",
         ),
-        Equation("squeeze film of an arm", r"c=\tfrac12c_0\left[(1-\eta/g)^{-3}+(1+\eta/g)^{-3}\right]"),
+        Equation(
+            "squeeze film of an arm",
+            r"c=\tfrac12c_0\left[(1-\eta/g)^{-3}+(1+\eta/g)^{-3}\right],\quad"
+            r"c_0=\frac{4n\mu L_0t^3/g^3}{1+9.638K_n^{1.159}}",
+            "Veijola, recalled",
+        ),
         Equation(
             "pull-in by the bias alone",
             r"V_{b}=\sqrt{\frac{k_\theta g^3}{4n\varepsilon_0t\,(X_r^3-X_s^3)/3}}",
@@ -361,12 +227,12 @@ class Planar(Shuttle):
     )
 
     class Params(PlaneParams):
-        """Lateral mechanics; the defaults are those of the device LCR-350, x comes from the device."""
+        """Mechanics across the drive; what is not given follows from the drawing of the device."""
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        return np.array(cls.shared(params, context) + packed(params, context), dtype=np.float64)
+        return np.array(cls.shared(params, context) + params.packed(context), dtype=np.float64)
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

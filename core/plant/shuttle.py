@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from core.block import Block, BlockParams, Context, Oscillator, Port, kernel, parameter
+from core.block import Block, BlockParams, Context, Oscillator, Port, inlined, kernel, parameter
 from core.noise import key, normal
 from core.units import UN_PER_N, thermal_force_un
 
@@ -112,6 +112,18 @@ class Shuttle(Block):
             thermal,
             key(context.seed, "plant.thermal"),
         ]
+
+
+@inlined
+def comb_voltage_parabola(w: Any, io: Any) -> tuple[float, float, float]:
+    r"""Return the voltage that reaches the comb over a sample, :math:`u_0+a(r+ab)` at the share :math:`a` of it.
+
+    Through its start, middle and end; exactly constant when the drive holds it.
+    """
+    u0 = w[io[DRIVE_GAIN]] * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
+    d1 = w[io[DRIVE_GAIN]] * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]] - u0
+    d2 = w[io[DRIVE_GAIN]] * w[io[END]] + w[io[DRIVE_OFFSET]] - u0
+    return u0, 4.0 * d1 - d2, 2.0 * d2 - 4.0 * d1
 
 
 @kernel

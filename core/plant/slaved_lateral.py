@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from core.block import TICK, Context, Equation, FloatArray, kernel, parameter, settled
+from core.plant.contact import GAP, LIMIT, PLANT, SHORTS, TOUCH, ContactParams, stop, touch
 from core.plant.shuttle import (
     ACCELERATION,
     COMB,
@@ -15,10 +16,7 @@ from core.plant.shuttle import (
     DAMPING,
     DAMPING_SCALE,
     DISPLACEMENT,
-    DRIVE_GAIN,
-    DRIVE_OFFSET,
     DT,
-    END,
     FIRST_OWN_INPUT,
     FIRST_V,
     FRICTION,
@@ -26,8 +24,6 @@ from core.plant.shuttle import (
     LEFT,
     MASS,
     MASS_SCALE,
-    MIDDLE,
-    OWN,
     RIGHT,
     SECOND_V,
     SHIFT,
@@ -37,33 +33,18 @@ from core.plant.shuttle import (
     STIFFNESS_SCALE,
     V0,
     VELOCITY,
-    VOLTAGE,
     X0,
     Shuttle,
-    ShuttleParams,
     at_rest_sideways,
     comb_voltage,
+    comb_voltage_parabola,
     drive_noise,
     dry_friction,
     joined,
     thermal_force,
 )
 
-(
-    SPRING,
-    KAPPA,
-    OVERLAP,
-    GAP,
-    LIMIT,
-    TOUCH,
-    TOUCH_STIFFNESS,
-    TOUCH_DAMPING,
-    SHORTS,
-    STOP,
-    STOP_STIFFNESS,
-    STOP_DAMPING,
-    SUBSTEPS,
-) = range(OWN, OWN + 13)
+SPRING, KAPPA, OVERLAP, SUBSTEPS = range(PLANT, PLANT + 4)
 FIRST_OUTPUT = FIRST_OWN_INPUT
 
 
@@ -88,15 +69,7 @@ def slaved_force(p: Any, x: float, right: float, left: float) -> float:
 @kernel
 def push(p: Any, x: float, v: float) -> float:
     """Return the force of the stops and of touching fingers, uN."""
-    force = 0.0
-    over = abs(x) - p[STOP]
-    if over > 0.0:
-        force -= (p[STOP_STIFFNESS] * over if x > 0.0 else -p[STOP_STIFFNESS] * over) + p[STOP_DAMPING] * v
-    over = abs(p[KAPPA] * x) - p[TOUCH]
-    if over > 0.0:
-        normal = p[TOUCH_STIFFNESS] * over if p[KAPPA] * x > 0.0 else -p[TOUCH_STIFFNESS] * over
-        force -= p[KAPPA] * (normal + p[TOUCH_DAMPING] * p[KAPPA] * v)
-    return force
+    return float(stop(p, x, v) + p[KAPPA] * touch(p, p[KAPPA] * x, p[KAPPA] * v))
 
 
 def slaved_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -112,12 +85,7 @@ def slaved_step(p: Any, s: Any, w: Any, io: Any) -> None:
     m = p[MASS] * w[io[MASS_SCALE]]
     b = p[DAMPING] * w[io[DAMPING_SCALE]]
     k = p[SPRING] * w[io[STIFFNESS_SCALE]]
-    gain = w[io[DRIVE_GAIN]]
-    u0 = gain * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
-    d1 = gain * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]] - u0
-    d2 = gain * w[io[END]] + w[io[DRIVE_OFFSET]] - u0
-    rise = 4.0 * d1 - d2
-    bend = 2.0 * d2 - 4.0 * d1
+    u0, rise, bend = comb_voltage_parabola(w, io)
     other = -m * w[io[ACCELERATION]]
     if n > 0:
         u0 += drive_noise(p, w[TICK] - 1.0)
@@ -192,7 +160,7 @@ class SlavedLateral(Shuttle):
         ),
     )
 
-    class Params(ShuttleParams):
+    class Params(ContactParams):
         """The calibration; comb and bias come from the device (the text's line needs LCR-350 with 5 V of bias)."""
 
         stiffness_n_m: float = parameter(
@@ -200,32 +168,16 @@ class SlavedLateral(Shuttle):
         )
         ratio: float = parameter(0.42, "lateral displacement over travel", "1", ge=0, le=1)
         effective_overlap_um: float = parameter(5.0, "overlap that pulls sideways", "um", ge=0, le=200)
-        gap_um: float = parameter(2.1, "gap between fingers as etched", "um", gt=0.2, le=100)
-        contact_clearance_um: float = parameter(0.15, "gap that is left where fingers touch", "um", gt=0, le=0.2)
-        contact_stiffness_n_m: float = parameter(5e3, "stiffness of touching fingers", "N/m", ge=0, le=1e4)
-        contact_damping_ns_m: float = parameter(1.5e-5, "damping of touching fingers", "N s/m", ge=0, le=1e-4)
-        short_on_contact: bool = parameter(True, "touching fingers short their combs")
-        stop_um: float = parameter(20.0, "travel to the end stops", "um", gt=0, le=25)
-        stop_stiffness_n_m: float = parameter(50.0, "stiffness of a stop", "N/m", ge=0, le=5e3)
-        stop_damping_ns_m: float = parameter(2e-5, "damping of a stop", "N s/m", ge=0, le=1e-4)
         step_us: float = parameter(0.25, "longest substep", "us", gt=0.01, le=0.5)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         own = [
+            *params.packed(context),
             params.stiffness_n_m,
             params.ratio,
             params.effective_overlap_um,
-            params.gap_um,
-            0.9 * params.gap_um,
-            params.gap_um - params.contact_clearance_um,
-            params.contact_stiffness_n_m,
-            params.contact_damping_ns_m * 1e3,
-            float(params.short_on_contact),
-            params.stop_um,
-            params.stop_stiffness_n_m,
-            params.stop_damping_ns_m * 1e3,
             float(math.ceil(context.dt_ms * 1e3 / params.step_us - 1e-9)),
         ]
         return np.array(cls.shared(params, context) + own, dtype=np.float64)

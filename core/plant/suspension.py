@@ -11,34 +11,12 @@ the derivative of the whole of it, energy is kept.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from core.block import inlined, kernel
 
 K1, K3, KY, XY, KT, XT, Y2, T1, T3 = range(9)
 """Where they stand in the array: uN/um, uN/um^3, uN/um, 1/um^2 (1/xy^2), uN um, 1/um^2, 1/um, rad/um, rad/um^3."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """A suspension, fitted to a frame of beams (LCR-350), in SI units; the reaches in um."""
-
-    k1: float
-    k3: float
-    ky: float
-    reach_y: float
-    kt: float
-    reach_t: float
-    ys2: float
-    th1: float
-    th3: float
-
-
-HEALTHY = Row(0.0538, 0.0, 205.4, 9.4, 4.51e-7, 39.7, 0.0, 0.0, 0.0)
-SOFT = Row(0.0538, 0.0, 26.7, 26.8, 7.09e-8, 295.0, 0.0, 0.0, 0.0)
-"""With trusses as thin as the beams, as the text takes them (alpha = 1)."""
-SOFT_ADHESION = Row(0.0753, 2.4e7, 26.9, 40.0, 8.05e-8, 1e6, 858.0, 185.0, 1.28e11)
 
 
 @kernel

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter
+from core.device.geometry import drawn
 from core.noise import key, normal
 from core.sense.sensor import ENGAGED_PORT, Sensor, SensorParams, rest
 from core.units import FF_PER_F, UM_PER_M
@@ -93,9 +94,15 @@ class Capacitive(Sensor):
     class Params(SensorParams):
         """Combs and readout."""
 
-        overlap_um: float = parameter(40.0, "overlap of the fingers at rest", "um", gt=0, le=1000)
-        gap_um: float = parameter(2.1, "gap between the fingers", "um", gt=0, le=100)
-        comb_start_um: float = parameter(126.13, "where the overlap begins, from the centre", "um", ge=0, le=1e4)
+        overlap_um: float | None = parameter(
+            None, "overlap of the fingers at rest; that of the device unless given", "um", gt=0, le=1000
+        )
+        gap_um: float | None = parameter(
+            None, "gap between the fingers; that of the device unless given", "um", gt=0, le=100
+        )
+        comb_start_um: float | None = parameter(
+            None, "where the overlap begins, from the centre; as drawn unless given", "um", ge=0, le=1e4
+        )
         noise_af_rthz: float = parameter(
             0.1, "noise density of the difference (assumed)", "aF/rtHz", ge=0, le=1e6, equation="2.2.1"
         )
@@ -114,12 +121,13 @@ class Capacitive(Sensor):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step: fF and um; each comb carries half the variance of the difference."""
+        comb = drawn(context)
         return np.array(
             [
                 context.capacitance_gradient * FF_PER_F / UM_PER_M,
-                params.overlap_um,
-                params.gap_um,
-                params.comb_start_um,
+                comb.overlap_um if params.overlap_um is None else params.overlap_um,
+                comb.gap_um if params.gap_um is None else params.gap_um,
+                comb.stator_tip_um if params.comb_start_um is None else params.comb_start_um,
                 cls.noise_ff(params, context) / math.sqrt(2.0),
                 key(context.seed, "sensor.capacitive.positive"),
                 key(context.seed, "sensor.capacitive.negative"),

@@ -10,7 +10,17 @@ import numpy as np
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.sense.doppler import Doppler
 from core.sense.grating import OFFSET, WAVE, level
-from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, SensorParams, calibrated, rest
+from core.sense.sensor import (
+    ENGAGED_PORT,
+    ERROR_PORT,
+    LAST_PORT,
+    RECOVERED_PORT,
+    TRUE_PORT,
+    Sensor,
+    SensorParams,
+    calibrated,
+    rest,
+)
 from core.sense.through_wafer import ThroughWafer
 
 SOURCE, HYSTERESIS, TOLERANCE, FOLLOW, GRATING = range(5)
@@ -97,12 +107,12 @@ class PeakValley(Sensor):
         LAST_PORT,
         Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
         Port("height", "um", "integrated Doppler signal", source="doppler.height"),
-        Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
+        TRUE_PORT,
         Port("moving", "um/ms", "true velocity, for the verdict only", source="plant.velocity"),
     )
-    outputs = (Port("displacement", "um", "recovered displacement"),)
+    outputs = (RECOVERED_PORT,)
     taps = (
-        Port("error", "um", "recovered minus true displacement"),
+        ERROR_PORT,
         Port("extremes", "1", "fringe extreme last passed, counted from an opening under the beam"),
         Port("direction", "1", "direction it believes in, 0 until the first motion"),
         Port("wrong_way", "1", "1 while that is opposite to the true motion"),

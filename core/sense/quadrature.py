@@ -9,7 +9,19 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.sense.dual_beam import DualBeam
-from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, SensorParams, calibrated, rest
+from core.sense.sensor import (
+    ENGAGED_PORT,
+    ERROR_PORT,
+    LAST_PORT,
+    RECOVERED_PORT,
+    SLIPS_PORT,
+    TRUE_PORT,
+    Sensor,
+    SensorParams,
+    calibrated,
+    rest,
+    slips,
+)
 
 MEAN, AMPLITUDE, COSINE, SINE, PITCH, OFFSET = range(6)
 ENGAGED, LAST, FIRST, SECOND, TRUE, DISPLACEMENT, ERROR, TURN, SLIPS = range(9)
@@ -36,7 +48,7 @@ def quadrature_step(p: Any, s: Any, w: Any, io: Any) -> None:
         w[io[DISPLACEMENT]] = p[OFFSET] + p[PITCH] * s[1]
     error = w[io[DISPLACEMENT]] - w[io[TRUE]]
     w[io[ERROR]] = error
-    w[io[SLIPS]] = math.floor(error / p[PITCH] + 0.5) if math.isfinite(error) else 0.0
+    w[io[SLIPS]] = slips(error, p[PITCH])
 
 
 class Quadrature(Sensor):
@@ -55,13 +67,13 @@ class Quadrature(Sensor):
         LAST_PORT,
         Port("first", "1", "light of the first beam", source="dual_beam.first"),
         Port("second", "1", "light of the second beam", source="dual_beam.second"),
-        Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
+        TRUE_PORT,
     )
-    outputs = (Port("displacement", "um", "recovered displacement"),)
+    outputs = (RECOVERED_PORT,)
     taps = (
-        Port("error", "um", "recovered minus true displacement"),
+        ERROR_PORT,
         Port("turn", "1", "phase of the pair, in turns from -1/2 to 1/2"),
-        Port("slips", "1", "whole pitches it is off by"),
+        SLIPS_PORT,
     )
     equations = (
         Equation(

@@ -10,8 +10,19 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Oscillator, Port
 from core.sense import tracker
 from core.sense.dual_beam import DualBeam
-from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, calibrated, rest
-from core.sense.tracker import FILTER, TrackerParams, coast, correct, predict
+from core.sense.sensor import (
+    ENGAGED_PORT,
+    ERROR_PORT,
+    LAST_PORT,
+    RECOVERED_PORT,
+    SLIPS_PORT,
+    TRUE_PORT,
+    Sensor,
+    calibrated,
+    rest,
+    slips,
+)
+from core.sense.tracker import APPLIED_PORT, FILTER, MOTION, TrackerParams, coast, correct, predict, take_over
 
 PITCH, OFFSET, NOISE, MODEL = range(4)
 ENGAGED, LAST, TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(9)
@@ -29,10 +40,7 @@ def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
         return
     if s[RUNNING] == 0.0:
         s[RUNNING] = 1.0
-        for j in range(FILTER):
-            s[OWN + j] = s[FRESH + j]
-        if math.isfinite(w[io[LAST]]):
-            s[OWN + tracker.X] = w[io[LAST]]
+        take_over(s, FRESH, OWN, w[io[LAST]])
     else:
         predict(p, MODEL, s, OWN, w[io[APPLIED]])
     x = s[OWN + tracker.X]
@@ -43,7 +51,7 @@ def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
     w[io[DISPLACEMENT]] = s[OWN + tracker.X]
     w[io[ERROR]] = error
     w[io[RESIDUAL]] = residual
-    w[io[SLIPS]] = math.floor(error / p[PITCH] + 0.5) if math.isfinite(error) else 0.0
+    w[io[SLIPS]] = slips(error, p[PITCH])
 
 
 class QuadratureKalman(Sensor):
@@ -57,17 +65,17 @@ class QuadratureKalman(Sensor):
         ENGAGED_PORT,
         LAST_PORT,
         Port("turn", "1", "phase of the pair, in turns", source="quadrature.turn"),
-        Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage"),
-        Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
+        APPLIED_PORT,
+        TRUE_PORT,
     )
-    outputs = (Port("displacement", "um", "recovered displacement"),)
+    outputs = (RECOVERED_PORT,)
     taps = (
-        Port("error", "um", "recovered minus true displacement"),
+        ERROR_PORT,
         Port("residual", "um", "phase, as displacement, minus prediction"),
-        Port("slips", "1", "whole pitches it is off by"),
+        SLIPS_PORT,
     )
     equations = (
-        Equation("motion", r"\ddot x=\frac{F_e-\beta\dot x-kx}{m}+f,\quad \dot f=n"),
+        MOTION,
         Equation(
             "residual", r"r=\Lambda\left\langle\frac{\varphi}{2\pi}-\frac{x^--x_0}{\Lambda}\right\rangle_{\pm1/2}"
         ),

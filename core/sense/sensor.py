@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, TypeVar
 
 from core.block import Block, BlockParams, Context, Port, kernel, parameter
 
 ENGAGED_PORT = Port("engaged", "1", "1 while the sensor in use needs this one, or it always runs", source="@engaged")
 LAST_PORT = Port("last", "um", "what was measured last: where to take over", source="sensor.displacement")
+
+TRUE_PORT = Port("true", "um", "true displacement, for the error only", source="plant.displacement")
+RECOVERED_PORT = Port("displacement", "um", "recovered displacement")
+ERROR_PORT = Port("error", "um", "recovered minus true displacement")
+SLIPS_PORT = Port("slips", "1", "whole pitches it is off by")
 
 P = TypeVar("P", bound=BlockParams)
 
@@ -23,6 +29,12 @@ def rest(w: Any, io: Any, first: int, last: int) -> None:
     """Put out zeros."""
     for port in range(first, last + 1):
         w[io[port]] = 0.0
+
+
+@kernel
+def slips(error: float, pitch: float) -> float:
+    """Return the whole pitches a recovered displacement is off by."""
+    return float(math.floor(error / pitch + 0.5)) if math.isfinite(error) else 0.0
 
 
 class Sensor(Block):

@@ -26,9 +26,20 @@ from core.sense.hypotheses import (
     sift,
     turns,
 )
-from core.sense.sensor import ENGAGED_PORT, LAST_PORT, Sensor, calibrated, rest
+from core.sense.sensor import (
+    ENGAGED_PORT,
+    ERROR_PORT,
+    LAST_PORT,
+    RECOVERED_PORT,
+    SLIPS_PORT,
+    TRUE_PORT,
+    Sensor,
+    calibrated,
+    rest,
+    slips,
+)
 from core.sense.through_wafer import ThroughWafer
-from core.sense.tracker import FILTER, TrackerParams, V, X, coast, predict
+from core.sense.tracker import APPLIED_PORT, MOTION, TrackerParams, V, X, coast, predict, take_over
 
 ENGAGED, LAST, LIGHT, APPLIED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(11)
 
@@ -48,10 +59,7 @@ def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
         s[CHANGES] = 0.0
         for j in range(MOST * WIDTH):
             s[OWN + j] = 0.0
-        for j in range(FILTER):
-            s[OWN + j] = s[FRESH + j]
-        if math.isfinite(w[io[LAST]]):
-            s[OWN + X] = w[io[LAST]]
+        take_over(s, FRESH, OWN, w[io[LAST]])
         s[OWN + USED] = YES
     z = w[io[LIGHT]]
     for i in range(MOST):
@@ -73,7 +81,7 @@ def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
     w[io[ACTIVE]] = 1.0
     w[io[ALIVE]] = left
     w[io[SWITCHES]] = s[CHANGES]
-    w[io[SLIPS]] = math.floor(error / pitch + 0.5) if math.isfinite(error) else 0.0
+    w[io[SLIPS]] = slips(error, pitch)
 
 
 class SingleBeam(Sensor):
@@ -96,19 +104,19 @@ class SingleBeam(Sensor):
         ENGAGED_PORT,
         LAST_PORT,
         Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
-        Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage"),
-        Port("true", "um", "true displacement, for the error only", source="plant.displacement"),
+        APPLIED_PORT,
+        TRUE_PORT,
     )
-    outputs = (Port("displacement", "um", "recovered displacement"),)
+    outputs = (RECOVERED_PORT,)
     taps = (
-        Port("error", "um", "recovered minus true displacement"),
+        ERROR_PORT,
         Port("active", "1", "0 while it rests"),
         Port("hypotheses", "1", "hypotheses followed"),
         Port("switches", "1", "how often another hypothesis became the likeliest"),
-        Port("slips", "1", "whole pitches it is off by"),
+        SLIPS_PORT,
     )
     equations = (
-        Equation("motion", r"\ddot x=\frac{F_e-\beta\dot x-kx}{m}+f,\quad \dot f=n"),
+        MOTION,
         Equation("reflection", r"x'=2x_e-x,\quad\dot x'=-\dot x"),
         Equation(
             "likelihood",

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Oscillator, kernel, parameter, settled
+from core.block import Context, Equation, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
 from core.sense.sensor import SensorParams
 
@@ -18,6 +18,10 @@ PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, FORCE1, FORCE2, WALK, MODEL = range(
 """Layout of a packed model, and its length."""
 X, V, F, P11, P12, P13, P22, P23, P33, FILTER = range(10)
 """Layout of a filter's state, and its length."""
+
+
+APPLIED_PORT = Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage")
+MOTION = Equation("motion", r"\ddot x=\frac{F_e-\beta\dot x-kx}{m}+f,\quad \dot f=n")
 
 
 class TrackerParams(SensorParams):
@@ -64,6 +68,15 @@ def coast(p: Any, at: int, s: Any, b: int, u: float) -> None:
     v = s[b + V]
     s[b + X] = settled(p[at + PHI11] * x + p[at + PHI12] * v + p[at + GAMMA1] * u)
     s[b + V] = settled(p[at + PHI21] * x + p[at + PHI22] * v + p[at + GAMMA2] * u)
+
+
+@kernel
+def take_over(s: Any, fresh: int, b: int, last: float) -> None:
+    """Start the filter at ``b`` from the one that coasts at ``fresh``, where the shuttle was measured last."""
+    for j in range(FILTER):
+        s[b + j] = s[fresh + j]
+    if math.isfinite(last):
+        s[b + X] = last
 
 
 @kernel

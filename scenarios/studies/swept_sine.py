@@ -36,5 +36,5 @@ class SweptSine(Study):
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return what the sweep tells."""
         board.advance(1)  # events of the first sample take effect
-        found = asdict(sweep_sine(board, **params.model_dump()))
+        found = asdict(sweep_sine(board, **params.model_dump()).found)
         return {f"sweep.{name}": float(value) for name, value in found.items() if value is not None}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from core.board.changes import describe
+from core.faults.fault import FaultParams
 from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ def status_of(session: Session) -> BenchStatus:
                 name=name,
                 severity=params.severity,  # type: ignore[attr-defined]
                 profile=params.profile.model_dump(),  # type: ignore[attr-defined]
+                parameters=params.model_dump(exclude=set(FaultParams.model_fields)),
                 since_tick=params.start_tick,  # type: ignore[attr-defined]
             )
             for name, params in board.faults.items()

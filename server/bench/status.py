@@ -20,6 +20,7 @@ class ActiveFault(BaseModel):
     name: str
     severity: float
     profile: dict[str, Any]
+    parameters: dict[str, Any] = Field(default={}, description="What else was chosen for it, or its defaults")
     since_tick: int
 
 

@@ -17,12 +17,13 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 UM_PER_UNIT = 100.0
-GROUND_UM = 0.5
-FILM_UM = 2.0
+HEIGHTS, WIDTHS = 4.0, 2.5
+"""Heights, and widths of beams and trusses, over the true ones: a film of 2 um is not seen across 800 um."""
+GROUND_UM = 2.0
+FILM_UM = 2.0 * HEIGHTS
 BASE_UM = 30.0
 NOTCH_UM = 32.0
 """Half width of the waist, where the inner beams pass on their way to the anchors."""
-BEAM_SEGMENTS = 14
 WAIST_UM = 12.5
 
 
@@ -40,13 +41,6 @@ class Mesh:
 
     vertices: FloatArray
     faces: IntArray
-
-
-@dataclass(frozen=True)
-class Skinned(Mesh):
-    """A mesh that bends; ``weights`` ``(vertices, bones)`` says which bone moves a vertex how far."""
-
-    weights: FloatArray
 
 
 _CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
@@ -83,7 +77,9 @@ class Layout:
 
     def __init__(self, geometry: Geometry) -> None:
         g = self.geometry = geometry
-        self.z = GROUND_UM + FILM_UM + g.thickness_um / 2
+        self.thick_um = HEIGHTS * g.thickness_um
+        self.beam_um, self.truss_um = WIDTHS * g.beam_um, WIDTHS * g.truss_um
+        self.z = GROUND_UM + FILM_UM + self.thick_um / 2
         self.finger_um = g.finger_width_um - 2 * g.comb_bias_um
         self.pitch_um = 2 * (self.finger_um + g.gap_um)
         self.inner_um, self.outer_um = g.truss_segment_um / 2, 1.5 * g.truss_segment_um
@@ -93,7 +89,7 @@ class Layout:
         self.stator_um = self.tip_um - g.overlap_um
         self.beam_from_um = g.plate_width_um / 2
         self.beam_to_um = self.beam_from_um + g.beam_length_um
-        self.half_width_um = max(self.beam_to_um + g.truss_um, g.arm_length_um / 2) + 20
+        self.half_width_um = max(self.beam_to_um + g.truss_um, g.arm_length_um / 2) + 28
         self.half_length_um = self.stator_um + g.finger_length_um + BASE_UM + 10
 
     def ground(self) -> Mesh:
@@ -106,20 +102,31 @@ class Layout:
         size = (2 * self.tip_um, self.geometry.arm_length_um, FILM_UM * 0.8)
         return merge([Box((0, 0, GROUND_UM + FILM_UM / 2), size)])
 
+    @property
+    def top_um(self) -> float:
+        """Height of the upper surface of the polysilicon."""
+        return GROUND_UM + FILM_UM + self.thick_um
+
+    @property
+    def base_um(self) -> float:
+        """Distance of the middle of a stator's base from the centre."""
+        return self.stator_um + self.geometry.finger_length_um + BASE_UM / 2
+
     def anchors(self) -> Mesh:
-        """Return the two anchors of the suspension and the bases of the stators."""
-        height = GROUND_UM + FILM_UM + self.geometry.thickness_um
-        width = 2 * self.inner_um + 6
-        boxes = [Box((0, side * (self.beam_from_um - 10), height / 2), (width, 20, height)) for side in (-1, 1)]
-        base = self.stator_um + self.geometry.finger_length_um + BASE_UM / 2
+        """Return the two anchors of the suspension."""
+        width, height = 2 * self.inner_um + 6, self.top_um
+        return merge(Box((0, side * (self.beam_from_um - 10), height / 2), (width, 20, height)) for side in (-1, 1))
+
+    def bases(self) -> Mesh:
+        """Return the bases of the two stators."""
         length = max(self.geometry.arm_length_um, self.comb_um + self.pitch_um)
-        boxes += [Box((side * base, 0, height / 2), (BASE_UM, length, height)) for side in (-1, 1)]
-        return merge(boxes)
+        size = (BASE_UM, length, self.top_um)
+        return merge(Box((side * self.base_um, 0, self.top_um / 2), size) for side in (-1, 1))
 
     def shuttle(self) -> Mesh:
         """Return the rigid plate with its grating, and the arms that carry the fingers."""
         g = self.geometry
-        t, boxes = g.thickness_um, []
+        t, boxes = self.thick_um, []
         for side in (-1, 1):
             middle = side * (NOTCH_UM + self.plate_um) / 2
             boxes.append(Box((middle, 0, self.z), (self.plate_um - NOTCH_UM, g.plate_width_um, t)))
@@ -132,7 +139,7 @@ class Layout:
 
     def outline(self) -> FloatArray:
         """Return the edges of plate and arms, ``(n, 2, 3)`` in scene units, just above them."""
-        g, top = self.geometry, self.z + self.geometry.thickness_um
+        g, top = self.geometry, self.top_um + 1.0
         edges = []
         for side in (-1, 1):
             for x, y in (
@@ -149,63 +156,22 @@ class Layout:
         """Extent of the combs along y, between the outermost fingers."""
         return (self.geometry.fingers - 1) * self.pitch_um
 
-    def fingers(self) -> tuple[FloatArray, FloatArray]:
-        """Return positions and scales of the moving fingers, in scene units."""
+    def fingers(self, side: float) -> FloatArray:
+        """Return where the moving fingers of one side are, um."""
         y = np.linspace(-self.comb_um / 2, self.comb_um / 2, self.geometry.fingers)
-        return self._comb((self.arm_um + self.tip_um) / 2, y)
+        return self._comb(side * (self.arm_um + self.tip_um) / 2, y)
 
-    def stators(self) -> tuple[FloatArray, FloatArray]:
-        """Return positions and scales of the fixed fingers, in scene units."""
+    def stators(self, side: float) -> FloatArray:
+        """Return where the fixed fingers of one side are, um."""
         half = (self.comb_um + self.pitch_um) / 2
         y = np.linspace(-half, half, self.geometry.fingers + 1)
-        return self._comb(self.stator_um + self.geometry.finger_length_um / 2, y)
+        return self._comb(side * (self.stator_um + self.geometry.finger_length_um / 2), y)
 
-    def _comb(self, x: float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Place one finger per ``y`` on both sides."""
-        places = np.array([[side * x, value, self.z] for side in (-1.0, 1.0) for value in y])
-        size = (self.geometry.finger_length_um, self.finger_um, self.geometry.thickness_um)
-        return places / UM_PER_UNIT, np.tile(np.array(size) / UM_PER_UNIT, (len(places), 1))
+    @property
+    def finger_size(self) -> tuple[float, float, float]:
+        """Length, width and height of a finger, um."""
+        return self.geometry.finger_length_um, self.finger_um, self.thick_um
 
-    def suspension(self) -> Skinned:
-        r"""Return the eight beams and two trusses, weighted to four bones.
-
-        Bones are anchors, shuttle, upper truss, lower truss. With the weight
-        :math:`h(s)=3s^2-2s^3` along a beam, moving a bone bends the beam exactly as a guided-guided
-        beam bends: no approximation is left.
-        """
-        g = self.geometry
-        parts: list[Skinned] = []
-        for side, truss in ((1.0, 2), (-1.0, 3)):
-            for x, root in (
-                (-self.outer_um, 1), (-self.inner_um, 0), (self.inner_um, 0), (self.outer_um, 1)
-            ):  # fmt: skip
-                parts.append(self._beam(x, side, root, truss))
-            y = side * (self.beam_to_um + g.truss_um / 2)
-            mesh = merge([Box((0, y, self.z), (2 * self.outer_um + g.beam_um, g.truss_um, g.thickness_um))])
-            parts.append(Skinned(mesh.vertices, mesh.faces, np.tile(np.eye(4)[truss], (8, 1))))
-        starts = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-        return Skinned(
-            np.vstack([part.vertices for part in parts]),
-            np.vstack([part.faces + start for part, start in zip(parts, starts, strict=True)]),
-            np.vstack([part.weights for part in parts]),
-        )
-
-    def _beam(self, x: float, side: float, root: int, truss: int) -> Skinned:
-        """Return one beam from its root (anchor or shuttle) to its truss."""
-        g = self.geometry
-        s = np.linspace(0.0, 1.0, BEAM_SEGMENTS + 1)
-        y = side * (self.beam_from_um + s * g.beam_length_um)
-        w, t = g.beam_um / 2, g.thickness_um / 2
-        ring = [(-w, -t), (w, -t), (w, t), (-w, t)]
-        vertices = np.array([[x + dx, yy, self.z + dz] for yy in y for dx, dz in ring]) / UM_PER_UNIT
-        faces = []
-        for k in range(BEAM_SEGMENTS):
-            a, b = 4 * k, 4 * (k + 1)
-            for i in range(4):
-                j = (i + 1) % 4
-                faces += [[a + i, a + j, b + j], [a + i, b + j, b + i]]
-        bend = np.repeat(3 * s**2 - 2 * s**3, 4)
-        weights = np.zeros((len(vertices), 4))
-        weights[:, root] = 1 - bend
-        weights[:, truss] = bend
-        return Skinned(vertices, np.array(faces), weights)
+    def _comb(self, x: float, y: FloatArray) -> FloatArray:
+        """Place one finger per ``y``."""
+        return np.column_stack([np.full(len(y), x), y, np.full(len(y), self.z)])

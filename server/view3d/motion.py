@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+from server.view3d.layout import HEIGHTS, WIDTHS
 
 SEEN_HZ = 8.0
 """An oscillation faster than this on the screen is strobed."""
@@ -11,8 +14,11 @@ STROBE_HZ = 0.8
 """What a strobed oscillation looks like."""
 
 EXAGGERATIONS = (1.0, 2.0, 3.0, 4.0, 5.0, 8.0, 10.0, 20.0, 50.0, 100.0)
+TURN_EXAGGERATIONS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)
 WANTED_UM = 16.0
 """Amplitude that is well seen at the size of the device, and that its fingers have room for."""
+WANTED_TURN_UM = 12.0
+"""The same for what a rotation moves the ends of the arms."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +51,9 @@ def moment(head: int, period_ticks: float | None, rate_ticks_s: float, wall_s: f
     return Moment(max(0, last - round(behind * period_ticks)), True)
 
 
-def exaggeration(amplitude_um: float, now: float) -> float:
+def exaggeration(
+    amplitude_um: float, now: float, wanted_um: float = WANTED_UM, factors: tuple[float, ...] = EXAGGERATIONS
+) -> float:
     """Choose a round factor that makes the motion visible; keep the present one while it does.
 
     Parameters
@@ -54,16 +62,44 @@ def exaggeration(amplitude_um: float, now: float) -> float:
         Largest recent displacement.
     now : float
         The present factor.
+    wanted_um : float
+        Amplitude that is well seen.
+    factors : tuple of float
+        The round factors, rising.
     """
-    if amplitude_um <= 0.0 or 0.4 * WANTED_UM <= amplitude_um * now <= 1.2 * WANTED_UM:
+    if amplitude_um <= 0.0 or 0.4 * wanted_um <= amplitude_um * now <= 1.2 * wanted_um:
         return now
-    fitting = [factor for factor in EXAGGERATIONS if amplitude_um * factor <= WANTED_UM]
+    fitting = [factor for factor in factors if amplitude_um * factor <= wanted_um]
     return fitting[-1] if fitting else 1.0
 
 
-def caption(factor: float, is_strobed: bool) -> str:
-    """Say what is not as in nature."""
-    parts = [f"motion × {factor:g}" if factor != 1.0 else "true scale"]
+def closed_share(lateral_um: float, gap_um: float) -> float:
+    """Return the share of the gap between fingers that is closed: 0 at the centre, 1 at the stator."""
+    return min(1.0, abs(lateral_um) / gap_um)
+
+
+def warning(closed: float) -> float:
+    """Return how much of the colour of attention a comb takes.
+
+    A root: stability is lost when a tenth to a fifth of the gap has closed, and that must be seen to come.
+    """
+    return math.sqrt(closed)
+
+
+def caption(factor: float, turn_factor: float | None, is_strobed: bool) -> str:
+    """Say what is not as in nature.
+
+    Parameters
+    ----------
+    factor, turn_factor : float
+        Exaggeration of the motion along x and of the rotation; none where the plant has no rotation.
+    is_strobed : bool
+        Whether what is seen is slower than what happens.
+    """
+    parts = [f"motion × {factor:g}"]
+    if turn_factor is not None:
+        parts += [f"rotation × {turn_factor:g}", "gaps × 1"]
+    parts.append(f"heights × {HEIGHTS:g}, beam widths × {WIDTHS:g}")
     if is_strobed:
         parts.append("strobe")
     return ", ".join(parts)

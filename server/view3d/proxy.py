@@ -24,9 +24,10 @@ CLOSE_NO_BENCH, CLOSE_FULL, CLOSE_LOST = 4404, 1013, 1012
 async def get_page(bench_id: str, service: ServiceDep) -> HTMLResponse:
     """Return the page of the 3D view."""
     from server.view3d.page import POLICY, page
+    from server.view3d.theatre import layout_of
 
-    service.benches.get(bench_id)
-    return HTMLResponse(page(), headers={POLICY_HEADER: POLICY})
+    layout = layout_of(service.benches.get(bench_id))
+    return HTMLResponse(page(layout), headers={POLICY_HEADER: POLICY})
 
 
 @router.websocket("/benches/{bench_id}/3d")

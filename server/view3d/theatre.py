@@ -7,12 +7,10 @@ import logging
 import time
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from core.device.geometry import Geometry
 from server.bench.session import Session
 from server.view3d.layout import Layout
-from server.view3d.motion import caption, exaggeration, moment
+from server.view3d.pose import Observer
 
 if TYPE_CHECKING:
     from server.view3d.scene import Scene
@@ -20,13 +18,6 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 FRAME_S = 1.0 / 60.0
-SIGNALS = (
-    "plant.displacement",
-    "model.displacement",
-    "faults.added_mass",
-    "faults.stiffness",
-    "faults.damping",
-)
 
 
 class Show:
@@ -41,7 +32,6 @@ class Show:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._watchers = 0
-        self._factor = 1.0
         self._scene: Scene | None = None
         self._ready = asyncio.Lock()
         self._task: asyncio.Task[None] | None = None
@@ -86,37 +76,16 @@ class Show:
 
     async def _play(self, scene: Scene) -> None:
         """Show the bench 60 times a second."""
+        observer = Observer(self._session, layout_of(self._session))
         due = time.monotonic()
         while True:
             try:
-                self._show(scene)
+                scene.show(observer.look())
             except Exception:
                 log.exception("the 3D view of bench %s failed", self._session.id)
                 return
             due = max(due + FRAME_S, time.monotonic())
             await asyncio.sleep(due - time.monotonic())
-
-    def _show(self, scene: Scene) -> None:
-        """Read one moment from the history and show it."""
-        from server.view3d.scene import Pose
-
-        session, history = self._session, self._session.history
-        head = history.end_tick
-        if head <= history.first_tick:
-            scene.show(Pose(0.0, 0.0, 0.0, 0.0, 0.0, ""))
-            return
-        period = session.drive_period_ticks
-        # A bench that runs as fast as possible is strobed like one in real time.
-        rate = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
-        at = moment(head, period, rate, time.monotonic())
-        tick = max(at.tick, history.first_tick)
-        indices = session.indices(SIGNALS)
-        x, reference, mass, stiffness, damping = (float(value) for value in history.read(indices, tick, tick + 1)[:, 0])
-        recent = history.columns(indices[:2], head - round(3 * (period or 1000)), head, 1)
-        amplitude = float(np.nanmax(np.abs(recent))) if np.isfinite(recent).any() else 0.0
-        self._factor = exaggeration(amplitude, self._factor)
-        x, reference = x * self._factor, reference * self._factor
-        scene.show(Pose(x, reference, mass, stiffness, damping, caption(self._factor, at.is_strobed)))
 
 
 class Theatre:
@@ -147,4 +116,9 @@ def build_scene(session: Session) -> Scene:
     """Build the scene; viser is loaded here, so that nothing else waits for it."""
     from server.view3d.scene import Scene
 
-    return Scene(Layout(session.geometry or Geometry()))
+    return Scene(layout_of(session))
+
+
+def layout_of(session: Session) -> Layout:
+    """Return where the parts are; a device without a drawing is drawn as the reference device."""
+    return Layout(session.geometry or Geometry())

@@ -13,7 +13,7 @@ from core.device.pull_in import rotation_pull_in_v
 from core.faults.point_adhesion import PointAdhesion
 from core.faults.structure import linear
 from scenarios.lateral_metrics import geometry_pull_in
-from tests.lab import do, inject, make, play
+from tests.lab import do, inject, make, phasor, play
 
 LCR = device({"id": "lcr-350"}).geometry
 assert LCR is not None
@@ -100,7 +100,7 @@ def test_the_text_s_adhesion_and_broken_truss():
 )
 def test_a_hurt_side_turns_the_shuttle(damage, turn):
     """Rotation per travel by another frame program; the sign: the softer side, at +y, runs ahead, x - theta y > x."""
-    assert linear(damage)[3] * 1e6 == pytest.approx(turn, rel=0.06)
+    assert linear(Geometry(), damage)[3] * 1e6 == pytest.approx(turn, rel=0.06)
 
 
 def test_pull_in_of_a_drawing_scales_as_it_should():
@@ -165,11 +165,31 @@ def test_static_displacement_under_faults(plant, fault, parameters, ratio):
     assert found[0] / found[1] == pytest.approx(ratio, rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("fault", "omega", "ratio"),
+    [
+        ("point_adhesion", 1.0, 1.459),
+        ("point_adhesion", 2.9, 1.473),
+        ("broken_truss", 1.0, 0.830),
+    ],
+)
+def test_effort_to_follow_the_healthy_device(fault, omega, ratio):
+    """|G_healthy/G_faulty| at a tone in krad/s: what a controller has to multiply the voltage by."""
+    sine = {"kind": "sine", "amplitude_v": 4.0, "frequency_hz": 500.0 * omega / np.pi}
+    found = []
+    for severity in (0.0, 1.0):
+        board = make({"device.id": "lcr-350", "reference": sine, "drive.kind": "analogue"})
+        inject(board, **{fault: severity})
+        x = play(board, 6000)["plant.displacement"][4000:]
+        found.append(abs(phasor(x, sine["frequency_hz"], 0.01, 4000)))
+    assert found[0] / found[1] == pytest.approx(ratio, rel=0.01)
+
+
 def test_half_an_adhesion_is_half_its_effect():
     board = make({"device.id": "lcr-350"})
     inject(board, point_adhesion=0.5)
     trace = play(board, 3)
-    whole = stiffness_ratio(Geometry(), Damage(adhesion=("inner", 0.75)))
+    whole = stiffness_ratio(LCR, Damage(adhesion=("inner", 0.75)))
     assert trace["effects.stiffness_scale"][-1] == pytest.approx(1 + 0.5 * (whole - 1), rel=1e-12)
 
 

@@ -37,8 +37,7 @@ def test_no_file_is_too_long(root: Path, files: list[Path]) -> None:
         name = path.relative_to(root).as_posix()
         if path.suffix in {".py", ".ts", ".tsx"} and name not in GENERATED:
             lines = path.read_text().count("\n")
-            # a file of tests has one subject and as many cases as that takes
-            if lines > LONGEST * (2 if name.startswith("tests/") else 1):
+            if lines > LONGEST:
                 long[name] = lines
     assert not long, f"more than {LONGEST} lines; a file has one noun"
 

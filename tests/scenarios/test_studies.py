@@ -94,7 +94,7 @@ def test_a_sweep_of_a_live_board_leaves_it_alone():
         do(one, {"kind": "switch", "controller": "pid"})
         do(one, {"kind": "inject", "fault": "stiffness", "severity": 0.2})
         play(one, 100)
-    found = sweep_sine(board, points=9, cycles=20)
+    found = sweep_sine(board, points=9, cycles=20).found
     assert found.stiffness_n_m == pytest.approx(1.2 * 0.0538, rel=2e-3)
     play(board, 100), play(twin, 100)
     assert board.digest() == twin.digest() and board.spec.active == "pid"

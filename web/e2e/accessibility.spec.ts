@@ -1,5 +1,5 @@
-import AxeBuilder from "@axe-core/playwright";
 import { expect, test } from "./lab";
+import { seriousViolations } from "./serious-violations";
 
 for (const colorScheme of ["dark", "light"] as const) {
   test.describe(colorScheme, () => {
@@ -17,11 +17,4 @@ for (const colorScheme of ["dark", "light"] as const) {
       await seriousViolations(page).then((found) => expect(found).toEqual([]));
     });
   });
-}
-
-async function seriousViolations(page: import("@playwright/test").Page): Promise<string[]> {
-  const { violations } = await new AxeBuilder({ page }).exclude("iframe").analyze();
-  return violations
-    .filter((v) => v.impact === "serious" || v.impact === "critical")
-    .map((v) => `${v.id}: ${v.help}: ${v.nodes.map((n) => n.target.join(" ")).join(" | ")}`);
 }

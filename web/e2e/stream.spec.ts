@@ -65,6 +65,36 @@ test("looking back does not stop the board, and LIVE returns", async ({ page, op
   await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(live);
 });
 
+test("a hidden page stays connected although it draws nothing and its timers stand still", async ({
+  page,
+  openBench,
+}) => {
+  const streams: string[] = [];
+  page.on("websocket", (socket) => socket.url().includes("/stream") && streams.push(socket.url()));
+  await page.addInitScript(() => {
+    const hidden = () => (window as unknown as { away?: boolean }).away === true;
+    Object.defineProperty(document, "hidden", { get: hidden });
+    const frame = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (draw) =>
+      frame((now) => (hidden() ? window.requestAnimationFrame(draw) : draw(now)));
+    const repeat = window.setInterval.bind(window) as (run: () => void, ms?: number) => number;
+    window.setInterval = ((run: () => void, ms?: number) =>
+      repeat(() => hidden() || run(), ms)) as typeof window.setInterval;
+  });
+  await openBench();
+  const goAway = (away: boolean) =>
+    page.evaluate((value) => {
+      (window as unknown as { away?: boolean }).away = value;
+    }, away);
+  await goAway(true);
+  await page.waitForTimeout(8000); // the server lets go of who takes nothing for 5 s
+  await goAway(false);
+  const clock = page.getByRole("timer", { name: "Device time" });
+  const before = await clock.innerText();
+  await expect.poll(() => clock.innerText()).not.toBe(before);
+  expect(streams).toHaveLength(1);
+});
+
 test("a trigger holds the picture at an edge", async ({ page, openBench }) => {
   await openBench();
   const scope = page.locator("section[aria-label^='Scope']").first();

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from tests.lab import do, make, play
+from tests.lab import RICH, do, make, play
 
 RING = {"plant.initial_displacement_um": 4.0, "reference.amplitude_v": 0.0}
 K, M, B = 0.0538, 2.2090e-10, 7.09e-7
@@ -117,3 +117,51 @@ def test_what_is_no_air_is_refused(values, field):
     with pytest.raises(InputError) as error:
         make(values)
     assert error.value.field == field
+
+
+def dead_band(volts: float, *, fault: float = 0.0, **environment: float) -> bool:
+    """Whether a voltage from rest moves the shuttle: F/k over 0.6018 um/V, 20 nN are 0.618 V."""
+    board = make({"reference": {"kind": "constant", "amplitude_v": volts}, "environment": environment})
+    if fault:
+        do(board, {"kind": "inject", "fault": "stiction", "severity": fault})
+    return abs(play(board, 400)["plant.displacement"][-1]) > 0.0
+
+
+@pytest.mark.parametrize("how", ["environment", "fault"])
+def test_friction_has_a_dead_band_that_grows_with_humidity(how):
+    """|F_e| = 3.238e-8 N/V; friction goes with the adhesion energy W = 0.03 (50/0.03)^(1/(1+exp(-(H-60)/8))) mJ/m^2."""
+    own = {"friction_nn": 20.0} if how == "environment" else {"fault": 20.0}
+
+    def energy(humidity):
+        return 0.03 * (50 / 0.03) ** (1 / (1 + np.exp(-(humidity - 60) / 8)))
+
+    per_volt = make().spec.device.signed_force_n_per_v
+    for humidity in (0.0, 40.0, 50.0, 60.0):
+        edge = 20e-9 * energy(humidity) / energy(40.0) / abs(per_volt)
+        assert not dead_band(0.99 * edge, humidity_pct=humidity, **own)
+        assert dead_band(1.01 * edge, humidity_pct=humidity, **own)
+
+
+def test_friction_and_humidity_are_live():
+    board = make({"environment.friction_nn": 20.0}, base=RICH)
+    play(board, 400)
+    assert board.value("kalman.truth") == -1 and board.value("effects.friction") == 0.02
+    do(board, {"kind": "set", "values": {"environment.humidity_pct": 80.0, "environment.friction_nn": 40.0}})
+    play(board, 1)
+    assert board.value("effects.friction") > 10.0  # it sticks for good
+    x = play(board, 400)["plant.displacement"]
+    assert np.all(x[50:] == x[50])
+    do(board, {"kind": "set", "values": {"environment.friction_nn": 0.0}})
+    assert np.ptp(play(board, 400)["plant.displacement"]) > 1.0 and board.value("kalman.truth") == 0
+
+
+def test_age_is_live_and_a_fault_goes_on_from_it():
+    board = make({"reference": {"kind": "constant", "amplitude_v": 5.0}})
+    play(board, 2000)
+    new = board.value("plant.displacement")
+    for weeks, fault in ((4.0, 0.0), (1.5, 2.5), (0.0, 4.0)):
+        do(board, {"kind": "set", "values": {"environment.age_weeks": weeks}})
+        if fault:
+            do(board, {"kind": "inject", "fault": "ageing", "severity": fault})
+        play(board, 2000)
+        assert board.value("plant.displacement") / new == pytest.approx(0.572, rel=1e-6)

@@ -138,3 +138,20 @@ def test_ageing_and_more_mass_explain_the_almost_80_percent_of_case_1(omega, eff
 
     assert stiff(1.05 * m, k / law.ageing_ratio(4.0)) / stiff(m, k) == pytest.approx(effort, abs=1.5e-3)
     assert stiff(1.05 * m, k) / stiff(m, k) == pytest.approx(0.998, abs=3e-3)  # the mass alone
+
+
+def test_squeeze_film_of_a_rarefied_gas():
+    """Veijola et al. 1995: mu/(1 + 9.638 Kn^1.159); a thousand times rarer, nearly in proportion to the pressure."""
+    for pressure, gap in ((101325.0, 2.1), (1e3, 2.1), (101325.0, 0.5)):
+        mu = 1.716e-5 * (300 / 273.15) ** 1.5 * 383.55 / 410.4
+        kn = mu / pressure * math.sqrt(math.pi * 1.380649e-23 * 300 / (2 * 4.81e-26)) * 1e6 / gap
+        assert law.squeezed_share(pressure, 300.0, gap) == pytest.approx(1 / (1 + 9.638 * kn**1.159), rel=2e-3)
+    assert law.squeezed_share(101325.0, 300.0, 1e4) == pytest.approx(1.0, abs=1e-4)
+    assert law.squeezed_share(101325.0, 400.0, 1e4) == pytest.approx(
+        law.viscosity(400.0) / law.viscosity(300.0), rel=1e-3
+    )
+
+
+def test_age_counts_in_the_figures_of_the_device():
+    stiffness, damping = scales(age_weeks=4.0)
+    assert stiffness == pytest.approx(1 / 0.572, rel=1e-9) and damping == 1.0

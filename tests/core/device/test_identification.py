@@ -43,6 +43,18 @@ def test_standard_errors_are_the_scatter_of_repeated_sweeps():
         assert abs(np.mean(values) - truth) < 4 * np.mean(errors) / np.sqrt(len(runs)), name
 
 
+def test_errors_of_the_figures_are_the_scatter_of_repeated_sweeps():
+    # the peak is at f0 sqrt(1 - 1 / 2Q^2)
+    runs = [identify(tones(noise=0.005, seed=seed, scale=2.0), F) for seed in range(200)]
+    for name, error in (
+        ("f0_hz", "f0_error_hz"),
+        ("f_peak_hz", "f_peak_error_hz"),
+        ("quality_factor", "quality_factor_error"),
+    ):
+        scatter = np.std([getattr(run, name) for run in runs], ddof=1)
+        assert scatter == pytest.approx(np.mean([getattr(run, error) for run in runs]), rel=0.12), name  # 200 runs: 5 %
+
+
 def test_a_tone_with_noise_says_how_sure_it_is():
     dt, f, sigma = 0.01, 2000.0, 0.05
     t = np.arange(2000)

@@ -32,7 +32,7 @@ def capacitances(x: float, y: float, theta: float) -> tuple[float, float]:
         eta = y + theta * xi
         return 0.5 * GRADIENT * 2.1 * (1 / (2.1 - eta) + 1 / (2.1 + eta))
 
-    return quad(density, 126.13, 166.13 + x)[0], quad(density, -166.13 + x, -126.13)[0]
+    return quad(density, 126.132, 166.132 + x)[0], quad(density, -166.132 + x, -126.132)[0]
 
 
 @pytest.mark.parametrize(

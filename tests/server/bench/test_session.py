@@ -160,3 +160,13 @@ def test_commands_that_wait_are_limited() -> None:
     with pytest.raises(InputError, match="wait for their moment"):
         for _ in range(200):
             bench.execute(parse({"kind": "switch", "controller": "pid", "at_sample": 8000}), "test")
+
+
+def test_status_says_what_was_chosen_for_a_fault() -> None:
+    bench = session()
+    bench.execute(parse({"kind": "inject", "fault": "sensor_hum", "severity": 0.2}), "test")
+    chosen = {"beam": "outer", "position": 0.5}
+    bench.execute(parse({"kind": "inject", "fault": "point_adhesion", "severity": 1.0, "parameters": chosen}), "test")
+    bench.execute(parse({"kind": "inject", "fault": "added_mass", "severity": 0.1}), "test")
+    acting = {fault.name: fault.parameters for fault in bench.status.faults}
+    assert acting == {"sensor_hum": {"frequency_hz": 50.0}, "point_adhesion": chosen, "added_mass": {}}

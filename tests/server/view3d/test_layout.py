@@ -1,23 +1,29 @@
-"""The shape: the drawing's numbers, and beams that bend as beams do."""
+"""The shape and its motion: the drawing's numbers, what is magnified and said, what warns."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from core.device.geometry import Geometry
-from server.view3d.layout import UM_PER_UNIT, Layout, Skinned
-from server.view3d.motion import WANTED_UM, caption, exaggeration, moment
+from core.plant.planar import Planar
+from server.view3d.layout import UM_PER_UNIT, Layout
+from server.view3d.motion import (
+    TURN_EXAGGERATIONS,
+    WANTED_TURN_UM,
+    WANTED_UM,
+    caption,
+    closed_share,
+    exaggeration,
+    moment,
+    warning,
+)
+from server.view3d.page import cameras
+from server.view3d.pose import combs_of
+from server.view3d.scene import ATTENTION, MOVING, blend, in_batch
+from server.view3d.suspension import flexure
 
 LAYOUT = Layout(Geometry())
-
-
-def bend(mesh: Skinned, bones: list[float]) -> NDArray[np.float64]:
-    """Move the vertices as linear blend skinning does, bones shifted along x by um."""
-    moved = mesh.vertices.copy() * UM_PER_UNIT
-    moved[:, 0] += mesh.weights @ np.array(bones)
-    return moved
 
 
 def test_the_places_are_those_of_the_drawing() -> None:
@@ -27,39 +33,16 @@ def test_the_places_are_those_of_the_drawing() -> None:
     assert LAYOUT.stator_um == pytest.approx(126.13, abs=0.01)
     assert LAYOUT.beam_to_um == 387.5
     assert LAYOUT.pitch_um == pytest.approx(8.0)
-    places, _ = LAYOUT.fingers()
-    assert len(places) == 2 * 87 and len(LAYOUT.stators()[0]) == 2 * 88
-    assert np.abs(places[:, 1]).max() * UM_PER_UNIT == pytest.approx(344.0)
+    places = LAYOUT.fingers(1.0)
+    assert len(places) == 87 and len(LAYOUT.stators(1.0)) == 88
+    assert np.abs(places[:, 1]).max() == pytest.approx(344.0)
 
 
 def test_moving_fingers_stand_between_fixed_ones() -> None:
-    moving, fixed = LAYOUT.fingers()[0], LAYOUT.stators()[0]
-    gaps = np.abs(moving[:87, 1][:, None] - fixed[:88, 1][None, :]).min(1) * UM_PER_UNIT
+    moving, fixed = LAYOUT.fingers(-1.0), LAYOUT.stators(-1.0)
+    gaps = np.abs(moving[:, 1][:, None] - fixed[:, 1][None, :]).min(1)
     np.testing.assert_allclose(gaps, LAYOUT.pitch_um / 2)
-
-
-def test_weights_are_shares_of_four_bones() -> None:
-    mesh = LAYOUT.suspension()
-    assert mesh.weights.shape == (len(mesh.vertices), 4)
-    np.testing.assert_allclose(mesh.weights.sum(1), 1.0)
-    assert mesh.faces.max() < len(mesh.vertices)
-
-
-def test_beams_bend_as_guided_beams() -> None:
-    """Shuttle shifted by v, trusses by v/2: u = (v/2)(3s^2 - 2s^3) from the anchor, flat at both ends."""
-    v, mesh = 10.0, LAYOUT.suspension()
-    moved = bend(mesh, [0.0, v, v / 2, v / 2])
-    rest = mesh.vertices * UM_PER_UNIT
-    shift = moved[:, 0] - rest[:, 0]
-    y = np.abs(rest[:, 1])
-    s = np.clip((y - 37.5) / 350.0, 0.0, 1.0)
-    curve = v / 2 * (3 * s**2 - 2 * s**3)
-    inner = np.abs(np.abs(rest[:, 0]) - 15) < 1
-    outer = np.abs(np.abs(rest[:, 0]) - 45) < 1
-    beams = y <= 387.5
-    np.testing.assert_allclose(shift[inner & beams], curve[inner & beams], atol=1e-9)
-    np.testing.assert_allclose(shift[outer & beams], v - curve[outer & beams], atol=1e-9)
-    np.testing.assert_allclose(shift[y > 388], v / 2)
+    assert (moving[:, 0] < 0).all() and (fixed[:, 0] < 0).all()
 
 
 def test_slow_motion_is_true_and_fast_motion_is_strobed() -> None:
@@ -84,5 +67,54 @@ def test_motion_is_magnified_by_a_round_factor_that_keeps() -> None:
     for amplitude in (3.0, 4.5, 2.0):
         assert exaggeration(amplitude, factor) == factor
     assert 4.0 * factor <= WANTED_UM
-    assert caption(1.0, False) == "true scale"
-    assert caption(5.0, True) == "motion × 5, strobe"
+
+
+def test_a_rotation_is_magnified_to_what_the_ends_of_the_arms_can_show() -> None:
+    """An adhesion turns LCR-350 by 32 rad per m of travel: 2.7 um give 86 urad, 30 nm at the end of an arm."""
+    ends_um = 32e-6 * 2.7 * 345.0
+    factor = exaggeration(ends_um, 1.0, WANTED_TURN_UM, TURN_EXAGGERATIONS)
+    assert factor == 200.0
+    assert exaggeration(2 * ends_um, factor, WANTED_TURN_UM, TURN_EXAGGERATIONS) == factor
+    assert exaggeration(40.0, factor, WANTED_TURN_UM, TURN_EXAGGERATIONS) == 1.0
+    assert exaggeration(1e-6, factor, WANTED_TURN_UM, TURN_EXAGGERATIONS) == 2000.0
+
+
+def test_what_is_not_as_in_nature_is_said() -> None:
+    said = caption(5.0, 200.0, True)
+    for part in ("motion × 5", "rotation × 200", "gaps × 1", "heights × 4", "beam widths × 2.5", "strobe"):
+        assert part in said
+    assert "rotation" not in caption(1.0, None, False) and "strobe" not in caption(1.0, None, False)
+    beams = flexure(LAYOUT, 1).rest
+    assert np.ptp(beams[:4, 0]) == pytest.approx(2.5 * LAYOUT.geometry.beam_um)
+    assert np.ptp(beams[:4, 2]) == pytest.approx(4.0 * LAYOUT.geometry.thickness_um)
+
+
+def test_a_comb_warns_before_stability_is_lost() -> None:
+    """A tenth of the gap, where the earliest fold is, already takes a third of the colour; contact takes it all."""
+    assert closed_share(-0.21, 2.1) == pytest.approx(0.1)
+    assert closed_share(3.0, 2.1) == 1.0
+    assert warning(0.0) == 0.0 and warning(1.0) == 1.0
+    assert warning(0.1) > 0.3
+    assert blend(MOVING, ATTENTION, warning(0.0)) == MOVING and blend(MOVING, ATTENTION, warning(1.0)) == ATTENTION
+
+
+def test_fingers_are_off_centre_by_shift_and_rotation() -> None:
+    """y + theta X at +x, y - theta X at -x, with what was off as made."""
+    plant = Planar.Params(misalignment_um=0.1, misalignment_mrad=1.0)
+    right, left = combs_of(0.2, 2e-3, 166.0, plant)
+    assert right == pytest.approx(0.3 + 3e-3 * 166.0) and left == pytest.approx(0.3 - 3e-3 * 166.0)
+    assert combs_of(0.2, 0.0, 166.0, object()) == (0.2, 0.2)
+
+
+def test_colours_of_a_batch_are_linear() -> None:
+    """IEC 61966-2-1: black and white stay, the middle grey 188 is half the light."""
+    assert in_batch((0, 255, 188)).tolist() == [0, 255, 128]
+
+
+@pytest.mark.parametrize("name", ["whole", "top", "side", "fingers", "beams"])
+def test_cameras_look_at_the_device(name: str) -> None:
+    view = cameras(LAYOUT)[name]
+    low, high = (UM_PER_UNIT * np.array(end) for end in zip(*view["box"], strict=True))
+    assert (low <= high).all() and (high[:2] <= (LAYOUT.half_length_um, LAYOUT.half_width_um)).all()
+    if name in ("whole", "top", "side"):
+        np.testing.assert_allclose(high[:2], (LAYOUT.half_length_um, LAYOUT.half_width_um))

@@ -1,11 +1,22 @@
 import { client, data } from "./client";
-import type { NewBench } from "./types";
+import type { BodeOf, Design, NewBench, SweptSine } from "./types";
 
 const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
 
 /** The REST calls of the page. */
 export const api = {
   catalog: async () => (await data(client.GET("/api/v1/catalog"))).blocks,
+  deviceCatalogue: () => data(client.GET("/api/v1/devices")),
+  evaluate: (body: Design) => data(client.POST("/api/v1/devices/evaluate", { body })),
+  bode: (body: BodeOf) => data(client.POST("/api/v1/devices/bode", { body })),
+  spread: (body: Design & { seed: number }) => data(client.POST("/api/v1/devices/spread", { body })),
+  identify: (id: string, body: SweptSine) =>
+    data(client.POST("/api/v1/benches/{bench_id}/identification", { ...bench(id), body })),
+  unstableRegion: (bench_id: string, drive_v: number) =>
+    data(
+      client.GET("/api/v1/benches/{bench_id}/unstable-region", { params: { path: { bench_id }, query: { drive_v } } }),
+    ),
+  plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
   benches: async () => (await data(client.GET("/api/v1/benches"))).benches,

@@ -44,6 +44,66 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/devices/evaluate": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Evaluate
+         * @description Work out the figures of a device in its environment.
+         */
+        post: operations["evaluate_api_v1_devices_evaluate_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/devices/bode": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Bode
+         * @description Return the frequency response of a device with its tolerance band.
+         */
+        post: operations["bode_api_v1_devices_bode_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/devices/spread": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Spread
+         * @description Draw devices from the process; the same seed gives the same devices.
+         */
+        post: operations["spread_api_v1_devices_spread_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/scenarios": {
         parameters: {
             query?: never;
@@ -246,6 +306,66 @@ export interface paths {
          * @description Make a second bench that goes on from this moment or a snapshot, bit for bit.
          */
         post: operations["fork_bench_api_v1_benches__bench_id__fork_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/identification": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Identification
+         * @description Identify the device by a swept sine, with the faults and the air it has now.
+         */
+        post: operations["identification_api_v1_benches__bench_id__identification_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/unstable-region": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Region
+         * @description Map where the shuttle pulls in, for a voltage held on it.
+         */
+        get: operations["region_api_v1_benches__bench_id__unstable_region_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/plants": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Plants
+         * @description Measure what a tick costs with each plant.
+         */
+        get: operations["plants_api_v1_benches__bench_id__plants_get"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -665,6 +785,14 @@ export interface components {
             profile: {
                 [key: string]: unknown;
             };
+            /**
+             * Parameters
+             * @description What else was chosen for it, or its defaults
+             * @default {}
+             */
+            parameters?: {
+                [key: string]: unknown;
+            };
             /** Since Tick */
             since_tick: number;
         };
@@ -846,6 +974,66 @@ export interface components {
             };
         };
         /**
+         * Bode
+         * @description Displacement per volt over that of the nominal device at rest; the sign of the force is left out.
+         */
+        Bode: {
+            /** Frequency Hz */
+            frequency_hz: number[];
+            magnitude_db: components["schemas"]["Curve"];
+            phase_deg: components["schemas"]["Curve"];
+            /** Static Gain Um Per V */
+            static_gain_um_per_v: number;
+            /**
+             * Band
+             * @description What the band is
+             */
+            band: string;
+        };
+        /**
+         * BodeOf
+         * @description Which Bode diagram.
+         */
+        BodeOf: {
+            /**
+             * Device
+             * @description Catalogue id, and values written over it
+             * @default {}
+             */
+            device?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Environment
+             * @description Temperature, pressure, humidity
+             * @default {}
+             */
+            environment?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Start Hz
+             * @default 200
+             */
+            start_hz?: number;
+            /**
+             * Stop Hz
+             * @default 20000
+             */
+            stop_hz?: number;
+            /**
+             * Points
+             * @default 300
+             */
+            points?: number;
+            /**
+             * Seed
+             * @description Of the devices drawn for the band
+             * @default 1
+             */
+            seed?: number;
+        };
+        /**
          * Catalogue
          * @description Every block with its equations, parameters and ports.
          */
@@ -865,6 +1053,18 @@ export interface components {
             /** Time Ms */
             time_ms: number;
             entry: components["schemas"]["Event"];
+        };
+        /**
+         * Curve
+         * @description A quantity over frequency, and the band it lies in.
+         */
+        Curve: {
+            /** Low */
+            low: number[];
+            /** Nominal */
+            nominal: number[];
+            /** High */
+            high: number[];
         };
         /**
          * DefinitenessReport
@@ -889,6 +1089,28 @@ export interface components {
             minors: number[];
         };
         /**
+         * Design
+         * @description A device and the air around it, as in a scenario.
+         */
+        Design: {
+            /**
+             * Device
+             * @description Catalogue id, and values written over it
+             * @default {}
+             */
+            device?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Environment
+             * @description Temperature, pressure, humidity
+             * @default {}
+             */
+            environment?: {
+                [key: string]: unknown;
+            };
+        };
+        /**
          * DeviceCard
          * @description A device of the catalogue.
          */
@@ -910,11 +1132,13 @@ export interface components {
         };
         /**
          * Devices
-         * @description Every device of the catalogue.
+         * @description Every device of the catalogue, and what can be chosen about a drawing.
          */
         Devices: {
             /** Devices */
             devices: components["schemas"]["DeviceCard"][];
+            /** Geometry */
+            geometry: components["schemas"]["ParameterCard"][];
         };
         /**
          * DiagnoserInfo
@@ -951,6 +1175,41 @@ export interface components {
             printed: string | null;
             /** Why */
             why: string | null;
+        };
+        /**
+         * Evaluation
+         * @description What a device would be.
+         */
+        Evaluation: {
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Figures */
+            figures: components["schemas"]["Figure"][];
+            /**
+             * Metrics
+             * @description All figures by name
+             */
+            metrics: {
+                [key: string]: number;
+            };
+            /**
+             * Geometry
+             * @description The drawing, complete; null without one
+             */
+            geometry: {
+                [key: string]: number;
+            } | null;
+            /**
+             * Sensitivities
+             * @description Change of each parameter in percent for one step of a number of the drawing
+             */
+            sensitivities: {
+                [key: string]: {
+                    [key: string]: number;
+                };
+            };
         };
         /**
          * Event
@@ -1064,6 +1323,49 @@ export interface components {
             max: (number | null)[];
         };
         /**
+         * Figure
+         * @description A figure of a device with its equation; no value where the device does not tell.
+         */
+        Figure: {
+            /** Name */
+            name: string;
+            /** Label */
+            label: string;
+            /** Unit */
+            unit: string;
+            /** Value */
+            value: number | null;
+            equation: components["schemas"]["EquationCard"];
+        };
+        /**
+         * FittedCurve
+         * @description The response of the device found, and that of the nominal one.
+         */
+        FittedCurve: {
+            /** Frequency Hz */
+            frequency_hz: number[];
+            /** Found Um Per V */
+            found_um_per_v: number[];
+            /** Found Deg */
+            found_deg: number[];
+            /** Nominal Um Per V */
+            nominal_um_per_v: number[];
+            /** Nominal Deg */
+            nominal_deg: number[];
+        };
+        /**
+         * FoldPoint
+         * @description Where the rest under a slowly rising drive ends: travel, voltage, place of the worst corner sideways.
+         */
+        FoldPoint: {
+            /** X Um */
+            x_um: number;
+            /** Volts */
+            volts: number;
+            /** Lateral Um */
+            lateral_um: number;
+        };
+        /**
          * ForkFrom
          * @description Where a fork begins.
          */
@@ -1117,6 +1419,67 @@ export interface components {
             checks: {
                 [key: string]: boolean;
             };
+        };
+        /**
+         * Identification
+         * @description What a swept sine tells of a bench as it is now.
+         */
+        Identification: {
+            /** Tick */
+            tick: number;
+            found: components["schemas"]["Identified"];
+            /** Nominal */
+            nominal: {
+                [key: string]: number;
+            };
+            /** Tones */
+            tones: components["schemas"]["MeasuredTone"][];
+            curve: components["schemas"]["FittedCurve"];
+        };
+        /**
+         * Identified
+         * @description What a sweep tells of a device; ``*_error`` are standard errors.
+         *
+         *     The figures of the fit (mass to quality factor) use all tones; those read off the curve (``read_*``) only the
+         *     tones around what they describe, and are none where the sweep does not show it.
+         */
+        Identified: {
+            /** Mass Kg */
+            mass_kg: number;
+            /** Damping Ns M */
+            damping_ns_m: number;
+            /** Stiffness N M */
+            stiffness_n_m: number;
+            /** Mass Error Kg */
+            mass_error_kg: number;
+            /** Damping Error Ns M */
+            damping_error_ns_m: number;
+            /** Stiffness Error N M */
+            stiffness_error_n_m: number;
+            /** F0 Hz */
+            f0_hz: number;
+            /** F Peak Hz */
+            f_peak_hz: number;
+            /** Quality Factor */
+            quality_factor: number;
+            /** F0 Error Hz */
+            f0_error_hz: number;
+            /** F Peak Error Hz */
+            f_peak_error_hz: number;
+            /** Quality Factor Error */
+            quality_factor_error: number;
+            /** Static Gain Um Per V */
+            static_gain_um_per_v: number;
+            /** Coherence */
+            coherence: number;
+            /** Read F Peak Hz */
+            read_f_peak_hz: number | null;
+            /** Read F0 Hz */
+            read_f0_hz: number | null;
+            /** Read Quality Half Power */
+            read_quality_half_power: number | null;
+            /** Read Quality Phase Slope */
+            read_quality_phase_slope: number | null;
         };
         /**
          * Inject
@@ -1277,6 +1640,44 @@ export interface components {
         MatrixSource: {
             /** Matrix */
             matrix: number[][];
+        };
+        /**
+         * MeasuredPlant
+         * @description CPU time of one tick of the whole bench with this plant; null when it cannot have it.
+         */
+        MeasuredPlant: {
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /** Ns Per Tick */
+            ns_per_tick: number | null;
+            /** Refused */
+            refused: string;
+        };
+        /**
+         * MeasuredPlants
+         * @description The cost of every plant, and device time of one tick to compare it with.
+         */
+        MeasuredPlants: {
+            /** Plants */
+            plants: components["schemas"]["MeasuredPlant"][];
+            /** Tick Ns */
+            tick_ns: number;
+        };
+        /**
+         * MeasuredTone
+         * @description One tone: displacement per volt, its standard error and its phase, the sign of the force left out.
+         */
+        MeasuredTone: {
+            /** Frequency Hz */
+            frequency_hz: number;
+            /** Gain Um Per V */
+            gain_um_per_v: number;
+            /** Error Um Per V */
+            error_um_per_v: number;
+            /** Phase Deg */
+            phase_deg: number;
         };
         /**
          * NewBench
@@ -1467,6 +1868,30 @@ export interface components {
             imaginary: (number | null)[];
         };
         /**
+         * ProcessSpread
+         * @description Devices of one drawing from one process; the first of them as a drawing.
+         */
+        ProcessSpread: {
+            /**
+             * Assumed
+             * @description Standard deviations of the process
+             */
+            assumed: {
+                [key: string]: number;
+            };
+            /** Statistics */
+            statistics: {
+                [key: string]: components["schemas"]["SpreadStatistics"];
+            };
+            /**
+             * Geometry
+             * @description The numbers of the first device drawn that the process moved
+             */
+            geometry: {
+                [key: string]: number;
+            };
+        };
+        /**
          * Profile
          * @description How the severity comes: at once, as a ramp, or on and off.
          */
@@ -1631,6 +2056,16 @@ export interface components {
             runs: components["schemas"]["Run"][];
         };
         /**
+         * SafeBoundary
+         * @description The speed beyond which the energy suffices to reach the stators, along x.
+         */
+        SafeBoundary: {
+            /** X Um */
+            x_um: number[];
+            /** Speed Um Ms */
+            speed_um_ms: number[];
+        };
+        /**
          * ScenarioCard
          * @description A scenario of the library in a few words.
          */
@@ -1788,6 +2223,52 @@ export interface components {
             snapshots: components["schemas"]["Snapshot"][];
         };
         /**
+         * SpreadOf
+         * @description Which devices to draw from the process.
+         */
+        SpreadOf: {
+            /**
+             * Device
+             * @description Catalogue id, and values written over it
+             * @default {}
+             */
+            device?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Environment
+             * @description Temperature, pressure, humidity
+             * @default {}
+             */
+            environment?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Seed
+             * @default 1
+             */
+            seed?: number;
+            /**
+             * Draws
+             * @default 2000
+             */
+            draws?: number;
+        };
+        /**
+         * SpreadStatistics
+         * @description How far one parameter lies apart.
+         */
+        SpreadStatistics: {
+            /** Variation Pct */
+            variation_pct: number;
+            /** P01 */
+            p01: number;
+            /** P50 */
+            p50: number;
+            /** P99 */
+            p99: number;
+        };
+        /**
          * Start
          * @description Let time run.
          */
@@ -1827,6 +2308,39 @@ export interface components {
              * @constant
              */
             kind?: "step_period";
+        };
+        /**
+         * SweptSine
+         * @description How to sweep.
+         */
+        SweptSine: {
+            /**
+             * Amplitude V
+             * @default 2
+             */
+            amplitude_v?: number;
+            /**
+             * Points
+             * @description Tones of each of the two passes
+             * @default 31
+             */
+            points?: number;
+            /**
+             * Cycles
+             * @description Cycles measured at each tone
+             * @default 40
+             */
+            cycles?: number;
+            /**
+             * Settle
+             * @description Time constants waited before
+             * @default 12
+             */
+            settle?: number;
+            /** Start Hz */
+            start_hz?: number | null;
+            /** Stop Hz */
+            stop_hz?: number | null;
         };
         /**
          * Switch
@@ -1920,6 +2434,21 @@ export interface components {
             signal: string;
             /** Value */
             value: number | null;
+        };
+        /**
+         * UnstableRegionMap
+         * @description Where a bench as it is now pulls in; empty where its plant cannot.
+         */
+        UnstableRegionMap: {
+            /** Tick */
+            tick: number;
+            /** Plant */
+            plant: string;
+            /** Drive V */
+            drive_v: number;
+            /** Folds */
+            folds: components["schemas"]["FoldPoint"][];
+            boundary: components["schemas"]["SafeBoundary"] | null;
         };
         /**
          * Ack
@@ -2375,6 +2904,105 @@ export interface operations {
             };
         };
     };
+    evaluate_api_v1_devices_evaluate_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Design"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Evaluation"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    bode_api_v1_devices_bode_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BodeOf"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bode"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    spread_api_v1_devices_spread_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SpreadOf"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ProcessSpread"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_scenarios_api_v1_scenarios_get: {
         parameters: {
             query?: never;
@@ -2743,6 +3371,105 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    identification_api_v1_benches__bench_id__identification_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SweptSine"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Identification"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    region_api_v1_benches__bench_id__unstable_region_get: {
+        parameters: {
+            query?: {
+                drive_v?: number;
+            };
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UnstableRegionMap"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    plants_api_v1_benches__bench_id__plants_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MeasuredPlants"];
                 };
             };
             /** @description Refused or failed */

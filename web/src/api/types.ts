@@ -5,17 +5,27 @@ type Schemas = components["schemas"];
 
 export type ActiveFault = Schemas["ActiveFault"];
 export type ApiErrorBody = Schemas["ErrorBody"];
+export type Bode = Schemas["Bode"];
 export type Bench = Schemas["Bench"];
 export type BlockCard = Schemas["BlockCard"];
+export type BodeOf = Schemas["BodeOf"];
+export type Design = Schemas["Design"];
 export type Device = Schemas["DeviceCard"];
+export type DeviceCatalogue = Schemas["Devices"];
 export type Equation = Schemas["EquationCard"];
+export type Evaluation = Schemas["Evaluation"];
 export type FaultProfile = Schemas["Profile"];
+export type Identification = Schemas["Identification"];
 export type LogEntry = Schemas["Event"];
+export type MeasuredPlant = Schemas["MeasuredPlant"];
 export type NewBench = Schemas["NewBench"];
 export type Parameter = Schemas["ParameterCard"];
+export type ProcessSpread = Schemas["ProcessSpread"];
 export type ScenarioSummary = Schemas["ScenarioCard"];
 export type Score = Schemas["Scores"];
 export type Signal = Schemas["Signal"];
+export type SweptSine = Schemas["SweptSine"];
+export type UnstableRegion = Schemas["UnstableRegionMap"];
 
 /** A scenario document as plain values. */
 export type Document = Bench["parameters"];

@@ -5,7 +5,7 @@ import { jump } from "../ui/jump";
 import { openBench } from "./open-bench";
 import { send, showError } from "./send";
 import { stepTimeScale } from "./time-scale";
-import { useView } from "./view-store";
+import { setPage, useView } from "./view-store";
 
 const bench = () => useBench.getState().bench;
 
@@ -34,6 +34,7 @@ export const actions = {
   },
   keys: () => useView.setState({ dialog: "keys" }),
   newBench: () => useView.setState({ dialog: "bench" }),
+  designer: () => setPage(useView.getState().page === "designer" ? "bench" : "designer"),
   fork: () => void fork(),
   forkBeforeTrip: () => void forkBeforeTrip(),
   keep: () => void keep(),

@@ -10,6 +10,7 @@ export function Announcer() {
   const event = useBench((s) => s.events.at(-1));
   const notice = useBench((s) => s.notice);
   const phase = useBench((s) => s.connection.phase);
+  const quiet = useBench((s) => s.connection.reason?.quiet ?? false);
 
   useEffect(() => {
     if (!event) return;
@@ -19,10 +20,11 @@ export function Announcer() {
   }, [event]);
 
   useEffect(() => {
+    if (quiet) return;
     if (phase === "waiting") alarm("Connection lost, trying again.");
     if (phase === "closed") alarm("Not connected. The notice at the top says why.");
     if (phase === "open") announce("Connected.");
-  }, [phase]);
+  }, [phase, quiet]);
 
   useEffect(() => {
     if (!notice || notice.code === "slow_client") return; // the header says that one, without covering anything

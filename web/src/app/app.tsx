@@ -2,6 +2,7 @@ import { Button } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/api-error";
+import { Designer } from "../designer/designer";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
 import { stream } from "../stream/stream";
@@ -16,6 +17,7 @@ import { benchInAddress } from "./open-bench";
 import { Phone } from "./phone";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
+import { pageInAddress, useView } from "./view-store";
 import { Workspace } from "./workspace";
 
 interface Failure {
@@ -26,6 +28,7 @@ interface Failure {
 /** The page: a header, a line for what needs to be known, and the panels. */
 export function App() {
   const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
+  const page = useView((s) => s.page);
   const silent = useBench((s) => s.connection.staleSince !== undefined);
   const stale = useLasting(silent, 700);
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
@@ -39,6 +42,7 @@ export function App() {
   useEffect(() => {
     start();
     const back = () => {
+      useView.setState({ page: pageInAddress() });
       const id = benchInAddress();
       if (id && id !== useBench.getState().bench?.id) stream.open(id);
     };
@@ -49,11 +53,13 @@ export function App() {
   return (
     <div className="page" data-stale={stale}>
       {phone ? null : <Header />}
-      <Banner hints={!phone} />
+      <Banner hints={!phone && page === "bench"} />
       {failure ? (
         <EmptyState title={failure.title} action={<Button onClick={start}>Try again</Button>}>
           {failure.advice}
         </EmptyState>
+      ) : page === "designer" ? (
+        <Designer />
       ) : phone ? (
         <Phone />
       ) : (

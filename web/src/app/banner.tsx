@@ -19,7 +19,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
-  const lost = useLasting(connection.phase === "waiting", BLINK_MS);
+  const lost = useLasting(connection.phase === "waiting" && !connection.reason?.quiet, BLINK_MS);
   const [hint, setHint] = useState(() => localStorage.getItem(HINT_KEY) === null);
 
   if (connection.phase === "closed" && connection.reason)

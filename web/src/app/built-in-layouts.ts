@@ -60,10 +60,14 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "motion", "scope", {}, MOTION, "Displacement");
     add(api, "schematic", "schematic", { left: "motion" });
     add(api, "faults", "faults", { below: "schematic" });
+    add(api, "environment", "environment", { within: "faults", inactive: true });
     add(api, "card", "card", { within: "faults", inactive: true });
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "events", "events", { within: "lanes", inactive: true });
+    add(api, "phase", "phase", { within: "lanes", inactive: true });
+    add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
+    add(api, "identify", "identify", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.26, h: 0.34 },
       motion: { h: 0.36 },
@@ -79,8 +83,12 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "scores", "scores", { within: "card", inactive: true });
     add(api, "events", "events", { within: "card", inactive: true });
     add(api, "faults", "faults", { below: "schematic" });
+    add(api, "environment", "environment", { within: "faults", inactive: true });
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
+    add(api, "phase", "phase", { within: "lanes", inactive: true });
+    add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
+    add(api, "identify", "identify", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.225, h: 0.32 },
       view3d: { w: 0.25, h: 0.4 },

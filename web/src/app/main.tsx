@@ -4,11 +4,11 @@ import "@mantine/notifications/styles.css";
 import "../ui/theme.css";
 import "./page.css";
 import { MantineProvider } from "@mantine/core";
-import { Notifications } from "@mantine/notifications";
 import { StrictMode } from "react";
 import { createRoot } from "react-dom/client";
 import { App } from "./app";
 import { cssVariables, theme } from "./theme";
+import { Toasts } from "./toasts";
 
 const root = document.getElementById("root");
 if (!root) throw new Error("the page has no #root");
@@ -17,7 +17,7 @@ createRoot(root).render(
   <StrictMode>
     <MantineProvider theme={theme} cssVariablesResolver={cssVariables} defaultColorScheme="auto">
       <App />
-      <Notifications position="bottom-right" limit={4} />
+      <Toasts />
     </MantineProvider>
   </StrictMode>,
 );

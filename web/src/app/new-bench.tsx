@@ -1,4 +1,5 @@
 import { Button, NativeSelect, Switch, Text, TextInput } from "@mantine/core";
+import { IconRulerMeasure } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { Device, ScenarioSummary } from "../api/types";
@@ -7,7 +8,7 @@ import styles from "./dialogs.module.css";
 import { openBench } from "./open-bench";
 import { showError } from "./send";
 import { SideSheet } from "./side-sheet";
-import { useView } from "./view-store";
+import { setPage, useView } from "./view-store";
 
 /** Start a bench from the library, on its own device or another. */
 export function NewBench() {
@@ -47,6 +48,19 @@ function Gallery() {
   const found = scenarios?.filter((s) => `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()));
   return (
     <>
+      <Button
+        fullWidth
+        size="xs"
+        variant="default"
+        mb="sm"
+        leftSection={<IconRulerMeasure size={16} />}
+        onClick={() => {
+          useView.setState({ dialog: "none" });
+          setPage("designer");
+        }}
+      >
+        Design a device of your own
+      </Button>
       <div className={styles.filters}>
         <TextInput
           size="xs"

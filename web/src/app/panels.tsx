@@ -1,12 +1,16 @@
 import type { ComponentType } from "react";
 import { CardPanel } from "../panels/card/card-panel";
+import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
+import { IdentifyPanel } from "../panels/identify/identify-panel";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
+import { PhasePanel } from "../panels/phase/phase-panel";
 import { SchematicPanel } from "../panels/schematic/schematic-panel";
 import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
+import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
 
 export interface PanelProps {
@@ -26,6 +30,10 @@ export const PANELS: Record<string, PanelKind> = {
   schematic: { title: "Bench", component: SchematicPanel },
   faults: { title: "Faults", component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
+  environment: { title: "Environment", component: EnvironmentPanel },
+  phase: { title: "Phase plane", component: PhasePanel },
+  spectrum: { title: "Spectrum", component: SpectrumPanel },
+  identify: { title: "Swept sine", component: IdentifyPanel },
   events: { title: "Events", component: EventsPanel },
   scores: { title: "Scoreboard", component: ScoreboardPanel },
   view3d: { title: "3D", component: View3dPanel },

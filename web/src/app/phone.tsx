@@ -1,5 +1,5 @@
 import { Button } from "@mantine/core";
-import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
+import { IconPlayerPauseFilled, IconPlayerPlayFilled, IconRulerMeasure } from "@tabler/icons-react";
 import { useState } from "react";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { scopeConfig } from "../panels/scope/scope-config";
@@ -48,6 +48,9 @@ export function Phone() {
         </div>
       </main>
       <footer className={styles.stop}>
+        <Button size="lg" variant="default" aria-label="Device designer" onClick={actions.designer}>
+          <IconRulerMeasure size={20} />
+        </Button>
         <Button
           fullWidth
           size="lg"

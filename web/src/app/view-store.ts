@@ -5,7 +5,11 @@ export type LayoutName = "lecture" | "lab" | "research";
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
 
+/** The bench, or the drawing board. */
+export type PageName = "bench" | "designer";
+
 interface ViewStore {
+  page: PageName;
   layout: LayoutName;
   card: CardId;
   dialog: "none" | "keys" | "bench";
@@ -18,8 +22,24 @@ const WIDE = 1280;
 
 /** How this page looks at the bench; says nothing about the bench itself. */
 export const useView = create<ViewStore>(() => ({
+  page: pageInAddress(),
   layout: window.innerWidth >= WIDE ? "research" : "lab",
   card: "diagnosers.kalman",
   dialog: "none",
   large: false,
 }));
+
+/** The page named in the address. */
+export function pageInAddress(): PageName {
+  return new URLSearchParams(window.location.search).get("page") === "designer" ? "designer" : "bench";
+}
+
+/** Go to a page; the address names it, and back works. */
+export function setPage(page: PageName): void {
+  if (page === useView.getState().page) return;
+  const url = new URL(window.location.href);
+  if (page === "bench") url.searchParams.delete("page");
+  else url.searchParams.set("page", page);
+  window.history.pushState(null, "", url);
+  useView.setState({ page });
+}

@@ -3,6 +3,8 @@ export interface CloseReason {
   retry: boolean;
   /** What the page can offer when it cannot help itself. */
   offer?: "bench" | "reload";
+  /** Not worth a notice: the page reconnects, and its header says that it is slow. */
+  quiet?: boolean;
   title: string;
   advice: string;
 }
@@ -31,7 +33,12 @@ const REASONS: Record<number, CloseReason> = {
     title: "This bench is gone",
     advice: "It was closed, or the server was restarted: benches live as long as the server runs.",
   },
-  4408: { retry: true, title: "This page fell too far behind", advice: "Close panels you do not need; reconnecting." },
+  4408: {
+    retry: true,
+    quiet: true,
+    title: "This page fell too far behind",
+    advice: "Close panels you do not need; reconnecting.",
+  },
   1008: { retry: true, title: "Too many messages from this page", advice: "Reconnecting." },
   1009: { retry: true, title: "A message was too big", advice: "Reconnecting." },
   1013: { retry: true, title: "The server has no room for another watcher", advice: "Trying again." },

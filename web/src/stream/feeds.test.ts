@@ -99,6 +99,19 @@ describe("Feeds", () => {
     expect(draw).toHaveBeenCalledOnce();
   });
 
+  it("acknowledges unseen what is drawn when somebody looks again", () => {
+    const draw = vi.fn();
+    const feed = feeds.open(roll, draw);
+    feeds.receive(frame(1, picture(feed.panel, 1)));
+    feeds.acknowledge();
+    feeds.acknowledge();
+    expect(sent.filter((m) => m.type === "ack")).toEqual([{ type: "ack", frame: 1 }]);
+    expect(draw).not.toHaveBeenCalled();
+    feeds.draw();
+    expect(draw).toHaveBeenCalledOnce();
+    expect(sent.filter((m) => m.type === "ack")).toHaveLength(1);
+  });
+
   it("goes on when one panel cannot draw", () => {
     const error = vi.spyOn(console, "error").mockImplementation(() => undefined);
     const bad = feeds.open(roll, () => {

@@ -81,11 +81,15 @@ export class Feeds {
         console.error("panel could not draw", error);
       }
     }
-    if (this.received > this.acknowledged) {
-      this.acknowledged = this.received;
-      this.send({ type: "ack", frame: this.received });
-    }
+    this.acknowledge();
     return drawn;
+  }
+
+  /** Say what has arrived without drawing it: nobody looks, and the newest is kept for when somebody does. */
+  acknowledge(): void {
+    if (this.received <= this.acknowledged) return;
+    this.acknowledged = this.received;
+    this.send({ type: "ack", frame: this.received });
   }
 
   private subscribe(feed: Feed): void {

@@ -16,3 +16,12 @@ export interface PanelFrame {
   data: Float32Array;
   latest: Float32Array;
 }
+
+/** One value for each column; with a column for each tick that is the sample. */
+export function middles(frame: PanelFrame, signal: number): Float32Array<ArrayBuffer> {
+  const found = new Float32Array(frame.columns);
+  const low = 2 * signal * frame.columns;
+  for (let i = 0; i < frame.columns; i += 1)
+    found[i] = 0.5 * (frame.data[low + i] + frame.data[low + frame.columns + i]);
+  return found;
+}

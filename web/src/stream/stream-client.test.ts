@@ -55,7 +55,13 @@ describe("StreamClient", () => {
     vi.stubGlobal("WebSocket", FakeSocket);
     vi.spyOn(Math, "random").mockReturnValue(0.5);
     FakeSocket.made = [];
-    handlers = { onMessage: vi.fn(), onOpen: vi.fn(), onClose: vi.fn(), explain: vi.fn(async () => undefined) };
+    handlers = {
+      onMessage: vi.fn(),
+      onOpen: vi.fn(),
+      onFrame: vi.fn(),
+      onClose: vi.fn(),
+      explain: vi.fn(async () => undefined),
+    };
     client = new StreamClient(handlers as unknown as StreamHandlers);
     client.connect("ws://bench/stream");
   });

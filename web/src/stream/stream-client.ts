@@ -12,6 +12,8 @@ const REPLY_TIMEOUT_MS = 5000;
 export interface StreamHandlers {
   onMessage(message: ServerMessage): void;
   onOpen(): void;
+  /** A frame has been stored. */
+  onFrame(): void;
   /** `retryAt` is the time of the next attempt on `performance.now()`'s clock, if there will be one. */
   onClose(reason: CloseReason, code: number, retryAt: number | undefined): void;
   /** Asked when a connection never opened: why, if the server can be asked. */
@@ -135,6 +137,7 @@ export class StreamClient {
     const frame = decodeFrame(data);
     this.head = { tick: frame.headTick, dtMs: frame.dtMs, running: frame.running };
     this.feeds.receive(frame);
+    this.handlers.onFrame();
   }
 
   private reply(message: components["schemas"]["Reply"]): void {

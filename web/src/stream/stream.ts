@@ -19,6 +19,10 @@ const patch = (connection: Partial<Connection>) =>
 const client = new StreamClient({
   onMessage: receive,
   onOpen: () => patch({ phase: "open", reason: undefined, retryAt: undefined, staleSince: undefined }),
+  // A hidden page gets no animation frames and slow timers; the server must not take it for a dead one.
+  onFrame: () => {
+    if (document.hidden || performance.now() - loop.lastFrame > STALE_MS) client.feeds.acknowledge();
+  },
   onClose: (reason, _code, retryAt) => {
     const since = useBench.getState().connection.staleSince ?? new Date();
     patch({ phase: retryAt === undefined ? "closed" : "waiting", reason, retryAt, staleSince: since });
@@ -86,8 +90,6 @@ function flushEvents(): void {
 }
 
 setInterval(() => {
-  // A covered window gets no animation frames; taking pictures undrawn keeps the server from giving us up.
-  if (performance.now() - loop.lastFrame > STALE_MS) client.feeds.draw();
   const { connection } = useBench.getState();
   if (connection.phase !== "open") return;
   const silent = performance.now() - client.lastHeard;

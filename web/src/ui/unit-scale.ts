@@ -24,6 +24,8 @@ const BASE: Record<string, [number, string]> = {
   uN: [1e-6, "N"],
   "N/m": [1, "N/m"],
   "N/V": [1, "N/V"],
+  "N s/m": [1, "N·s/m"],
+  "um/V": [1e-6, "m/V"],
   kg: [1e3, "g"],
   mg: [1e-3, "g"],
   F: [1, "F"],

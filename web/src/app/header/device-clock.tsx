@@ -14,7 +14,9 @@ export function DeviceClock() {
         const { bench } = useBench.getState();
         const head = stream.client.head;
         const dt = head.dtMs || bench?.dt_ms || 0;
-        const tick = Math.max(head.dtMs ? head.tick : 0, bench?.state === "running" ? 0 : (bench?.tick ?? 0));
+        // Without a panel that streams there are no frames; the status is a little behind but never still.
+        const framed = bench?.state === "running" && stream.client.feeds.size > 0;
+        const tick = Math.max(head.dtMs ? head.tick : 0, framed ? 0 : (bench?.tick ?? 0));
         const text = formatDeviceTime(tick * dt);
         if (time.current && time.current.textContent !== text) time.current.textContent = text;
         const ticks = `tick ${tick.toLocaleString("en-US").replaceAll(",", "\u2009")}`;

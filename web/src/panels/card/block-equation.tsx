@@ -1,8 +1,8 @@
 import { Popover, UnstyledButton } from "@mantine/core";
 import type { Equation } from "../../api/types";
 import { Formula } from "../../ui/formula";
-import { Prose } from "../../ui/prose";
 import styles from "./card.module.css";
+import { EquationDetail } from "./equation-detail";
 
 /** An equation with its number; where the printed one is wrong, a mark opens what was printed and why not. */
 export function BlockEquation({ equation }: { equation: Equation }) {
@@ -19,34 +19,12 @@ export function BlockEquation({ equation }: { equation: Equation }) {
                 erratum
               </UnstyledButton>
             </Popover.Target>
-            <Popover.Dropdown className={styles.printed}>
-              <h3>As printed</h3>
-              <Printed text={equation.printed} />
-              <h3>As it works</h3>
-              <Formula latex={equation.latex} />
-              {equation.why && (
-                <>
-                  <h3>Why</h3>
-                  <p>
-                    <Prose text={equation.why} />
-                  </p>
-                </>
-              )}
+            <Popover.Dropdown>
+              <EquationDetail equation={equation} />
             </Popover.Dropdown>
           </Popover>
         )}
       </figcaption>
     </figure>
-  );
-}
-
-/** What was printed is an equation, or words about one. */
-function Printed({ text }: { text: string }) {
-  return /[\\^_=]/.test(text) ? (
-    <Formula latex={text} />
-  ) : (
-    <p>
-      <Prose text={text} />
-    </p>
   );
 }

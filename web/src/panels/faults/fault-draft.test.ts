@@ -1,5 +1,6 @@
 import { expect, it } from "vitest";
-import { injectCommand, newDraft } from "./fault-draft";
+import type { BlockCard } from "../../api/types";
+import { injectCommand, newDraft, ownParameters } from "./fault-draft";
 
 it("injects a step now by default", () => {
   expect(injectCommand("added_mass", newDraft(0.05))).toEqual({
@@ -24,4 +25,11 @@ it("carries only what the chosen profile and moment need", () => {
     profile: { kind: "intermittent", period_ms: 2, duty: 0.5 },
     when: "plant.displacement > 2",
   });
+});
+
+it("says where and on which part, as far as that was chosen", () => {
+  const fault = { parameters: [{ name: "severity" }, { name: "profile" }, { name: "start_tick" }, { name: "beam" }] };
+  expect(ownParameters(fault as unknown as BlockCard).map((p) => p.name)).toEqual(["beam"]);
+  const draft = { ...newDraft(1), parameters: { beam: "outer", position: 0.4 } };
+  expect(injectCommand("point_adhesion", draft)).toMatchObject({ parameters: { beam: "outer", position: 0.4 } });
 });

@@ -1,4 +1,4 @@
-import type { Command, FaultProfile } from "../../api/types";
+import type { BlockCard, Command, FaultProfile, Parameter } from "../../api/types";
 
 export interface FaultDraft {
   severity: number;
@@ -9,7 +9,15 @@ export interface FaultDraft {
   moment: "now" | "at" | "when";
   atMs: number;
   when: string;
+  /** What else the fault lets one choose, as far as it was chosen. */
+  parameters: Record<string, unknown>;
 }
+
+const SHARED = ["severity", "profile", "start_tick"];
+
+/** The parameters that are a fault's own. */
+export const ownParameters = (fault: Pick<BlockCard, "parameters">): Parameter[] =>
+  fault.parameters.filter((p) => !SHARED.includes(p.name));
 
 export function newDraft(severity: number): FaultDraft {
   return {
@@ -21,6 +29,7 @@ export function newDraft(severity: number): FaultDraft {
     moment: "now",
     atMs: 0,
     when: "plant.displacement > 2",
+    parameters: {},
   };
 }
 
@@ -33,6 +42,7 @@ export function injectCommand(fault: string, draft: FaultDraft): Command {
         ? { kind: "intermittent", period_ms: draft.periodMs, duty: draft.duty }
         : { kind: "step" };
   const command: Command = { kind: "inject", fault, severity: draft.severity, profile };
+  if (Object.keys(draft.parameters).length > 0) command.parameters = draft.parameters;
   if (draft.moment === "at") return { ...command, at_ms: draft.atMs };
   if (draft.moment === "when") return { ...command, when: draft.when };
   return command;

@@ -2,7 +2,8 @@ import { Button, Group, NumberInput, SegmentedControl, Slider, Stack, TextInput 
 import type { BlockCard, Parameter } from "../../api/types";
 import { Formula } from "../../ui/formula";
 import { unitText } from "../../ui/unit-scale";
-import type { FaultDraft } from "./fault-draft";
+import { ParameterRow } from "../card/parameter-row";
+import { type FaultDraft, ownParameters } from "./fault-draft";
 import styles from "./faults.module.css";
 import { type SeverityScale, severityText } from "./severity";
 
@@ -21,6 +22,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
   const set = (part: Partial<FaultDraft>) => onChange({ ...draft, ...part });
   const number = (key: "durationMs" | "periodMs" | "atMs") => (value: string | number) =>
     typeof value === "number" && set({ [key]: value });
+  const own = ownParameters(fault);
   const factor = scale.percent ? 100 : 1;
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
   return (
@@ -60,6 +62,19 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             onChange={(value) => typeof value === "number" && set({ severity: value / factor })}
           />
         </Group>
+        {own.length > 0 && (
+          <div className={styles.own}>
+            {own.map((entry) => (
+              <ParameterRow
+                key={entry.name}
+                parameter={{ ...entry, live: true }}
+                value={draft.parameters[entry.name] ?? entry.default}
+                staged={false}
+                onChange={(value) => set({ parameters: { ...draft.parameters, [entry.name]: value } })}
+              />
+            ))}
+          </div>
+        )}
         <SegmentedControl
           size="xs"
           fullWidth

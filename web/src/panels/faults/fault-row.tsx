@@ -5,7 +5,8 @@ import type { ActiveFault, BlockCard } from "../../api/types";
 import { send } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
 import { formatNumber } from "../../ui/format";
-import { injectCommand, newDraft } from "./fault-draft";
+import { unitText } from "../../ui/unit-scale";
+import { injectCommand, newDraft, ownParameters } from "./fault-draft";
 import { FaultForm } from "./fault-form";
 import styles from "./faults.module.css";
 import { severityScale, severityText } from "./severity";
@@ -63,6 +64,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
           </Button>
         )}
       </div>
+      {active && <Chosen fault={fault} active={active} />}
       {open && (
         <FaultForm
           fault={fault}
@@ -76,4 +78,17 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
       )}
     </li>
   );
+}
+
+/** What was chosen about a fault that acts, such as where it sits. */
+function Chosen({ fault, active }: { fault: BlockCard; active: ActiveFault }) {
+  const values = (active as { parameters?: Record<string, unknown> }).parameters ?? {};
+  const words = ownParameters(fault)
+    .filter((p) => values[p.name] !== undefined && values[p.name] !== null)
+    .map((p) => {
+      const value = values[p.name];
+      const unit = unitText(p.unit);
+      return `${p.label}: ${typeof value === "number" ? Number(value.toPrecision(4)) : String(value)}${unit && `\u00a0${unit}`}`;
+    });
+  return words.length > 0 && <p className={styles.chosen}>{words.join(", ")}</p>;
 }

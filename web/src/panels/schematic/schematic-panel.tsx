@@ -4,7 +4,6 @@ import { showPanel } from "../../app/layouts";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { unitText } from "../../ui/unit-scale";
 import { instances } from "../card/instances";
 import { BOX, LOOP, type LoopBox, WIRES } from "./loop";
 import styles from "./schematic.module.css";
@@ -17,6 +16,7 @@ export function SchematicPanel() {
   const controllers = useBench((s) => s.bench?.controllers);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const faults = useBench((s) => s.bench?.faults);
+  const rate = useBench((s) => s.bench?.sample_rate_khz);
   const scores = useBench((s) => s.scores);
   const card = useView((s) => s.card);
   const { block } = useCatalog();
@@ -139,8 +139,7 @@ export function SchematicPanel() {
         ))}
       </svg>
       <p className={styles.device}>
-        {String((parameters.device as { id?: string } | undefined)?.id ?? "device")} ·{" "}
-        {unitText("kHz") && `${(parameters.sample_rate_khz as number) ?? ""} kHz`}
+        {String((parameters.device as { id?: string } | undefined)?.id ?? "device")} · {rate} kHz
       </p>
     </section>
   );

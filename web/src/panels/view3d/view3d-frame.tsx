@@ -4,6 +4,7 @@ import { useBench } from "../../stream/bench-store";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { softwareGl } from "../../ui/software-gl";
 import { useOnScreen } from "../../ui/use-on-screen";
+import { CAMERAS, type Camera } from "./cameras";
 import styles from "./view3d.module.css";
 
 const POLL_MS = 1000;
@@ -13,7 +14,8 @@ const HEAD_START_MS = 1200;
 /**
  * The server's 3D page in a frame, loaded only while it can be seen.
  *
- * When its connection closes, the frame waits for the server and is loaded afresh.
+ * When its connection closes, the frame waits for the server and is loaded afresh. Scheme and camera are told to it,
+ * so that neither loads it again.
  */
 export function View3dFrame({ path }: { path: string }) {
   const waiting = useBench((s) => s.connection.phase === "waiting");
@@ -25,6 +27,9 @@ export function View3dFrame({ path }: { path: string }) {
   const [ready, setReady] = useState(false);
   const [loads, setLoads] = useState(0);
   const [closed, setClosed] = useState(false);
+  const [connected, setConnected] = useState(0);
+  const [camera, setCamera] = useState<Camera>("whole");
+  const [address] = useState(() => `${path}?${query(scheme)}`);
 
   useEffect(() => {
     const timer = setTimeout(() => setReady(true), HEAD_START_MS);
@@ -36,7 +41,10 @@ export function View3dFrame({ path }: { path: string }) {
       if (event.source !== frame.current?.contentWindow || event.origin !== window.location.origin) return;
       const state = (event.data as { viser?: string } | null)?.viser;
       if (state === "closed") setClosed(true);
-      if (state === "connected") setClosed(false);
+      if (state === "connected") {
+        setClosed(false);
+        setConnected((n) => n + 1);
+      }
     };
     window.addEventListener("message", listen);
     return () => window.removeEventListener("message", listen);
@@ -53,17 +61,31 @@ export function View3dFrame({ path }: { path: string }) {
     return () => clearInterval(timer);
   }, [closed, path, visible]);
 
+  const tell = (message: { scheme?: string; camera?: Camera }) =>
+    frame.current?.contentWindow?.postMessage(message, window.location.origin);
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a page that has just connected has to be told
+  useEffect(() => tell({ scheme }), [scheme, connected]);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: the same
+  useEffect(() => tell({ camera }), [camera, connected]);
+
+  const look = (next: Camera) => {
+    setCamera(next);
+    tell({ camera: next }); // the same camera again brings the picture back
+  };
+
   return (
     <div ref={place} className={styles.view}>
       {ready && visible && (
-        <iframe
-          key={`${path}-${loads}-${scheme}`}
-          ref={frame}
-          className={styles.frame}
-          src={`${path}?${query(scheme)}`}
-          title="The device in 3D"
-        />
+        <iframe key={`${path}-${loads}`} ref={frame} className={styles.frame} src={address} title="The device in 3D" />
       )}
+      <fieldset className={styles.cameras} aria-label="Camera">
+        {CAMERAS.map(({ name, label, title }) => (
+          <button key={name} type="button" title={title} aria-pressed={name === camera} onClick={() => look(name)}>
+            {label}
+          </button>
+        ))}
+      </fieldset>
       {(closed || waiting) && (
         <div className={styles.veil} role="status">
           The 3D view waits for the server

@@ -8,5 +8,5 @@ export function View3dPanel() {
   if (path === undefined) return <EmptyState title="No bench yet">The device appears here in 3D.</EmptyState>;
   if (path === null)
     return <EmptyState title="No 3D view">This server runs without it; everything else works.</EmptyState>;
-  return <View3dFrame path={path} />;
+  return <View3dFrame key={path} path={path} />;
 }

@@ -1,0 +1,77 @@
+"""Fingers that touch a stator and a shuttle that reaches its stops: what plants with a lateral motion share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from core.block import Context, kernel, parameter
+from core.device.geometry import drawn
+from core.plant.shuttle import OWN, ShuttleParams
+
+(
+    GAP,
+    LIMIT,
+    TOUCH,
+    TOUCH_STIFFNESS,
+    TOUCH_DAMPING,
+    SHORTS,
+    STOP,
+    STOP_STIFFNESS,
+    STOP_DAMPING,
+    PLANT,
+) = range(OWN, OWN + 10)
+"""Packed parameters behind those of every plant; a plant's own start at ``PLANT``."""
+
+
+class ContactParams(ShuttleParams):
+    """What happens where the shuttle touches."""
+
+    gap_um: float | None = parameter(
+        None, "gap between fingers as etched; that of the device unless given", "um", gt=0.2, le=100
+    )
+    contact_clearance_um: float = parameter(0.15, "gap that is left where fingers touch", "um", gt=0, le=0.2)
+    contact_stiffness_n_m: float = parameter(5e3, "stiffness of touching fingers", "N/m", ge=0, le=1e4)
+    contact_damping_ns_m: float = parameter(1.5e-5, "damping of touching fingers", "N s/m", ge=0, le=1e-4)
+    short_on_contact: bool = parameter(True, "touching fingers short their comb")
+    stop_um: float = parameter(20.0, "travel to the end stops", "um", gt=0, le=25)
+    stop_stiffness_n_m: float = parameter(50.0, "stiffness of a stop", "N/m", ge=0, le=5e3)
+    stop_damping_ns_m: float = parameter(2e-5, "damping of a stop", "N s/m", ge=0, le=1e-4)
+
+    def gap(self, context: Context) -> float:
+        """Return the gap in use, um."""
+        return drawn(context).gap_um if self.gap_um is None else self.gap_um
+
+    def packed(self, context: Context) -> list[float]:
+        """Pack gap, contact and stops; the force law holds up to nine tenths of the gap."""
+        gap = self.gap(context)
+        return [
+            gap,
+            0.9 * gap,
+            gap - self.contact_clearance_um,
+            self.contact_stiffness_n_m,
+            self.contact_damping_ns_m * 1e3,
+            float(self.short_on_contact),
+            self.stop_um,
+            self.stop_stiffness_n_m,
+            self.stop_damping_ns_m * 1e3,
+        ]
+
+
+@kernel
+def touch(p: Any, eta: float, rate: float) -> float:
+    """Return the force of a stator on fingers that are ``eta`` off their centre, uN."""
+    over = abs(eta) - p[TOUCH]
+    if over <= 0.0:
+        return 0.0
+    push = p[TOUCH_STIFFNESS] * over
+    return float((-push if eta > 0.0 else push) - p[TOUCH_DAMPING] * rate)
+
+
+@kernel
+def stop(p: Any, x: float, v: float) -> float:
+    """Return the force of the end stops, uN."""
+    over = abs(x) - p[STOP]
+    if over <= 0.0:
+        return 0.0
+    push = p[STOP_STIFFNESS] * over
+    return float((-push if x > 0.0 else push) - p[STOP_DAMPING] * v)

@@ -1,0 +1,186 @@
+"""Devices: those of the catalogue, and any that somebody designs."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from core.device.catalogue import devices
+from core.device.geometry import Geometry
+from core.device.quantities import QUANTITIES
+from core.device.spread import Tolerances
+from core.registry import EquationCard, ParameterCard, equation_card, parameter_cards
+from scenarios.design import Statistics, bode_band, designed, device_figures, process, sensitivities
+from server.api.bodies import Body, StrictRoute
+
+router = APIRouter(prefix="/devices", tags=["devices"], route_class=StrictRoute)
+
+
+class DeviceCard(BaseModel):
+    """A device of the catalogue."""
+
+    id: str
+    title: str
+    source: str
+    metrics: dict[str, float]
+    parameters: dict[str, Any]
+
+
+class Devices(BaseModel):
+    """Every device of the catalogue, and what can be chosen about a drawing."""
+
+    devices: list[DeviceCard]
+    geometry: list[ParameterCard]
+
+
+class Design(Body):
+    """A device and the air around it, as in a scenario."""
+
+    device: dict[str, Any] = Field({}, description="Catalogue id, and values written over it")
+    environment: dict[str, Any] = Field({}, description="Temperature, pressure, humidity")
+
+
+class Figure(BaseModel):
+    """A figure of a device with its equation; no value where the device does not tell."""
+
+    name: str
+    label: str
+    unit: str
+    value: float | None
+    equation: EquationCard
+
+
+class Evaluation(BaseModel):
+    """What a device would be."""
+
+    title: str
+    source: str
+    figures: list[Figure]
+    metrics: dict[str, float] = Field(description="All figures by name")
+    geometry: dict[str, float] | None = Field(description="The drawing, complete; null without one")
+    sensitivities: dict[str, dict[str, float]] = Field(
+        description="Change of each parameter in percent for one step of a number of the drawing"
+    )
+
+
+class BodeOf(Design):
+    """Which Bode diagram."""
+
+    start_hz: float = Field(200.0, gt=0, le=1e8)
+    stop_hz: float = Field(20_000.0, gt=0, le=1e8)
+    points: int = Field(300, ge=2, le=2000)
+    seed: int = Field(1, ge=0, le=2**53, description="Of the devices drawn for the band")
+
+
+class Curve(BaseModel):
+    """A quantity over frequency, and the band it lies in."""
+
+    low: list[float]
+    nominal: list[float]
+    high: list[float]
+
+
+class Bode(BaseModel):
+    """Displacement per volt over that of the nominal device at rest; the sign of the force is left out."""
+
+    frequency_hz: list[float]
+    magnitude_db: Curve
+    phase_deg: Curve
+    static_gain_um_per_v: float
+    band: str = Field(description="What the band is")
+
+
+class SpreadOf(Design):
+    """Which devices to draw from the process."""
+
+    seed: int = Field(1, ge=0, le=2**53)
+    draws: int = Field(2000, ge=2, le=20_000)
+
+
+class SpreadStatistics(BaseModel):
+    """How far one parameter lies apart."""
+
+    variation_pct: float
+    p01: float
+    p50: float
+    p99: float
+
+
+class ProcessSpread(BaseModel):
+    """Devices of one drawing from one process; the first of them as a drawing."""
+
+    assumed: dict[str, float] = Field(description="Standard deviations of the process")
+    statistics: dict[str, SpreadStatistics]
+    geometry: dict[str, float] = Field(description="The numbers of the first device drawn that the process moved")
+
+
+@router.get("")
+def get_devices() -> Devices:
+    """List every device."""
+    return Devices(
+        devices=[
+            DeviceCard(
+                id=device.id,
+                title=device.title,
+                source=device.source,
+                metrics=device.metrics(),
+                parameters=device.model_dump(exclude_none=True, exclude={"id", "title", "source"}),
+            )
+            for device in devices()
+        ],
+        geometry=parameter_cards(Geometry),
+    )
+
+
+@router.post("/evaluate")
+def evaluate(body: Design) -> Evaluation:
+    """Work out the figures of a device in its environment."""
+    spec = designed(body.device, body.environment)
+    found, geometry = device_figures(spec), spec.device.geometry
+    return Evaluation(
+        title=spec.device.title,
+        source=spec.device.source,
+        figures=[
+            Figure(
+                name=quantity.name,
+                label=quantity.label,
+                unit=quantity.unit,
+                value=found.get(quantity.name),
+                equation=equation_card(quantity.equation),
+            )
+            for quantity in QUANTITIES
+        ],
+        metrics=found,
+        geometry=None if geometry is None else geometry.model_dump(),
+        sensitivities={} if geometry is None else sensitivities(geometry),
+    )
+
+
+@router.post("/bode")
+def bode(body: BodeOf) -> Bode:
+    """Return the frequency response of a device with its tolerance band."""
+    spec = designed(body.device, body.environment)
+    band = bode_band(spec, np.geomspace(body.start_hz, body.stop_hz, body.points), body.seed)
+    drawn = spec.device.geometry is not None
+    return Bode(
+        frequency_hz=band.frequency_hz.tolist(),
+        magnitude_db=Curve(low=band.low_db.tolist(), nominal=band.nominal_db.tolist(), high=band.high_db.tolist()),
+        phase_deg=Curve(low=band.low_deg.tolist(), nominal=band.nominal_deg.tolist(), high=band.high_deg.tolist()),
+        static_gain_um_per_v=device_figures(spec)["static_gain_um_per_v"],
+        band="1 to 99 % of devices from the process" if drawn else "mass, damping and stiffness 5 % more or less",
+    )
+
+
+@router.post("/spread")
+def spread(body: SpreadOf) -> ProcessSpread:
+    """Draw devices from the process; the same seed gives the same devices."""
+    found = process(designed(body.device, body.environment), body.draws, body.seed)
+    return ProcessSpread(
+        assumed=asdict(Tolerances()),
+        statistics={name: SpreadStatistics(**asdict(Statistics.of(found, name))) for name in found.found},
+        geometry={name: float(values[0]) for name, values in found.drawn.items()},
+    )

@@ -1,0 +1,186 @@
+"""Experiments on a copy of a live bench; the bench itself does not notice."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Annotated, TypeVar
+
+import numpy as np
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from core.board.board import Board, Checkpoint
+from core.device.frequency import response
+from core.device.identification import Identified
+from core.units import UM_PER_M
+from scenarios.design import device_figures
+from scenarios.plant_cost import plant_costs
+from scenarios.sweep_sine import sweep_sine
+from scenarios.unstable_region import unstable_region
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import RateLimited, ServiceDep, SessionDep
+from server.bench.session import Session
+from server.service import Service
+
+router = APIRouter(prefix="/benches/{bench_id}", tags=["experiments"], route_class=StrictRoute)
+
+MOST_TICKS = 3_000_000
+"""Ticks of one pass of a sweep: some seconds of this machine."""
+CURVE_POINTS = 300
+T = TypeVar("T")
+
+
+class SweptSine(Body):
+    """How to sweep."""
+
+    amplitude_v: float = Field(2.0, gt=0, le=1000)
+    points: int = Field(31, ge=4, le=200, description="Tones of each of the two passes")
+    cycles: float = Field(40.0, ge=2, le=1000, description="Cycles measured at each tone")
+    settle: float = Field(12.0, ge=0, le=100, description="Time constants waited before")
+    start_hz: float | None = Field(None, gt=0)
+    stop_hz: float | None = Field(None, gt=0)
+
+
+class MeasuredTone(BaseModel):
+    """One tone: displacement per volt, its standard error and its phase, the sign of the force left out."""
+
+    frequency_hz: float
+    gain_um_per_v: float
+    error_um_per_v: float
+    phase_deg: float
+
+
+class FittedCurve(BaseModel):
+    """The response of the device found, and that of the nominal one."""
+
+    frequency_hz: list[float]
+    found_um_per_v: list[float]
+    found_deg: list[float]
+    nominal_um_per_v: list[float]
+    nominal_deg: list[float]
+
+
+class Identification(BaseModel):
+    """What a swept sine tells of a bench as it is now."""
+
+    tick: int
+    found: Identified
+    nominal: dict[str, float]
+    tones: list[MeasuredTone]
+    curve: FittedCurve
+
+
+class FoldPoint(BaseModel):
+    """Where the rest under a slowly rising drive ends: travel, voltage, place of the worst corner sideways."""
+
+    x_um: float
+    volts: float
+    lateral_um: float
+
+
+class SafeBoundary(BaseModel):
+    """The speed beyond which the energy suffices to reach the stators, along x."""
+
+    x_um: list[float]
+    speed_um_ms: list[float]
+
+
+class UnstableRegionMap(BaseModel):
+    """Where a bench as it is now pulls in; empty where its plant cannot."""
+
+    tick: int
+    plant: str
+    drive_v: float
+    folds: list[FoldPoint]
+    boundary: SafeBoundary | None
+
+
+class MeasuredPlant(BaseModel):
+    """CPU time of one tick of the whole bench with this plant; null when it cannot have it."""
+
+    name: str
+    title: str
+    ns_per_tick: float | None
+    refused: str
+
+
+class MeasuredPlants(BaseModel):
+    """The cost of every plant, and device time of one tick to compare it with."""
+
+    plants: list[MeasuredPlant]
+    tick_ns: float
+
+
+@router.post("/identification", dependencies=[RateLimited])
+async def identification(body: SweptSine, session: SessionDep, service: ServiceDep) -> Identification:
+    """Identify the device by a swept sine, with the faults and the air it has now."""
+    return await _on_copy(session, service, lambda kept: _identify(kept, body))
+
+
+@router.get("/unstable-region", dependencies=[RateLimited])
+async def region(
+    session: SessionDep, service: ServiceDep, drive_v: Annotated[float, Query(ge=-1000, le=1000)] = 0.0
+) -> UnstableRegionMap:
+    """Map where the shuttle pulls in, for a voltage held on it."""
+    return await _on_copy(session, service, lambda kept: _map(kept, drive_v))
+
+
+@router.get("/plants", dependencies=[RateLimited])
+async def plants(session: SessionDep, service: ServiceDep) -> MeasuredPlants:
+    """Measure what a tick costs with each plant."""
+    costs = await _on_copy(session, service, plant_costs)
+    return MeasuredPlants(plants=[MeasuredPlant(**asdict(cost)) for cost in costs], tick_ns=1e6 * session.dt_ms)
+
+
+async def _on_copy(session: Session, service: Service, work: Callable[[Checkpoint], T]) -> T:
+    """Do something to a copy of a bench, one at a time, beside the loop and the engine."""
+    async with service.experiment_turn:
+        kept = await service.engine.call(lambda: session.board.checkpoint())
+        return await asyncio.to_thread(work, kept)
+
+
+def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
+    board = Board.restore(kept)
+    sweep = sweep_sine(board, **body.model_dump(), most_ticks=MOST_TICKS)
+    force = board.spec.device.signed_force_n_per_v
+    sign = 1.0 if force > 0.0 else -1.0
+    found, nominal = sweep.found, device_figures(board.spec)
+    grid = np.geomspace(sweep.tones[0].frequency_hz, sweep.tones[-1].frequency_hz, CURVE_POINTS)
+    unit = abs(force) * UM_PER_M
+    own = response(found.mass_kg, found.damping_ns_m, found.stiffness_n_m, grid) * unit
+    believed = response(nominal["mass_kg"], nominal["damping_ns_m"], nominal["stiffness_n_m"], grid) * unit
+    return Identification(
+        tick=kept.tick,
+        found=found,
+        nominal=nominal,
+        tones=[
+            MeasuredTone(
+                frequency_hz=tone.frequency_hz,
+                gain_um_per_v=abs(tone.response),
+                error_um_per_v=tone.error,
+                phase_deg=float(np.degrees(np.angle(sign * tone.response))),
+            )
+            for tone in sweep.tones
+        ],
+        curve=FittedCurve(
+            frequency_hz=grid.tolist(),
+            found_um_per_v=np.abs(own).tolist(),
+            found_deg=np.degrees(np.angle(own)).tolist(),
+            nominal_um_per_v=np.abs(believed).tolist(),
+            nominal_deg=np.degrees(np.angle(believed)).tolist(),
+        ),
+    )
+
+
+def _map(kept: Checkpoint, drive_v: float) -> UnstableRegionMap:
+    found = unstable_region(Board.restore(kept), drive_v)
+    edge = found.boundary
+    return UnstableRegionMap(
+        tick=kept.tick,
+        plant=found.plant,
+        drive_v=drive_v,
+        folds=[FoldPoint(**asdict(fold)) for fold in found.folds],
+        boundary=edge and SafeBoundary(x_um=edge.x_um.tolist(), speed_um_ms=edge.speed_um_ms.tolist()),
+    )

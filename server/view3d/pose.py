@@ -1,0 +1,221 @@
+"""What the scene shows of one moment of a bench, read from its history."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from core import registry
+from core.board.history import Float32Array
+from core.board.wiring import needed
+from core.faults.fault import Fault, FaultParams
+from server.bench.session import Session
+from server.view3d.layout import FloatArray, Layout
+from server.view3d.motion import (
+    TURN_EXAGGERATIONS,
+    WANTED_TURN_UM,
+    caption,
+    closed_share,
+    exaggeration,
+    moment,
+    warning,
+)
+
+MOVED = ("plant.displacement", "model.displacement", "plant.rotation")
+SIGNALS = (*MOVED, "plant.shift", "plant.contact", "plant.short", "sensor.displacement")
+LASERS = ("through_wafer", "dual_beam", "doppler")
+"""Sensors that look at the grating with light."""
+APART_UM = 11.0
+"""Least distance of two beams of light, so that they are seen to be two."""
+STEPS = 50
+"""Shades and sizes a severity or a warning can have: so few that they seldom change."""
+
+
+@dataclass(frozen=True)
+class Active:
+    """A fault that acts at the moment shown."""
+
+    block: type[Fault]
+    params: FaultParams
+    severity: float
+
+    @property
+    def share(self) -> float:
+        """Severity over what the fault was injected with."""
+        return self.severity / self.params.severity if self.params.severity else 1.0
+
+
+@dataclass(frozen=True)
+class Laser:
+    """A beam: where it meets the grating, um, exaggerated; whether it goes through the wafer."""
+
+    place_um: float
+    is_through: bool
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One moment.
+
+    Parameters
+    ----------
+    displacement_um, reference_um, estimate_um : float
+        Of the shuttle, its reference model and the winner of the first bank, exaggerated; no estimate without bank.
+    shift_um : float
+        Sideways, true to scale.
+    turn : float
+        Rotation in rad, exaggerated.
+    combs_um : tuple of float
+        Sideways displacement of the fingers at +x and -x, true to scale.
+    warnings : tuple of float
+        How much of the colour of attention these fingers take.
+    contact, short : int
+        Whether fingers touch; bits of the combs that are shorted.
+    faults : tuple of Active
+        What acts.
+    lasers : tuple of Laser
+        Beams of light on the grating.
+    caption : str
+        What is not as in nature.
+    """
+
+    displacement_um: float = 0.0
+    reference_um: float = 0.0
+    estimate_um: float | None = None
+    shift_um: float = 0.0
+    turn: float = 0.0
+    combs_um: tuple[float, float] = (0.0, 0.0)
+    warnings: tuple[float, float] = (0.0, 0.0)
+    contact: int = 0
+    short: int = 0
+    faults: tuple[Active, ...] = ()
+    lasers: tuple[Laser, ...] = ()
+    caption: str = ""
+
+
+class Observer:
+    """Reads the moments of one bench.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    layout : Layout
+        Where the parts of its device are.
+    """
+
+    def __init__(self, session: Session, layout: Layout) -> None:
+        self._session, self._layout = session, layout
+        self._faults: dict[str, type[Any]] = registry.blocks("faults")
+        self._bank = _bank(session)
+        names = (*SIGNALS, *(f"faults.{name}" for name in self._faults), *self._bank)
+        self._indices = session.indices(names)
+        self._known: dict[str, Any] = {}
+        self._factor = self._turn_factor = 1.0
+
+    def look(self) -> Pose:
+        """Return the pose of now, or of the moment the strobe shows."""
+        session, history = self._session, self._session.history
+        head, spec = history.end_tick, session.board.spec
+        if head <= history.first_tick:
+            return Pose()
+        period = session.drive_period_ticks
+        # A bench that runs as fast as possible is strobed like one in real time.
+        rate = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
+        at = moment(head, period, rate, time.monotonic())
+        tick = max(at.tick, history.first_tick)
+        values = history.read(self._indices, tick, tick + 1)[:, 0].astype(float)
+        values[~np.isfinite(values)] = 0.0
+        x, reference, turn, shift, contact, short, measured = values[: len(SIGNALS)].tolist()
+        end = len(SIGNALS) + len(self._faults)
+        self._magnify(history.columns(self._indices[: len(MOVED)], head - round(3 * (period or 1000)), head, 1))
+        plant = spec.plant.params
+        turns = hasattr(plant, "rotation_stiffness_nm")
+        combs = combs_of(shift, 1e-3 * turn, self._layout.tip_um, plant)
+        gap = getattr(plant, "gap_um", self._layout.geometry.gap_um)
+        return Pose(
+            displacement_um=x * self._factor,
+            reference_um=reference * self._factor,
+            estimate_um=self._estimate(measured, values[end:]),
+            shift_um=shift,
+            turn=1e-3 * turn * self._turn_factor,
+            combs_um=combs,
+            warnings=(_step(warning(closed_share(combs[0], gap))), _step(warning(closed_share(combs[1], gap)))),
+            contact=int(contact),
+            short=int(short),
+            faults=self._acting(values[len(SIGNALS) : end]),
+            lasers=self._lasers(spec),
+            caption=caption(self._factor, self._turn_factor if turns else None, at.is_strobed),
+        )
+
+    def _magnify(self, recent: Float32Array) -> None:
+        """Choose the exaggerations from the minima and maxima of late."""
+        largest = np.where(np.isfinite(recent), np.abs(recent), 0.0).max(axis=(1, 2))
+        self._factor = exaggeration(float(largest[:2].max()), self._factor)
+        ends_um = 1e-3 * float(largest[2]) * self._layout.geometry.arm_length_um / 2
+        self._turn_factor = exaggeration(ends_um, self._turn_factor, WANTED_TURN_UM, TURN_EXAGGERATIONS)
+
+    def _estimate(self, measured: float, values: FloatArray) -> float | None:
+        """Return what the winner of the bank predicted: measured minus its residual."""
+        if not len(values):
+            return None
+        winner = int(values[0])
+        return (measured - float(values[1 + winner])) * self._factor if 0 <= winner < len(values) - 1 else None
+
+    def _acting(self, severities: FloatArray) -> tuple[Active, ...]:
+        """Return the faults that act; one healed a moment ago is still known by its last parameters."""
+        self._known |= dict(self._session.board.faults)
+        return tuple(
+            Active(block, self._known[name], severity)
+            for (name, block), severity in zip(self._faults.items(), severities.tolist(), strict=True)
+            if severity != 0.0 and name in self._known
+        )
+
+    def _lasers(self, spec: Any) -> tuple[Laser, ...]:
+        """Return where the light of the sensors that run meets the grating."""
+        in_use = needed(spec)
+        beams: dict[float, bool] = {}
+        for name in LASERS:
+            if name in in_use:
+                beams.setdefault(0.0, name != "doppler")
+                spacing = getattr(spec.sensors[name].params, "spacing_um", 0.0)
+                if spacing:
+                    beams[math.copysign(max(APART_UM, abs(spacing) * self._factor), spacing)] = True
+        return tuple(Laser(*beam) for beam in beams.items())
+
+
+def combs_of(shift_um: float, turn: float, tip_um: float, plant: Any) -> tuple[float, float]:
+    r"""Return how far the fingers at +x and -x are off centre where they are farthest, :math:`y\pm\theta X_r`.
+
+    Parameters
+    ----------
+    shift_um, turn : float
+        Sideways displacement of the centre; rotation in rad.
+    tip_um : float
+        Distance of the finger tips from the centre.
+    plant : BlockParams
+        The plant: combs may be off centre as made.
+    """
+    middle = shift_um + getattr(plant, "misalignment_um", 0.0)
+    lever = (turn + 1e-3 * getattr(plant, "misalignment_mrad", 0.0)) * tip_um
+    return middle + lever, middle - lever
+
+
+def _bank(session: Session) -> tuple[str, ...]:
+    """Return the winner and the residuals of the first bank that runs at every sample, if there is one."""
+    known = {signal.name for signal in session.signals}
+    for name, section in session.board.spec.diagnosers.items():
+        hypotheses = [item.name for item in getattr(section.params, "hypotheses", ())]
+        signals = (f"{name}.winner", *(f"{name}.residual.{item}" for item in hypotheses))
+        if section.every == 1 and hypotheses and known.issuperset(signals):
+            return signals
+    return ()
+
+
+def _step(share: float) -> float:
+    """Round a share."""
+    return round(share * STEPS) / STEPS

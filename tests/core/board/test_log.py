@@ -1,0 +1,93 @@
+"""The log, the digest and the names of signals."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from scenarios.run import run
+from scenarios.schema import Scenario
+from tests.lab import RICH, STORY, document, fault, make
+
+FAST = {"reference.frequency_hz": 2000.0}
+
+
+def test_log_is_numbered_and_only_grows():
+    board = make({}, STORY, base=RICH)
+    seen: list[Any] = []
+    for _ in range(60):
+        board.advance(5)
+        entries = [entry.model_dump() for entry in board.log]
+        assert entries[: len(seen)] == seen
+        seen = entries
+    assert [entry["seq"] for entry in seen] == list(range(1, len(seen) + 1))
+    done = [entry for entry in seen if entry["actor"] == "test" and entry["kind"] != "scheduled"]
+    assert [entry["tick"] for entry in done if entry["kind"] != "set"] == [20, 30, 41, 60, 90, 97, 110]
+    for entry in seen:
+        assert entry["time_ms"] == pytest.approx(entry["tick"] * 0.01)
+        assert entry["text"] and "\n" not in entry["text"]
+
+
+def test_the_order_of_the_log_does_not_depend_on_chunks():
+    def told(chunk: int) -> list[tuple[int, str]]:
+        board = make({}, [fault("added_mass", 0.05, at_sample=30)], base=RICH)
+        while board.tick < 300:
+            board.advance(chunk)
+        return [(entry.tick, entry.text) for entry in board.log]
+
+    assert told(1) == told(300)
+
+
+def test_digest_is_the_hash_of_the_outputs():
+    scenario = Scenario.load({**document({}, RICH), "samples": 1500, "events": [{"at_sample": 9, "switch": "pid"}]})
+    result = run(scenario)
+    assert result.outputs.dtype == np.float64
+    assert result.digest == hashlib.sha256(np.ascontiguousarray(result.outputs).tobytes()).hexdigest()
+    names = [signal.name for signal in result.board.signals if signal.kind == "output"]
+    assert names == result.board.signals.names[: result.outputs.shape[1]]
+
+
+def test_rows_are_the_ticks_asked_for():
+    board = make(FAST)
+    rows = board.advance(10)
+    assert (rows.first_tick, rows.count, rows.outputs.shape[0], rows.taps.shape[0]) == (0, 10, 10, 10)
+    rows = board.advance(100_000)
+    assert rows.first_tick == 10 and rows.count == board.chunk == 512
+    assert board.advance(0).count == 0 and board.tick == 522
+    assert board.value("plant.displacement") == rows.outputs[-1, board.signals.index("plant.displacement")]
+
+
+def test_signals_have_stable_names_units_and_order():
+    signals = make({}, base=RICH).signals
+    for name, unit in {
+        "reference.voltage": "V",
+        "model.displacement": "um",
+        "plant.displacement": "um",
+        "plant.velocity": "um/ms",
+        "sensor.displacement": "um",
+        "drive.voltage": "V",
+        "open_loop.voltage": "V",
+        "pid.voltage": "V",
+        "mrac.voltage": "V",
+        "mrac.augmented_error": "um",
+        "faults.added_mass": "1",
+        "faults.stiffness": "1",
+        "faults.damping": "1",
+        "kalman.probability.m+5": "1",
+        "kalman.residual.healthy": "um",
+        "kalman.winner": "1",
+        "kalman.truth": "1",
+        "mrac.gain.w1": "mixed",
+        "mrac.gain_ideal.r": "mixed",
+    }.items():
+        assert signals[signals.index(name)].name == name
+        assert signals[signals.index(name)].unit == unit
+    assert [signal.index for signal in signals] == list(range(len(signals)))
+    kinds = [signal.kind for signal in signals]
+    assert kinds == sorted(kinds), "outputs before taps"
+    with pytest.raises(InputError):
+        signals.index("plant.displacment")

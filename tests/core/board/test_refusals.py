@@ -1,0 +1,139 @@
+"""What is refused changes nothing; what may change while running does."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from core.board.spec import with_values
+from core.errors import InputError
+from tests.lab import RICH, do, document, fault, inject, inner_digest, make, play, run_digest
+
+FAST = {"reference.frequency_hz": 2000.0}
+
+
+REFUSED: list[tuple[dict[str, Any], str, str]] = [
+    (fault("added_mass", 0.1), "fault", "conflict"),
+    (fault("nothing", 0.1), "fault", "unknown"),
+    (fault("stiffness", -0.95), "severity", "invalid"),
+    (fault("stiffness", 21.0), "severity", "invalid"),
+    (fault("stiffness", 0.1, profile={"kind": "saw"}), "profile.kind", "invalid"),
+    (fault("stiffness", 0.1, profile={"kind": "ramp", "duration_ms": 0}), "profile.duration_ms", "invalid"),
+    (fault("stiffness", 0.1, at_sample=-1), "at_sample", "invalid"),
+    (fault("stiffness", 0.1, at_sample=500, at_ms=7.0), "", "invalid"),
+    ({"kind": "inject", "fault": "stiffness"}, "severity", "invalid"),
+    (fault("stiffness", math.nan), "severity", "invalid"),
+    (fault("stiffness", 0.1, strength=2), "strength", "unknown"),
+    ({"kind": "heal", "faults": ["damping"]}, "faults", "conflict"),
+    ({"kind": "heal", "faults": ["added_mass", "damping"]}, "faults", "conflict"),
+    ({"kind": "heal", "faults": ["nothing"]}, "faults", "unknown"),
+    ({"kind": "switch", "controller": "nothing"}, "controller", "unknown"),
+    ({"kind": "switch", "controller": "open_loop"}, "controller", "conflict"),
+    ({"kind": "set", "values": {}}, "values", "invalid"),
+    ({"kind": "set", "values": {"controller.kind": "nothing"}}, "controller.kind", "unknown"),
+    ({"kind": "set", "values": {"controllers.mrac.filter_pole": 2.0}}, "controllers.mrac.filter_pole", "not_live"),
+    ({"kind": "set", "values": {"sample_rate_khz": 50}}, "sample_rate_khz", "not_live"),
+    ({"kind": "set", "values": {"seed": 9}}, "seed", "not_live"),
+    ({"kind": "set", "values": {"device.mass_kg": 1e-10}}, "device", "not_live"),
+    ({"kind": "set", "values": {"plant.initial_displacement_um": 1.0}}, "plant.initial_displacement_um", "not_live"),
+    ({"kind": "set", "values": {"diagnosers.kalman.every": 2}}, "diagnosers.kalman.every", "not_live"),
+    ({"kind": "set", "values": {"diagnosers.other.kind": "mmae"}}, "diagnosers", "not_live"),
+    ({"kind": "set", "values": {"drive.kind": "analogue"}}, "drive.kind", "not_live"),
+    ({"kind": "set", "values": {"plant.drive": "analogue"}}, "drive.kind", "not_live"),
+    ({"kind": "set", "values": {"sensor.noise_um": -1.0}}, "sensor.noise_um", "invalid"),
+    ({"kind": "set", "values": {"sensor.noise_um": "much"}}, "sensor.noise_um", "invalid"),
+    ({"kind": "set", "values": {"sensor.noise_nm": 1.0}}, "sensor.noise_nm", "unit"),
+    ({"kind": "set", "values": {"sensor.noise_um": 0.3, "sensor.colour": 1}}, "sensor.colour", "unknown"),
+    ({"kind": "set", "values": {"nothing.at_all": 1}}, "nothing", "unknown"),
+    ({"kind": "reset_trip"}, "kind", "conflict"),
+    ({"kind": "explode"}, "kind", "unknown"),
+    ({}, "kind", "unknown"),
+]
+
+
+@pytest.mark.parametrize(("command", "field", "code"), REFUSED, ids=[str(c)[:70] for c, *_ in REFUSED])
+def test_a_refused_command_changes_nothing(command, field, code):
+    board, twin = make({}, base=RICH), make({}, base=RICH)
+    for one in (board, twin):
+        inject(one, added_mass=0.1)
+        play(one, 40)
+    before = inner_digest(board), board.digest(), len(board.log), dict(board.faults), board.spec
+    with pytest.raises(InputError) as error:
+        do(board, command)
+    assert (inner_digest(board), board.digest(), len(board.log), dict(board.faults), board.spec) == before
+    assert error.value.field == field, str(error.value)
+    assert error.value.code == code, str(error.value)
+    assert "\n" not in str(error.value) and len(str(error.value)) < 1000
+    assert set(error.value.as_dict()) == {"code", "message", "field", "hint"}
+    assert run_digest(board, 200) == run_digest(twin, 200)
+
+
+@pytest.mark.parametrize(
+    "command", [fault("added_mass", 50.0, at_sample=90), {"kind": "switch", "controller": "x", "at_ms": 9.0}]
+)
+def test_a_command_for_later_that_can_never_work_is_refused_now(command):
+    board = make(FAST)
+    with pytest.raises(InputError):
+        do(board, command)
+    assert not board.pending and not board.log
+
+
+def test_a_command_for_later_that_no_longer_fits_is_refused_then():
+    board = make(
+        FAST, [fault("added_mass", 0.1, at_sample=10), {"kind": "heal", "faults": ["damping"], "at_sample": 20}]
+    )
+    expected = run_digest(make(FAST, [fault("added_mass", 0.1, at_sample=10)]), 60)
+    assert run_digest(board, 60) == expected
+    entry = board.log[-1]
+    assert (entry.kind, entry.tick, entry.actor) == ("refused", 20, "board") and "damping" in entry.text
+
+
+def test_a_fault_may_change_its_severity():
+    board = make(FAST)
+    inject(board, stiffness=0.1)
+    entry = do(board, fault("stiffness", 0.2))
+    assert entry.old["severity"] == 0.1 and entry.new["severity"] == 0.2
+    assert play(board, 1)["faults.stiffness"][0] == 0.2
+    do(board, fault("stiffness", 0.2, profile={"kind": "ramp"}))
+    assert play(board, 1)["faults.stiffness"][0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("values", "path", "old"),
+    [
+        ({"reference.amplitude_v": 3.0}, "reference.amplitude_v", 10.0),
+        ({"sensor.noise_um": 0.1}, "sensor.noise_um", 0.0),
+        ({"controllers.mrac.adaptation_gain": 0.1}, "controllers.mrac.adaptation_gain", 1.0),
+        ({"controllers.pid.pole": 1.1}, "controllers.pid.pole", 1.3),
+        ({"drive.limit_v": 5.0}, "drive.limit_v", 30.0),
+        ({"guard.travel_um": 9.0}, "guard.travel_um", 25.0),
+        ({"plant.thermal_noise": True}, "plant.thermal_noise", False),
+        ({"reference.kind": "square"}, "reference.kind", "sine"),
+        ({"plant.model": "nonlinear"}, "plant.model", "linear"),
+        ({"controller.kind": "pid"}, "controller.kind", "open_loop"),
+    ],
+)
+def test_live_parameters_change_and_the_log_knows_the_old_value(values, path, old):
+    board = make()
+    play(board, 30)
+    entry = do(board, {"kind": "set", "values": values})
+    assert entry.old == {path: old} and entry.new == values and entry.tick == 30
+    assert run_digest(board, 200) != run_digest(make(), 230) or path in (
+        "controllers.mrac.adaptation_gain",
+        "controllers.pid.pole",
+        "guard.travel_um",
+        "drive.limit_v",
+    )
+
+
+def test_commands_leave_their_values_alone():
+    table = {"kind": "sine", "amplitude_v": 1.0}
+    values = {"reference": table, "reference.amplitude_v": 2.0, "controllers": {"pid": {}}, "controllers.pid.pole": 1.0}
+    with_values(document(), values)
+    assert table == {"kind": "sine", "amplitude_v": 1.0} and values["controllers"] == {"pid": {}}
+    board = make()
+    do(board, {"kind": "set", "values": values})
+    assert table["amplitude_v"] == 1.0
+    assert play(board, 101)["reference.voltage"].max() == pytest.approx(2.0, rel=1e-6)

@@ -1,0 +1,107 @@
+"""A frame of beams at large displacements, written apart from the product's own: corotational elements, many a beam.
+
+Crisfield, Non-linear Finite Element Analysis of Solids and Structures 1 (1991), 7.3: the chord of each element is
+followed exactly, and within it the beam is that of Euler and Bernoulli. Bowing and the loss of stiffness sideways come
+out of the geometry; nothing is fitted.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from core.device.geometry import Geometry
+
+PARTS = 6
+"""Elements of a beam."""
+
+
+class Frame:
+    """The suspension of a drawing; units um, uN."""
+
+    def __init__(self, geometry: Geometry) -> None:
+        places: list[tuple[float, float]] = []
+        self.elements: list[tuple[int, int, float, float]] = []
+        self.fixed: list[int] = []
+        self.rigid: list[int] = []
+        modulus, t = 1e3 * geometry.youngs_modulus_gpa, geometry.thickness_um
+        w, wt = geometry.beam_um, geometry.truss_um
+        beam = (modulus * w * t, modulus * t * w**3 / 12)
+        truss = (modulus * wt * t, modulus * t * wt**3 / 12)
+
+        def chain(a: int, b: int, parts: int, kind: tuple[float, float]) -> None:
+            start, end, last = np.array(places[a]), np.array(places[b]), a
+            for i in range(1, parts):
+                places.append(tuple(start + (end - start) * i / parts))
+                self.elements.append((last, len(places) - 1, *kind))
+                last = len(places) - 1
+            self.elements.append((last, b, *kind))
+
+        for side in (1, -1):
+            tops = []
+            for i, at in enumerate((-1.5, -0.5, 0.5, 1.5)):
+                x, foot = at * geometry.truss_segment_um, 0.5 * side * geometry.plate_width_um
+                places += [(x, foot), (x, foot + side * geometry.beam_length_um)]
+                root, top = len(places) - 2, len(places) - 1
+                (self.rigid if i in (0, 3) else self.fixed).append(root)
+                chain(root, top, PARTS, beam)
+                tops.append(top)
+            for a, b in itertools.pairwise(tops):
+                chain(a, b, 2, truss)
+        self.places = np.array(places)
+        held = {*self.fixed, *self.rigid}
+        self.free = [3 * i + j for i in range(len(places)) if i not in held for j in range(3)]
+
+    def assembled(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return inner forces and their tangent at displacements (ux, uy, turn) of each node."""
+        force, tangent = np.zeros(len(u)), np.zeros((len(u), len(u)))
+        for a, b, ea, ei in self.elements:
+            at = [3 * a, 3 * a + 1, 3 * a + 2, 3 * b, 3 * b + 1, 3 * b + 2]
+            drawn = self.places[b] - self.places[a]
+            chord = drawn + u[at[3:5]] - u[at[0:2]]
+            first, length = np.hypot(*drawn), np.hypot(*chord)
+            c, s = chord / length
+            turn = np.arctan2(drawn[0] * chord[1] - drawn[1] * chord[0], drawn @ chord)
+            t1, t2 = u[at[2]] - turn, u[at[5]] - turn
+            normal = ea * (length - first) / first
+            m1, m2 = 2 * ei / first * (2 * t1 + t2), 2 * ei / first * (t1 + 2 * t2)
+            r = np.array([-c, -s, 0, c, s, 0])
+            z = np.array([s, -c, 0, -s, c, 0])
+            b_matrix = np.array([r, np.eye(6)[2] - z / length, np.eye(6)[5] - z / length])
+            inner = np.array([[ea, 0, 0], [0, 4 * ei, 2 * ei], [0, 2 * ei, 4 * ei]]) / first
+            force[at] += b_matrix.T @ [normal, m1, m2]
+            own = b_matrix.T @ inner @ b_matrix + normal / length * np.outer(z, z)
+            own += (m1 + m2) / (length * length) * (np.outer(r, z) + np.outer(z, r))
+            tangent[np.ix_(at, at)] += own
+        return force, tangent
+
+    def settle(self, travel: float, steps: int) -> np.ndarray:
+        """Return all displacements with the shuttle moved along x; by symmetry nothing shifts or turns it."""
+        u = np.zeros(3 * len(self.places))
+        for share in np.linspace(0, 1, steps + 1)[1:]:
+            for node in self.rigid:
+                u[3 * node] = travel * share
+            for _ in range(40):
+                force, tangent = self.assembled(u)
+                move = np.linalg.solve(tangent[np.ix_(self.free, self.free)], -force[self.free])
+                u[self.free] += move
+                if np.abs(move).max() < 1e-10:
+                    break
+        return u
+
+    def stiffness(self, travel: float) -> tuple[float, np.ndarray]:
+        """Return the force along x and the stiffness of the shuttle in (x, y, theta) at a travel."""
+        u = self.settle(travel, max(1, round(travel)))
+        force, tangent = self.assembled(u)
+        rigid = np.array([3 * i + j for i in self.rigid for j in range(3)])
+        inner = np.linalg.solve(tangent[np.ix_(self.free, self.free)], tangent[np.ix_(self.free, rigid)])
+        condensed = tangent[np.ix_(rigid, rigid)] - tangent[np.ix_(rigid, self.free)] @ inner
+        shape, curved = np.zeros((len(rigid), 3)), 0.0
+        for i, node in enumerate(self.rigid):
+            x, y = self.places[node]  # lever about the centre of the shuttle, which has moved with it
+            shape[3 * i : 3 * i + 3] = [[1, 0, -y], [0, 1, x], [0, 0, 1]]
+            curved -= force[3 * node] * x + force[3 * node + 1] * y  # the roots move on circles
+        whole = shape.T @ condensed @ shape
+        whole[2, 2] += curved
+        return float(sum(force[3 * i] for i in self.rigid)), whole

@@ -1,0 +1,104 @@
+"""One Kalman filter of a bank against scipy and filterpy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from filterpy.kalman import KalmanFilter
+from scipy.linalg import solve_discrete_are
+
+from core.diagnose.mmae import steady_gain
+from tests.physics.bank import FACTORS, NAMES, K, M, model, of_bank, signals
+
+
+def test_steady_gain_has_the_figures_of_the_riccati_equation():
+    phi, gamma = model(FACTORS["healthy"])
+    q, r = 0.3**2, 0.05**2
+    k1, k2, psi = steady_gain(tuple(phi.ravel()), tuple(gamma[:, 0]), q, r, False)
+    assert k1 == pytest.approx(0.1434, rel=0.01)
+    assert k2 == pytest.approx(0.5540, rel=0.01)
+    assert psi / r == pytest.approx(1.167, rel=0.01)
+    prior = solve_discrete_are(phi.T, np.array([[1.0], [0.0]]), gamma @ gamma.T * q, np.array([[r]]))
+    assert psi == pytest.approx(prior[0, 0] + r, rel=1e-9)
+    np.testing.assert_allclose([k1, k2], prior[:, 0] / (prior[0, 0] + r), rtol=1e-9)
+    # the recursion itself, to its limit
+    p = np.eye(2)
+    for _ in range(2000):
+        p = phi @ p @ phi.T + gamma @ gamma.T * q
+        gain = p[:, :1] / (p[0, 0] + r)
+        last, p = p, p - gain @ p[:1]
+    np.testing.assert_allclose([k1, k2], gain[:, 0], rtol=1e-9)
+    assert psi == pytest.approx(last[0, 0] + r, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_filter_step_by_step_against_filterpy(name):
+    trace = signals(600, faults={"added_mass": 0.05})
+    phi, gamma = model(FACTORS[name])
+    kalman = KalmanFilter(dim_x=2, dim_z=1, dim_u=1)
+    kalman.F, kalman.B, kalman.H = phi, gamma, np.array([[1.0, 0.0]])
+    kalman.Q, kalman.R = gamma @ gamma.T * 0.09, np.array([[0.0025]])
+    kalman.x = np.zeros((2, 1))
+    kalman.P = np.diag([1.0, K / M * 1e-6])
+    found, covariance = trace[f"kalman.residual.{name}"], trace[f"kalman.nis.{name}"]
+    for i, z in enumerate(trace["sensor.displacement"]):
+        if i:
+            kalman.predict(u=np.array([[trace["drive.voltage"][i - 1]]]))
+        kalman.update(z)
+        assert found[i] == pytest.approx(kalman.y[0, 0], abs=1e-12)
+        assert covariance[i] == pytest.approx(kalman.y[0, 0] ** 2 / kalman.S[0, 0], rel=1e-9, abs=1e-12)
+
+
+def test_steady_form_is_the_filter_with_the_limit_gain():
+    values = {"diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 0.3, "form": "steady"}}}
+    trace = signals(600, values, {"damping": 0.3})
+    for name in NAMES:
+        phi, gamma = model(FACTORS[name])
+        prior = solve_discrete_are(phi.T, np.array([[1.0], [0.0]]), gamma @ gamma.T * 0.09, np.array([[0.0025]]))
+        psi = prior[0, 0] + 0.0025
+        x = np.zeros(2)
+        for i, z in enumerate(trace["sensor.displacement"]):
+            if i:
+                x = phi @ x + gamma[:, 0] * trace["drive.voltage"][i - 1]
+            residual = z - x[0]
+            assert trace[f"kalman.residual.{name}"][i] == pytest.approx(residual, abs=1e-9)
+            assert trace[f"kalman.nis.{name}"][i] == pytest.approx(residual**2 / psi, rel=1e-6, abs=1e-9)
+            x = x + prior[:, 0] / psi * residual
+
+
+def test_recursive_and_steady_forms_agree_after_200_samples():
+    both = {
+        form: signals(2000, {"diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 0.3, "form": form}}})
+        for form in ("recursive", "steady")
+    }
+    residuals = [of_bank(trace, "residual")[200:] for trace in both.values()]
+    np.testing.assert_allclose(*residuals, atol=1e-9)
+    weights = [of_bank(trace, "probability")[200:] for trace in both.values()]
+    np.testing.assert_allclose(*weights, atol=1e-6)
+    early = [of_bank(trace, "residual")[:40] for trace in both.values()]
+    assert np.abs(early[0] - early[1]).max() > 1e-3
+
+
+def test_matched_filter_is_consistent():
+    """With the noise there is, residuals are white and as large as the filter says."""
+    nis, lag = [], []
+    for seed in range(1, 9):
+        values = {"seed": seed, "diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 0.010}}}
+        trace = signals(20_000, values)
+        nis.append(trace["kalman.nis.healthy"][500:].mean())
+        residual = trace["kalman.residual.healthy"][500:]
+        lag.append(residual[1:] @ residual[:-1] / (residual @ residual))
+    assert 0.98 < np.mean(nis) < 1.02
+    assert abs(np.mean(lag)) < 0.02
+    over = signals(20_000, {"diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 1.0}}})
+    assert over["kalman.nis.healthy"][500:].mean() < 0.9
+
+
+def test_assumed_noise_scales_variances():
+    plain = signals(500)
+    scaled = signals(
+        500, {"diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 0.3, "assumed_noise_scale": 4.0}}}
+    )
+    late = slice(300, None)
+    np.testing.assert_allclose(of_bank(plain, "residual")[late], of_bank(scaled, "residual")[late], atol=1e-8)
+    np.testing.assert_allclose(of_bank(plain, "nis")[late], 4 * of_bank(scaled, "nis")[late], rtol=1e-6, atol=1e-12)

@@ -1,0 +1,109 @@
+"""The score against its definition."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from core.block import Context
+from core.board import score
+from core.diagnose.hypothesis import Hypothesis
+from core.faults.fault import FaultParams
+from scenarios.library import get
+from scenarios.run import run
+from tests.lab import make, play
+from tests.physics.bank import BENCH, NOMINAL, signals
+
+
+def by_definition(winner: np.ndarray, truth: np.ndarray) -> tuple[float, int, list[int | None]]:
+    """Share of right samples; exits from the truth once found; delay to the first of 20 right in a row."""
+    edges = [0, *(np.flatnonzero(np.diff(truth)) + 1), len(truth)]
+    delays: list[int | None] = []
+    exits = 0
+    for start, end in itertools.pairwise(edges):
+        right = winner[start:end] == truth[start:end]
+        found = next((i for i in range(len(right) - 19) if right[i : i + 20].all()), None)
+        delays.append(found)
+        if found is not None:
+            after = right[found:]
+            exits += int(np.sum(after[:-1] & ~after[1:]))
+    return float(np.mean(winner == truth)), exits, delays
+
+
+@given(data=st.data())
+def test_score_against_its_definition(data):
+    factors = [(1.0, 1.0, 1.0), (1.05, 1.0, 1.0), (1.0, 1.1, 1.0)]
+    params = score.Score.Params(
+        hypotheses=[Hypothesis(name=str(i), mass=m, stiffness=k, damping=b) for i, (m, k, b) in enumerate(factors)]
+    )
+    random = np.random.default_rng(data.draw(st.integers(0, 2**32)))
+    winner, truth = [], []
+    for _ in range(data.draw(st.integers(1, 6))):
+        now = int(random.integers(-1, 3))
+        length = int(random.integers(1, 120))
+        wrong = random.random(length) < random.choice([0.0, 0.02, 0.1, 0.5])
+        wrong[: random.integers(0, 40)] = True
+        verdict = np.where(wrong, (now + random.integers(1, 3, length)) % 3, max(now, 0))
+        winner += verdict.tolist()
+        truth += [now] * length
+    context = Context(dt_ms=0.01, every=1, seed=0, device=NOMINAL, model=NOMINAL)
+    p, s = score.Score.pack(params, context), score.Score.state(params, context)
+    w = np.zeros(32)
+    w[16] = 1.0
+    # probability, nis, three scales, drive gain, other, outputs, taps
+    io = np.array([2, 5, 8, 9, 10, 16, 17, 11, 12, 13, 14, 15])
+    for tick, (who, what) in enumerate(zip(winner, truth, strict=True)):
+        w[0] = tick
+        w[2:5] = 0.1
+        w[2 + who] = 0.8
+        w[8:11] = factors[what] if what >= 0 else (1.3, 1.0, 1.0)
+        score.Score.step(p, s, w, io)
+        assert w[11] == who and w[12] == what
+    found = score.read(s, ["0", "1", "2"], winner[-1])
+    share, exits, delays = by_definition(np.array(winner), np.array(truth))
+    assert found.correct_fraction == pytest.approx(share)
+    assert found.false_switches == exits
+    assert found.delays == delays
+    confusion = np.zeros((3, 3), int)
+    for who, what in zip(winner, truth, strict=True):
+        if what >= 0:
+            confusion[what, who] += 1
+    assert found.confusion == confusion.tolist()
+
+
+def test_scenario_scores_against_their_definition():
+    result = run(get("ch5-seven-step"), seed=5)
+    winner, truth = result.signal("kalman.winner"), result.signal("kalman.truth")
+    expected = np.repeat([0, 1, 2, 3, 4, 5, 0], [2000, 1000, 1000, 1000, 1000, 1000, 2000])
+    assert np.array_equal(truth, expected)
+    share, exits, delays = by_definition(winner, truth)
+    metrics = result.metrics
+    assert metrics["diagnosis.kalman.correct_fraction"] == share
+    assert metrics["diagnosis.kalman.false_switches"] == exits
+    assert [metrics[f"diagnosis.kalman.delay_samples.{i}"] for i in range(1, 8)] == delays
+    assert metrics["diagnosis.kalman.mean_delay_samples"] == pytest.approx(np.mean(delays[1:]))
+    found = [entry for entry in result.board.log if entry.kind == "recognised"]
+    assert [entry.old for entry in found] == delays
+    assert [entry.tick for entry in result.board.log if entry.kind == "truth_changed"] == [
+        0, 2000, 3000, 4000, 5000, 6000, 7000,
+    ]  # fmt: skip
+
+
+def test_truth_needs_all_factors_and_is_none_otherwise():
+    assert FaultParams().severity == 0.0
+    trace = signals(50, faults={"added_mass": 0.07})
+    assert np.all(trace["kalman.truth"] == -1)
+    both = signals(50, faults={"added_mass": 0.05, "stiffness": 0.05})
+    assert np.all(both["kalman.truth"] == -1)
+    assert np.all(signals(50, faults={"damping": 0.3})["kalman.truth"] == 5)
+
+
+def test_a_hypothesis_on_the_drive_is_not_the_truth_of_a_healthy_device():
+    bank = {"kind": "mmae", "hypotheses": [{"name": "gain+10", "gain": 1.1}, {"name": "healthy"}]}
+    trace = play(make({**BENCH, "diagnosers": {"kalman": bank}}), 400)
+    assert np.all(trace["kalman.truth"] == 1)
+    assert trace["kalman.correct_fraction"][-1] > 0.9

@@ -1,0 +1,158 @@
+"""The device designer by REST, against the formulas of chapter 1."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+EPSILON_0 = 8.8541878128e-12
+
+
+def ask(live, what, **body):
+    answer = live.http.post(f"/api/v1/devices/{what}", json=body)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def figures(live, **body):
+    return {entry["name"]: entry for entry in ask(live, "evaluate", **body)["figures"]}
+
+
+def test_every_figure_has_its_unit_and_equation_and_errata_say_why(live):
+    found = figures(live, device={"id": "lcr-350"})
+    assert list(found) == [
+        "mass_kg",
+        "stiffness_n_m",
+        "damping_ns_m",
+        "f0_hz",
+        "quality_factor",
+        "static_gain_um_per_v",
+        "force_n_per_v",
+        "pull_in_v",
+    ]
+    for entry in found.values():
+        assert entry["unit"] and entry["equation"]["latex"] and entry["equation"]["source"][0].isdigit()
+        assert (entry["equation"]["printed"] is None) == (entry["equation"]["why"] is None)
+    assert found["stiffness_n_m"]["equation"]["printed"]
+
+
+def test_figures_follow_the_drawing(live):
+    # trusses as wide as anything make guided beams: k = 24 E I / L^3 with I = t w^3 / 12 (limit of 1.3.4)
+    drawn = {"truss_width_um": 400.0, "beam_length_um": 200.0, "fingers": 50}
+    found = figures(live, device={"id": "lcr-350", "geometry": drawn})
+    beam = (2.0 - 2 * 0.23835) * 1e-6
+    stiffness = 2 * 164e9 * 2e-6 * (beam / 200e-6) ** 3
+    assert found["stiffness_n_m"]["value"] == pytest.approx(stiffness, rel=1e-4)
+    assert found["force_n_per_v"]["value"] == pytest.approx(4 * 50 * EPSILON_0 * 2.0 / 2.1 * 10.0, rel=1e-9)
+    mass, damping = found["mass_kg"]["value"], found["damping_ns_m"]["value"]
+    assert found["f0_hz"]["value"] == pytest.approx(math.sqrt(stiffness / mass) / (2 * math.pi), rel=1e-4)
+    assert found["quality_factor"]["value"] == pytest.approx(math.sqrt(stiffness * mass) / damping, rel=1e-4)
+    gain = found["static_gain_um_per_v"]["value"]
+    assert gain == pytest.approx(-1e6 * found["force_n_per_v"]["value"] / stiffness, rel=1e-4)
+
+
+def test_pull_in_is_the_reference_figure_and_needs_a_drawing(live):
+    assert figures(live, device={"id": "lcr-350"})["pull_in_v"]["value"] == pytest.approx(28.08, rel=5e-3)
+    assert figures(live, device={"id": "ch3"})["pull_in_v"]["value"] is None
+
+
+def test_the_environment_counts(live):
+    room = figures(live, device={"id": "ch3"})
+    thin = figures(live, device={"id": "ch3"}, environment={"pressure_pa": 100.0, "temperature_k": 400.0})
+    assert thin["quality_factor"]["value"] > 10 * room["quality_factor"]["value"]
+    # -63 ppm/K of Young's modulus
+    ratio = thin["stiffness_n_m"]["value"] / room["stiffness_n_m"]["value"]
+    assert ratio == pytest.approx(1 - 63e-4, rel=1e-9)
+
+
+def test_a_narrower_beam_is_softer_by_the_cube(live):
+    # 0.1 um per edge off beams and trusses of one width keeps alpha: k ~ w^3 (1.4.2)
+    same = {"beam_width_um": 5.0, "truss_width_um": 5.0, "beam_bias_um": 0.0}
+    found = ask(live, "evaluate", device={"id": "lcr-350", "geometry": same})["sensitivities"]["beam_bias_um"]
+    assert found["stiffness_n_m"] == pytest.approx(100 * ((1 - 0.2 / 5) ** 3 - 1), abs=1e-9)
+    # 0.2 um off a beam of 0.1 um leaves nothing, so that step is not offered
+    thin = {**same, "beam_width_um": 0.1, "truss_width_um": 0.1}
+    assert "beam_bias_um" not in ask(live, "evaluate", device={"id": "lcr-350", "geometry": thin})["sensitivities"]
+
+
+def test_bode_is_the_oscillator_and_the_band_of_given_values_is_its_extreme_devices(live):
+    found = ask(live, "bode", device={"id": "ch3"}, start_hz=100.0, stop_hz=20_000.0, points=101)
+    m, b, k = 2.2090e-10, 7.09e-7, 0.0538
+    w = 2 * np.pi * np.array(found["frequency_hz"])
+    h = k / (k - m * w**2 + 1j * b * w)
+    assert found["magnitude_db"]["nominal"] == pytest.approx(20 * np.log10(abs(h)), abs=1e-9)
+    assert found["phase_deg"]["nominal"] == pytest.approx(np.degrees(np.angle(h)), abs=1e-9)
+    # at rest only k counts: 1 / 0.95 and 1 / 1.05
+    assert found["magnitude_db"]["high"][0] == pytest.approx(-20 * math.log10(0.95), abs=0.02)
+    assert found["magnitude_db"]["low"][0] == pytest.approx(-20 * math.log10(1.05), abs=0.02)
+
+
+def test_the_band_of_a_drawing_is_that_of_devices_drawn_from_the_process(live):
+    found = ask(live, "bode", device={"id": "lcr-350"}, start_hz=1.0, stop_hz=200_000.0, points=60, seed=4)
+    db = {name: np.array(values) for name, values in found["magnitude_db"].items()}
+    assert np.all(db["low"] < db["nominal"]) and np.all(db["nominal"] < db["high"])
+    # far above resonance x / v = F / m w^2: thickness cancels, so the band is narrower than at rest, where k varies
+    width = db["high"] - db["low"]
+    assert width[-1] < 0.5 * width[0]
+    again = ask(live, "bode", device={"id": "lcr-350"}, start_hz=1.0, stop_hz=200_000.0, points=60, seed=4)
+    assert again == found
+
+
+def test_a_device_drawn_from_the_process_is_the_same_for_the_same_seed(live):
+    first, again, other = (ask(live, "spread", device={"id": "lcr-350"}, seed=seed) for seed in (7, 7, 8))
+    assert first == again and first["geometry"] != other["geometry"]
+    for name, sigma in first["assumed"].items():
+        nominal = {"beam_bias_um": 0.23835, "comb_bias_um": 0.05, "thickness_um": 2.0, "film_gap_um": 1.9987}
+        assert abs(first["geometry"][name] - nominal.get(name, 164.0)) <= 3 * sigma
+    # k ~ w^3 with 0.1 um of deviation per width of 1.523 um, and E, t: about a fifth
+    assert 17 < first["statistics"]["stiffness_n_m"]["variation_pct"] < 23
+    drawn = figures(live, device={"id": "lcr-350", "geometry": first["geometry"]})
+    spread = first["statistics"]["stiffness_n_m"]
+    assert 0.7 * spread["p01"] < drawn["stiffness_n_m"]["value"] < 1.4 * spread["p99"]
+
+
+def test_devices_are_drawn_in_their_environment(live):
+    design = {"device": {"id": "lcr-350", "mass_kg": 3e-10}, "environment": {"pressure_pa": 1000.0}}
+    nominal = figures(live, **design)
+    drawn = ask(live, "spread", **design, seed=2, draws=4000)["statistics"]
+    # the median of a nearly symmetric spread; 3 to 10 % apart over sqrt(4000) devices
+    for name in ("mass_kg", "damping_ns_m", "stiffness_n_m", "quality_factor"):
+        assert drawn[name]["p50"] == pytest.approx(nominal[name]["value"], rel=0.02), name
+
+
+@pytest.mark.parametrize(
+    ("what", "body", "field", "words"),
+    [
+        ("evaluate", {"device": {"id": "none-such"}}, "device.id", "unknown"),
+        ("evaluate", {"device": {"id": "lcr-350", "geometry": {"fingers": 0}}}, "device.geometry.fingers", ">= 1"),
+        (
+            "evaluate",
+            {"device": {"id": "lcr-350", "geometry": {"beam_bias_um": 1.0}}},
+            "device.geometry",
+            "nothing is left of the beams",
+        ),
+        (
+            "evaluate",
+            {"device": {"id": "lcr-350", "geometry": {"overlap_um": 61.0}}},
+            "device.geometry",
+            "overlap_um must be <= finger_length_um",
+        ),
+        (
+            "evaluate",
+            {"device": {"id": "lcr-350", "geometry": {"comb_bias_um": -1.0}}},
+            "device.geometry",
+            "the fingers touch",
+        ),
+        ("evaluate", {"device": {}, "environment": {"pressure_pa": -1}}, "environment.pressure_pa", ">= 0.01"),
+        ("evaluate", {"gadget": {}}, "gadget", "unknown field"),
+        ("spread", {"device": {"id": "ch3"}}, "device.id", "no drawing"),
+        ("bode", {"points": 100_000}, "points", "2000"),
+    ],
+)
+def test_what_cannot_be_built_is_refused_in_one_line(live, what, body, field, words):
+    answer = live.http.post(f"/api/v1/devices/{what}", json=body)
+    assert answer.status_code == 422, answer.text
+    error = answer.json()["error"]
+    assert error["field"] == field and words in error["message"], error

@@ -1,0 +1,43 @@
+import { formatNumber } from "../ui/format";
+import styles from "./designer.module.css";
+
+/** Two fingers between three, enlarged: the gap and the overlap that make the force. */
+export function CombDetail({ geometry: g }: { geometry: Record<string, number> }) {
+  const finger = g.finger_width_um - 2 * g.comb_bias_um;
+  const gap = g.finger_gap_um + 2 * g.comb_bias_um;
+  const pitch = 2 * (finger + gap);
+  const length = g.finger_length_um;
+  const whole = 2 * length - g.overlap_um;
+  const tall = 2 * pitch + finger;
+  // across as along, until thin fingers in long combs would vanish
+  const stretch = Math.max(1, (0.34 * whole) / tall);
+  const y = (value: number) => value * stretch;
+  const bars = (count: number, start: number, x: number) =>
+    Array.from({ length: count }, (_, i) => `M${x} ${y(start + i * pitch)}h${length}v${y(finger)}h${-length}z`).join(
+      "",
+    );
+  const text = whole / 24;
+  return (
+    <figure className={styles.detail}>
+      <svg
+        viewBox={`-1 ${-text * 1.6} ${whole + 2} ${y(tall) + text * 3.4}`}
+        role="img"
+        aria-label={`Comb: gap ${formatNumber(gap, 2)} µm, overlap ${formatNumber(g.overlap_um, 1)} µm`}
+      >
+        <path d={bars(3, 0, whole - length)} className={styles.stator} />
+        <path d={bars(2, pitch / 2, 0)} className={styles.shuttle} />
+        <path
+          d={`M${whole - length} ${y(tall) + text * 0.5} H${length} M${whole - length} ${y(tall)} v${text} M${length} ${y(tall)} v${text}`}
+          className={styles.scale}
+        />
+        <text x={whole / 2} y={y(tall) + text * 1.6} fontSize={text} textAnchor="middle" className={styles.detailText}>
+          overlap {formatNumber(g.overlap_um, 1)} µm
+        </text>
+      </svg>
+      <figcaption>
+        Comb as etched: gap {formatNumber(gap, 2)} µm, fingers {formatNumber(finger, 2)} µm wide
+        {stretch > 1 ? `; drawn ${formatNumber(stretch, 1)} times as large across as along` : ""}
+      </figcaption>
+    </figure>
+  );
+}

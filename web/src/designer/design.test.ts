@@ -1,0 +1,47 @@
+import { expect, it } from "vitest";
+import type { Device } from "../api/types";
+import { benchOf, catalogued, changed, designDocument, newDesign, valueIn } from "./design";
+
+const device = {
+  id: "lcr-350",
+  parameters: { bias_v: 10, geometry: { beam_length_um: 350 } },
+} as unknown as Device;
+
+it("writes only what was changed, geometry in its own table", () => {
+  let state = changed(newDesign("lcr-350"), "geometry.beam_length_um", 300, 350);
+  state = changed(state, "bias_v", 12, 10);
+  expect(designDocument(state)).toEqual({
+    device: { id: "lcr-350", bias_v: 12, geometry: { beam_length_um: 300 } },
+    environment: {},
+  });
+  expect(designDocument(changed(state, "bias_v", 10, 10)).device).not.toHaveProperty("bias_v");
+});
+
+it("lets a change win over what the process drew", () => {
+  const drawn = { ...newDesign("lcr-350"), drawn: { seed: 3, geometry: { thickness_um: 1.93, beam_bias_um: 0.3 } } };
+  expect(valueIn(drawn, "geometry.thickness_um", 2)).toBe(1.93);
+  const state = changed(drawn, "geometry.thickness_um", 2.1, 2);
+  expect(valueIn(state, "geometry.thickness_um", 2)).toBe(2.1);
+  expect(designDocument(state).device).toEqual({ id: "lcr-350", geometry: { thickness_um: 2.1, beam_bias_um: 0.3 } });
+  const back = changed(state, "geometry.thickness_um", 2, 2);
+  expect(valueIn(back, "geometry.thickness_um", 2)).toBe(2);
+});
+
+it("reads the catalogue by path", () => {
+  expect(catalogued(device, "geometry.beam_length_um")).toBe(350);
+  expect(catalogued(device, "mass_kg")).toBeUndefined();
+});
+
+it("drives the bench below resonance, within some micrometres", () => {
+  const body = benchOf({ device: { id: "x" } }, "X", {
+    f0_hz: 2484,
+    static_gain_um_per_v: -0.545,
+    quality_factor: 4.86,
+  });
+  expect(body.set).toMatchObject({ "reference.frequency_hz": 2000, sample_rate_khz: 100 });
+  const amplitude = body.set?.["reference.amplitude_v"] as number;
+  // |H| at 0.8 f0 is 1 / |0.36 + 0.8j / Q|
+  expect((amplitude * 0.545) / Math.hypot(0.36, 0.8 / 4.86)).toBeCloseTo(3, 0);
+  const fast = benchOf({}, "X", { f0_hz: 40_000, static_gain_um_per_v: -1e-4, quality_factor: 50 });
+  expect(fast.set).toMatchObject({ sample_rate_khz: 800, "reference.amplitude_v": 10 });
+});

@@ -1,0 +1,78 @@
+import type { Design, Device, NewBench } from "../api/types";
+
+/** What has been changed about a device of the catalogue, and the air around it. */
+export interface DesignState {
+  id: string;
+  /** Values written over the catalogue's, by dotted path below `device`. */
+  changes: Record<string, number>;
+  environment: Record<string, number>;
+  /** What a draw from the process made of the drawing. */
+  drawn: { seed: number; geometry: Record<string, number> } | undefined;
+}
+
+export const AIR: Record<string, number> = { temperature_k: 300, pressure_pa: 101325, humidity_pct: 40 };
+
+export const newDesign = (id: string): DesignState => ({ id, changes: {}, environment: {}, drawn: undefined });
+
+/** The device as a scenario would have it. */
+export function designDocument({ id, changes, environment, drawn }: DesignState): Design {
+  const device: Record<string, unknown> = { id };
+  const geometry: Record<string, number> = { ...drawn?.geometry };
+  for (const [path, value] of Object.entries(changes)) {
+    if (path.startsWith("geometry.")) geometry[path.slice(9)] = value;
+    else device[path] = value;
+  }
+  if (Object.keys(geometry).length > 0) device.geometry = geometry;
+  return { device, environment };
+}
+
+/** One value changed; what the process drew of it gives way. */
+export function changed(state: DesignState, path: string, value: number, original: number): DesignState {
+  const changes = { ...state.changes, [path]: value };
+  if (value === original) delete changes[path];
+  const name = path.replace(/^geometry\./, "");
+  if (!state.drawn || !(name in state.drawn.geometry)) return { ...state, changes };
+  const { [name]: _, ...geometry } = state.drawn.geometry;
+  return { ...state, changes, drawn: { ...state.drawn, geometry } };
+}
+
+/** Value in force: changed, drawn, or the catalogue's. */
+export function valueIn(state: DesignState, path: string, original: number): number {
+  return state.changes[path] ?? state.drawn?.geometry[path.replace(/^geometry\./, "")] ?? original;
+}
+
+/** Value of the catalogue by a dotted path; undefined when the device has none. */
+export function catalogued(device: Device | undefined, path: string): number | undefined {
+  let at: unknown = device?.parameters;
+  for (const key of path.split(".")) at = (at as Record<string, unknown> | undefined)?.[key];
+  return typeof at === "number" ? at : undefined;
+}
+
+const TRAVEL_UM = 3;
+const MOST_V = 10;
+const SAMPLES_PER_PERIOD = 20;
+
+/** A bench with the device on it, driven below its resonance and not beyond some micrometres. */
+export function benchOf(design: Design, title: string, metrics: Record<string, number>): NewBench {
+  const frequency = round(0.8 * metrics.f0_hz);
+  const ratio = 0.8;
+  const gain =
+    Math.abs(metrics.static_gain_um_per_v) /
+    Math.hypot(1 - ratio * ratio, ratio / Math.max(metrics.quality_factor, 1e-6));
+  const amplitude = gain > 0 ? Math.min(MOST_V, TRAVEL_UM / gain) : MOST_V;
+  const khz = Math.max(100, Math.ceil((SAMPLES_PER_PERIOD * metrics.f0_hz) / 1e3));
+  return {
+    scenario: "first-look",
+    paused: false,
+    set: {
+      title: `Designed: ${title}`,
+      device: design.device ?? {},
+      environment: design.environment ?? {},
+      sample_rate_khz: khz,
+      "reference.frequency_hz": frequency,
+      "reference.amplitude_v": round(amplitude),
+    },
+  };
+}
+
+const round = (value: number) => Number(value.toPrecision(2));

@@ -1,0 +1,74 @@
+import { NativeSelect } from "@mantine/core";
+import type { Device, DeviceCatalogue } from "../api/types";
+import { Knob } from "../ui/knob";
+import { AIR, catalogued, changed, type DesignState, newDesign, valueIn } from "./design";
+import styles from "./designer.module.css";
+import { DRAWING, ENVIRONMENT, given, type Knob as KnobOf } from "./knobs";
+
+interface DesignerControlsProps {
+  catalogue: DeviceCatalogue;
+  device: Device;
+  state: DesignState;
+  onChange(state: DesignState): void;
+}
+
+/** Everything that can be turned about a device and the air around it. */
+export function DesignerControls({ catalogue, device, state, onChange }: DesignerControlsProps) {
+  const base = (path: string) => catalogued(device, path);
+  const drawn = base("geometry.beam_length_um") !== undefined;
+  const turn = (knob: KnobOf, original: number) => {
+    const set = (value: number) => onChange(changed(state, knob.path, value, original));
+    const card = catalogue.geometry.find((p) => `geometry.${p.name}` === knob.path);
+    return (
+      <Knob
+        key={knob.path}
+        {...knob}
+        value={valueIn(state, knob.path, original)}
+        original={original}
+        minimum={card?.minimum}
+        maximum={card?.maximum}
+        onMove={set}
+        onChange={set}
+      />
+    );
+  };
+  return (
+    <section className={styles.controls} aria-label="What can be turned">
+      <NativeSelect
+        label="Device"
+        size="xs"
+        value={state.id}
+        data={catalogue.devices.map((d) => ({ value: d.id, label: d.title || d.id }))}
+        onChange={(event) => onChange({ ...newDesign(event.currentTarget.value), environment: state.environment })}
+      />
+      <p className={styles.source}>{device.source}</p>
+      {(drawn ? DRAWING : given(base)).map((group) => (
+        <fieldset key={group.title} className={styles.group}>
+          <legend>{group.title}</legend>
+          {group.knobs.map((knob) => turn(knob, base(knob.path) ?? defaultOf(catalogue, knob.path)))}
+        </fieldset>
+      ))}
+      <fieldset className={styles.group}>
+        <legend>Environment</legend>
+        {ENVIRONMENT.map((knob) => {
+          const set = (value: number) =>
+            onChange({ ...state, environment: { ...state.environment, [knob.path]: value } });
+          return (
+            <Knob
+              key={knob.path}
+              {...knob}
+              value={state.environment[knob.path] ?? AIR[knob.path]}
+              original={AIR[knob.path]}
+              onMove={set}
+              onChange={set}
+            />
+          );
+        })}
+      </fieldset>
+    </section>
+  );
+}
+
+function defaultOf(catalogue: DeviceCatalogue, path: string): number {
+  return Number(catalogue.geometry.find((p) => `geometry.${p.name}` === path)?.default ?? 0);
+}

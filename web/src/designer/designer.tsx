@@ -1,0 +1,136 @@
+import { Button } from "@mantine/core";
+import { IconArrowLeft, IconDice5, IconPlayerPlay } from "@tabler/icons-react";
+import { useEffect, useState } from "react";
+import { api } from "../api/api";
+import type { DeviceCatalogue, Evaluation, ProcessSpread } from "../api/types";
+import { openBench } from "../app/open-bench";
+import { showError } from "../app/send";
+import { setPage } from "../app/view-store";
+import { EmptyState } from "../ui/empty-state";
+import { formatSi } from "../ui/format";
+import { benchOf, catalogued, designDocument, newDesign } from "./design";
+import styles from "./designer.module.css";
+import { DesignerControls } from "./designer-controls";
+import { DeviceView } from "./device-view";
+import { FigureGrid } from "./figure-grid";
+import { ResponseView } from "./response-view";
+import { SensitivityTable } from "./sensitivity-table";
+import { useDesign } from "./use-design";
+
+const FIRST = "lcr-350";
+
+/** The drawing board: turn a number of a device and see at once what it would be. */
+export function Designer() {
+  const [catalogue, setCatalogue] = useState<DeviceCatalogue | undefined>(undefined);
+  const [state, setState] = useState(() => newDesign(FIRST));
+  const [original, setOriginal] = useState<Evaluation | undefined>(undefined);
+  const [spread, setSpread] = useState<ProcessSpread["statistics"][string] | undefined>(undefined);
+  const [busy, setBusy] = useState(false);
+  const { evaluation, bode, drawing, refusal, design } = useDesign(state);
+
+  useEffect(() => {
+    api.deviceCatalogue().then(setCatalogue, showError);
+  }, []);
+  useEffect(() => {
+    api.evaluate({ device: { id: state.id }, environment: {} }).then(setOriginal, showError);
+  }, [state.id]);
+
+  const draw = async () => {
+    const seed = (state.drawn?.seed ?? 0) + 1;
+    const undrawn = { ...state, drawn: undefined };
+    try {
+      const { geometry, statistics } = await api.spread({ ...designDocument(undrawn), seed });
+      setState({ ...undrawn, drawn: { seed, geometry } });
+      setSpread(statistics.f0_hz);
+    } catch (error) {
+      showError(error);
+    }
+  };
+  const use = async () => {
+    if (!evaluation) return;
+    setBusy(true);
+    try {
+      openBench((await api.createBench(benchOf(design, evaluation.title, evaluation.metrics))).id);
+      setPage("bench");
+    } catch (error) {
+      showError(error);
+    } finally {
+      setBusy(false);
+    }
+  };
+
+  const device = catalogue?.devices.find((d) => d.id === state.id);
+  if (!catalogue || !device)
+    return <EmptyState title="Loading the devices">They come from the server's catalogue.</EmptyState>;
+  return (
+    <main className={styles.page}>
+      <header className={styles.top}>
+        <Button size="xs" variant="subtle" leftSection={<IconArrowLeft size={16} />} onClick={() => setPage("bench")}>
+          Bench
+        </Button>
+        <h1>Device designer</h1>
+        {state.drawn && (
+          <span className={styles.drawn}>
+            device {state.drawn.seed} of the process
+            {spread &&
+              `; 98 % of them have f₀ from ${formatSi(spread.p01, "Hz", 3)} to ${formatSi(spread.p99, "Hz", 3)}`}
+          </span>
+        )}
+        {refusal && (
+          <span className={styles.refusal} role="alert">
+            {refusal.body.message}. {refusal.body.hint}
+          </span>
+        )}
+        <div className={styles.actions}>
+          {state.drawn && (
+            <Button size="xs" variant="default" onClick={() => setState({ ...state, drawn: undefined })}>
+              Back to the drawing
+            </Button>
+          )}
+          <Button
+            size="xs"
+            variant="default"
+            leftSection={<IconDice5 size={16} />}
+            disabled={catalogued(device, "geometry.beam_length_um") === undefined}
+            title="A device as the process might make it; the same number gives the same device"
+            onClick={draw}
+          >
+            {state.drawn ? "Draw another" : "Draw one from the process"}
+          </Button>
+          <Button
+            size="xs"
+            leftSection={<IconPlayerPlay size={16} />}
+            loading={busy}
+            disabled={!evaluation || refusal !== undefined}
+            onClick={use}
+          >
+            Use on the bench
+          </Button>
+        </div>
+      </header>
+      <DesignerControls catalogue={catalogue} device={device} state={state} onChange={setState} />
+      {evaluation && bode && drawing ? (
+        <>
+          <section className={styles.drawing} aria-label="Drawing">
+            <DeviceView
+              geometry={evaluation.geometry}
+              title={evaluation.title}
+              onChooseDrawn={() => setState(newDesign(FIRST))}
+            />
+          </section>
+          <section className={styles.figures} aria-label="Figures">
+            <FigureGrid figures={evaluation.figures} original={original?.figures} />
+          </section>
+          <section className={styles.response} aria-label="Frequency response">
+            <ResponseView bode={bode} drawing={drawing} />
+          </section>
+          <section className={styles.sensitivity} aria-label="Sensitivity">
+            <SensitivityTable evaluation={evaluation} />
+          </section>
+        </>
+      ) : (
+        <EmptyState title="Working it out">Figures, drawing and response appear with the first answer.</EmptyState>
+      )}
+    </main>
+  );
+}

@@ -1,0 +1,73 @@
+import { Button } from "@mantine/core";
+import { useMemo } from "react";
+import { EmptyState } from "../ui/empty-state";
+import { formatNumber } from "../ui/format";
+import { CombDetail } from "./comb-detail";
+import styles from "./designer.module.css";
+import { deviceDrawing, rectPath } from "./device-drawing";
+
+const MARGIN = 14;
+const SCALE_BARS = [20, 50, 100, 200, 500];
+
+interface DeviceViewProps {
+  geometry: Record<string, number> | null;
+  title: string;
+  /** Take a device that has a drawing. */
+  onChooseDrawn(): void;
+}
+
+/** The device from above, to scale: beams thinner than a pixel are drawn one pixel wide. */
+export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) {
+  const drawing = useMemo(() => (geometry ? deviceDrawing(geometry) : undefined), [geometry]);
+  if (!drawing || !geometry)
+    return (
+      <EmptyState
+        title="No drawing"
+        action={
+          <Button size="xs" variant="default" onClick={onChooseDrawn}>
+            Take LCR-350
+          </Button>
+        }
+      >
+        {title} is given by its mass, damping and stiffness. A device with a drawing, such as LCR-350, is drawn here.
+      </EmptyState>
+    );
+  const width = drawing.width + 2 * MARGIN;
+  const height = drawing.height + 2 * MARGIN + 26;
+  const bar = SCALE_BARS.filter((um) => um < width / 3).at(-1) ?? SCALE_BARS[0];
+  return (
+    <>
+      <svg
+        className={styles.device}
+        viewBox={`${-width / 2} ${-drawing.height / 2 - MARGIN} ${width} ${height}`}
+        role="img"
+        aria-label={`${title} from above, to scale: ${formatNumber(drawing.width, 0)} by ${formatNumber(drawing.height, 0)} µm`}
+      >
+        <path d={rectPath(drawing.stators)} className={styles.stator} />
+        <path d={rectPath([...drawing.plate, ...drawing.arms])} className={styles.shuttle} />
+        <path d={rectPath(drawing.rotor)} className={styles.shuttle} />
+        <path d={rectPath(drawing.anchors)} className={styles.anchor} />
+        <path d={rectPath([...drawing.beams, ...drawing.trusses])} className={styles.beam} />
+        <g transform={`translate(${-width / 2 + MARGIN} ${drawing.height / 2 + 22})`}>
+          <path d={`M0 -5 V5 M0 0 H${bar} M${bar} -5 V5`} className={styles.scale} />
+          <text x={bar + 8} y={6} className={styles.scaleText}>
+            {bar} µm
+          </text>
+        </g>
+        <g transform={`translate(${width / 2 - MARGIN} ${drawing.height / 2 + 22})`}>
+          <path d="M-70 0 H-4 M-14 -7 L-4 0 L-14 7" className={styles.scale} />
+          <text x={-80} y={6} textAnchor="end" className={styles.scaleText}>
+            x
+          </text>
+        </g>
+      </svg>
+      <ul className={styles.parts}>
+        <li data-part="shuttle">shuttle, moves</li>
+        <li data-part="beam">beams and trusses, bend</li>
+        <li data-part="stator">stators</li>
+        <li data-part="anchor">anchors</li>
+      </ul>
+      <CombDetail geometry={geometry} />
+    </>
+  );
+}

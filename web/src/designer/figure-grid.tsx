@@ -1,0 +1,54 @@
+import { Popover, UnstyledButton } from "@mantine/core";
+import type { Evaluation } from "../api/types";
+import { EquationDetail } from "../panels/card/equation-detail";
+import { formatNumber, formatSi } from "../ui/format";
+import { Formula } from "../ui/formula";
+import styles from "./designer.module.css";
+
+type Figure = Evaluation["figures"][number];
+
+/** What people quote of a device: value, unit, equation, and what changed since the catalogue. */
+export function FigureGrid({ figures, original }: { figures: Figure[]; original: Figure[] | undefined }) {
+  return (
+    <dl className={styles.grid}>
+      {figures.map((figure) => (
+        <div key={figure.name} className={styles.figure}>
+          <dt>
+            {figure.label}
+            <Popover width={400} position="bottom">
+              <Popover.Target>
+                <UnstyledButton
+                  className={styles.equation}
+                  data-erratum={figure.equation.printed !== null}
+                  aria-label={`${figure.label}: equation ${figure.equation.source}${figure.equation.printed ? ", erratum" : ""}`}
+                >
+                  {figure.equation.source}
+                  {figure.equation.printed && " erratum"}
+                </UnstyledButton>
+              </Popover.Target>
+              <Popover.Dropdown>
+                {figure.equation.printed ? (
+                  <EquationDetail equation={figure.equation} />
+                ) : (
+                  <Formula latex={figure.equation.latex} />
+                )}
+              </Popover.Dropdown>
+            </Popover>
+          </dt>
+          <dd>
+            <b>{figure.value === null ? "–" : formatSi(figure.value, figure.unit)}</b>
+            <small>{figure.value === null ? "needs a drawing" : since(figure, original)}</small>
+          </dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+function since({ name, value }: Figure, original: Figure[] | undefined): string {
+  const before = original?.find((f) => f.name === name)?.value;
+  if (!before || value === null) return "";
+  const change = 100 * (value / before - 1);
+  if (Math.abs(change) < 0.05) return "as in the catalogue";
+  return `${change > 0 ? "+" : ""}${formatNumber(change, 1)} %`;
+}

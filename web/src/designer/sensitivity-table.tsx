@@ -1,0 +1,79 @@
+import type { Evaluation } from "../api/types";
+import { formatNumber } from "../ui/format";
+import styles from "./designer.module.css";
+
+const STEPS: [string, string][] = [
+  ["beam_bias_um", "Beams 0.2 µm narrower"],
+  ["comb_bias_um", "Fingers 0.2 µm narrower"],
+  ["thickness_um", "Layer 0.1 µm thicker"],
+  ["film_gap_um", "Gas film 0.1 µm thicker"],
+  ["youngs_modulus_gpa", "Young's modulus 1 GPa higher"],
+];
+
+const COLUMNS: [string, string][] = [
+  ["mass_kg", "m"],
+  ["stiffness_n_m", "k"],
+  ["damping_ns_m", "β"],
+  ["force", "F/V"],
+  ["f0_hz", "f₀"],
+  ["quality_factor", "Q"],
+];
+
+/** What a step of the process does to the device; the beams first, for the stiffness goes with the cube of their width. */
+export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
+  const { geometry, sensitivities } = evaluation;
+  if (!geometry)
+    return (
+      <>
+        <h2 className={styles.heading}>Sensitivity to the process</h2>
+        <p className={styles.source}>
+          This device is given by its figures. Choose one with a drawing, LCR-350, to see what the process does to it.
+        </p>
+      </>
+    );
+  const width = geometry.beam_width_um - 2 * geometry.beam_bias_um;
+  const softer = sensitivities.beam_bias_um?.stiffness_n_m;
+  return (
+    <>
+      <h2 className={styles.heading}>Sensitivity to the process</h2>
+      <table className={styles.table}>
+        <thead>
+          <tr>
+            <th scope="col">If the process makes</th>
+            {COLUMNS.map(([key, sign]) => (
+              <th key={key} scope="col">
+                {sign}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {STEPS.map(([name, words]) => (
+            <tr key={name}>
+              <th scope="row">{words}</th>
+              {COLUMNS.map(([key]) => {
+                const change = sensitivities[name]?.[key];
+                return (
+                  <td key={key} data-large={Math.abs(change ?? 0) >= 10}>
+                    {change === undefined ? "gone" : signed(change)}
+                  </td>
+                );
+              })}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      <p className={styles.source}>
+        Changes in %. The beams are {formatNumber(width, 2)} µm wide as etched
+        {softer === undefined
+          ? ": 0.2 µm less leaves nothing of them."
+          : `; 1 − (1 − 0.2/w)³ (1.4.2) says ${formatNumber(100 * (1 - (1 - 0.2 / width) ** 3), 1)} % softer, the linear rule 3 · 0.2/w ${formatNumber(60 / width, 1)} %.`}
+      </p>
+    </>
+  );
+}
+
+function signed(change: number): string {
+  if (Math.abs(change) < 0.05) return "0";
+  return `${change > 0 ? "+" : ""}${formatNumber(change, 1)}`;
+}

@@ -1,0 +1,54 @@
+import { send } from "../../app/send";
+import { AIR } from "../../designer/design";
+import { ENVIRONMENT } from "../../designer/knobs";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { Knob } from "../../ui/knob";
+import styles from "./environment.module.css";
+import { PlantChoice } from "./plant-choice";
+import { SensorChoice } from "./sensor-choice";
+
+const FRICTION = { label: "Friction dead band", unit: "nN", low: 0, high: 500, step: 1 };
+
+/** What is around the device and how it is modelled and seen: air, friction, sensor, plant. All of it live. */
+export function EnvironmentPanel() {
+  const environment = useBench((s) => s.bench?.parameters.environment) as Record<string, number> | undefined;
+  const faults = useBench((s) => s.bench?.faults);
+  const id = useBench((s) => s.bench?.id);
+  if (!id)
+    return <EmptyState title="No bench yet">Air, friction, sensor and plant of the bench are set here.</EmptyState>;
+
+  const friction = faults?.find((f) => f.name === "stiction")?.severity ?? 0;
+  const rub = (value: number) =>
+    value > 0
+      ? send({ kind: "inject", fault: "stiction", severity: value, profile: { kind: "step" } }, "Friction set")
+      : send({ kind: "heal", faults: ["stiction"] }, "Friction gone");
+  return (
+    <section className={styles.panel} aria-label="Environment">
+      <h2>Air</h2>
+      {ENVIRONMENT.map((knob) => (
+        <Knob
+          key={knob.path}
+          {...knob}
+          value={environment?.[knob.path] ?? AIR[knob.path]}
+          original={AIR[knob.path]}
+          onChange={(value) =>
+            void send({ kind: "set", values: { [`environment.${knob.path}`]: value } }, `${knob.label} set`)
+          }
+        />
+      ))}
+      <Knob
+        {...FRICTION}
+        value={friction}
+        original={0}
+        minimum={0}
+        note="The shuttle sticks while the net force is smaller: the fault stiction, as a slider."
+        onChange={(value) => void rub(value)}
+      />
+      <h2>Sensor</h2>
+      <SensorChoice />
+      <h2>Plant</h2>
+      <PlantChoice />
+    </section>
+  );
+}

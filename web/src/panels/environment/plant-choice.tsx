@@ -1,0 +1,65 @@
+import { Radio } from "@mantine/core";
+import { useEffect, useState } from "react";
+import { api } from "../../api/api";
+import type { MeasuredPlant } from "../../api/types";
+import { useCatalog } from "../../api/use-catalog";
+import { send } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+import { formatNumber } from "../../ui/format";
+import { usePanelVisible } from "../../ui/panel-visible";
+import styles from "./environment.module.css";
+
+/** How much of the physics is computed, live, and what a tick of this bench costs with it. */
+export function PlantChoice() {
+  const id = useBench((s) => s.bench?.id);
+  const model = useBench((s) =>
+    String((s.bench?.parameters.plant as { model?: string } | undefined)?.model ?? "linear"),
+  );
+  const dtMs = useBench((s) => s.bench?.dt_ms ?? 0);
+  const visible = usePanelVisible();
+  const { blocks } = useCatalog();
+  const [costs, setCosts] = useState<MeasuredPlant[]>([]);
+  useEffect(() => {
+    if (!id || !visible) return;
+    let current = true;
+    api.plants(id).then(
+      (found) => current && setCosts(found.plants),
+      () => undefined,
+    );
+    return () => {
+      current = false;
+    };
+  }, [id, visible]);
+  const tickNs = dtMs * 1e6;
+
+  return (
+    <Radio.Group
+      aria-label="Plant"
+      value={model}
+      onChange={(name) => void send({ kind: "set", values: { "plant.model": name } }, `Plant ${name}`)}
+    >
+      {blocks
+        .filter((b) => b.family === "plant")
+        .map((b) => {
+          const cost = costs.find((c) => c.name === b.name);
+          return (
+            <Radio
+              key={b.name}
+              className={styles.plant}
+              size="sm"
+              value={b.name}
+              label={b.title}
+              description={describe(cost, tickNs)}
+            />
+          );
+        })}
+    </Radio.Group>
+  );
+}
+
+function describe(cost: MeasuredPlant | undefined, tickNs: number): string {
+  if (!cost) return "measuring its cost";
+  if (cost.ns_per_tick === null) return `not on this bench: ${cost.refused}`;
+  const times = tickNs / cost.ns_per_tick;
+  return `${formatNumber(cost.ns_per_tick, 0)} ns per tick of the whole bench, ${formatNumber(times, times < 10 ? 1 : 0)} times as fast as real time`;
+}

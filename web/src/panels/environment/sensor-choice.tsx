@@ -1,0 +1,80 @@
+import { Button, NativeSelect, Switch } from "@mantine/core";
+import { useState } from "react";
+import type { BlockCard, Document } from "../../api/types";
+import { useCatalog } from "../../api/use-catalog";
+import { send } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+import { Prose } from "../../ui/prose";
+import styles from "./environment.module.css";
+
+const BYPASS = "ideal";
+
+/** Whether a sensor gives a displacement, so that a controller can be fed by it. */
+export const feeds = (sensor: BlockCard) => sensor.outputs.some((port) => port.name === "displacement");
+
+/** Which sensor feeds the controllers; the bypass is the ideal one, which sees the true displacement. */
+export function SensorChoice() {
+  const parameters = useBench((s) => s.bench?.parameters);
+  const { blocks } = useCatalog();
+  const [last, setLast] = useState("capacitive");
+  const kind = String((parameters?.sensor as Document | undefined)?.kind ?? BYPASS);
+  const sensors = blocks.filter((b) => b.family === "sense");
+  const choices = sensors.filter(feeds);
+  const chosen = sensors.find((b) => b.name === kind);
+  const optical = sensors.filter((b) => !feeds(b));
+  const always = (name: string) =>
+    Boolean(((parameters?.sensors as Document | undefined)?.[name] as Document | undefined)?.always);
+  const use = (name: string) => {
+    if (kind !== BYPASS) setLast(kind);
+    void send({ kind: "set", values: { "sensor.kind": name } }, `Sensor ${name.replaceAll("_", " ")}`);
+  };
+  return (
+    <>
+      <div className={styles.line}>
+        <NativeSelect
+          flex={1}
+          size="xs"
+          aria-label="Sensor that feeds the controllers"
+          value={kind}
+          data={choices.map((b) => ({ value: b.name, label: b.title }))}
+          onChange={(event) => use(event.currentTarget.value)}
+        />
+        <Button
+          size="xs"
+          variant={kind === BYPASS ? "filled" : "default"}
+          aria-pressed={kind === BYPASS}
+          title="Feed the controllers with the true displacement"
+          onClick={() => use(kind === BYPASS ? last : BYPASS)}
+        >
+          Bypass
+        </Button>
+      </div>
+      {chosen && (
+        <p className={styles.note}>
+          <Prose text={chosen.summary} />
+        </p>
+      )}
+      {optical.length > 0 && (
+        <>
+          <p className={styles.note}>
+            Light and its recovery rest at 0 until the sensor in use needs them. Keep one running to watch it:
+          </p>
+          {optical.map((b) => (
+            <Switch
+              key={b.name}
+              size="xs"
+              label={b.title}
+              checked={always(b.name)}
+              onChange={(event) =>
+                void send(
+                  { kind: "set", values: { [`sensors.${b.name}.always`]: event.currentTarget.checked } },
+                  `${b.title} ${event.currentTarget.checked ? "always runs" : "rests until needed"}`,
+                )
+              }
+            />
+          ))}
+        </>
+      )}
+    </>
+  );
+}

@@ -1,0 +1,67 @@
+import type { Identification } from "../../api/types";
+import { formatNumber, formatSi } from "../../ui/format";
+import styles from "./identify.module.css";
+
+type Found = Identification["found"];
+type Key = keyof Found;
+
+const ROWS: { label: string; value: Key; error: Key; nominal: string; unit: string }[] = [
+  { label: "Peak", value: "f_peak_hz", error: "f_peak_error_hz", nominal: "f_peak_hz", unit: "Hz" },
+  { label: "Resonance f₀", value: "f0_hz", error: "f0_error_hz", nominal: "f0_hz", unit: "Hz" },
+  {
+    label: "Quality factor",
+    value: "quality_factor",
+    error: "quality_factor_error",
+    nominal: "quality_factor",
+    unit: "1",
+  },
+  { label: "Mass m", value: "mass_kg", error: "mass_error_kg", nominal: "mass_kg", unit: "kg" },
+  {
+    label: "Stiffness k",
+    value: "stiffness_n_m",
+    error: "stiffness_error_n_m",
+    nominal: "stiffness_n_m",
+    unit: "N/m",
+  },
+  {
+    label: "Damping β",
+    value: "damping_ns_m",
+    error: "damping_error_ns_m",
+    nominal: "damping_ns_m",
+    unit: "N s/m",
+  },
+];
+
+/** What the sweep says of the device, how sure it is, and how far that is from the nominal one. */
+export function IdentifiedTable({ result }: { result: Identification }) {
+  return (
+    <table className={styles.table}>
+      <thead>
+        <tr>
+          <th scope="col">At tick {result.tick}</th>
+          <th scope="col">Measured</th>
+          <th scope="col">Standard error</th>
+          <th scope="col">From nominal</th>
+        </tr>
+      </thead>
+      <tbody>
+        {ROWS.map(({ label, value, error, nominal, unit }) => {
+          const found = Number(result.found[value]);
+          const sigma = Number(result.found[error]);
+          const change = 100 * (found / result.nominal[nominal] - 1);
+          const sure = Math.abs(found - result.nominal[nominal]) > 3 * sigma && Math.abs(change) >= 0.5;
+          return (
+            <tr key={value}>
+              <th scope="row">{label}</th>
+              <td>
+                <b>{formatSi(found, unit, 6)}</b>
+              </td>
+              <td>{formatSi(sigma, unit, 2)}</td>
+              <td data-sure={sure}>{`${change > 0 ? "+" : ""}${formatNumber(change, 2)} %`}</td>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}

@@ -1,0 +1,46 @@
+import { useMemo } from "react";
+import type { Identification } from "../../api/types";
+import { useScheme } from "../../app/use-scheme";
+import { decibels } from "../../ui/bode/bode-data";
+import { BodePlot } from "../../ui/bode/bode-plot";
+import { TRACE_COLOURS } from "../../ui/palette";
+
+/** The measured tones over the response that was fitted and the one that is believed. */
+export function SweepBode({ result }: { result: Identification }) {
+  const scheme = useScheme();
+  const colours = TRACE_COLOURS[scheme];
+  const { curves, points } = useMemo(() => {
+    const { curve, tones, nominal } = result;
+    const rest = Math.abs(nominal.static_gain_um_per_v);
+    const hertz = curve.frequency_hz;
+    return {
+      curves: [
+        {
+          name: "Fitted",
+          colour: colours[1],
+          hertz,
+          db: curve.found_um_per_v.map((gain) => decibels(gain / rest)),
+          deg: curve.found_deg,
+        },
+        {
+          name: "Nominal",
+          colour: colours[0],
+          dash: "8 4",
+          hertz,
+          db: curve.nominal_um_per_v.map((gain) => decibels(gain / rest)),
+          deg: curve.nominal_deg,
+        },
+      ],
+      points: {
+        name: `${tones.length} tones measured`,
+        colour: colours[2],
+        hertz: tones.map((t) => t.frequency_hz),
+        db: tones.map((t) => decibels(t.gain_um_per_v / rest)),
+        // 20 log10(1 + e) is 8.686 e
+        errorDb: tones.map((t) => (8.686 * t.error_um_per_v) / t.gain_um_per_v),
+        deg: tones.map((t) => t.phase_deg),
+      },
+    };
+  }, [result, colours]);
+  return <BodePlot label="Measured tones over the fitted response" curves={curves} points={points} />;
+}

@@ -1,0 +1,157 @@
+import type { UnstableRegion } from "../../api/types";
+import { fontFor } from "../../ui/canvas-font";
+import { CANVAS, type Scheme } from "../../ui/palette";
+import { linearTicks } from "../../ui/ticks";
+import type { UnitScale } from "../../ui/unit-scale";
+import type { Range } from "./phase-range";
+
+export interface PhasePicture {
+  width: number;
+  height: number;
+  x: { range: Range; scale: UnitScale; name: string };
+  y: { range: Range; scale: UnitScale; name: string };
+  points: { x: Float32Array; y: Float32Array };
+  map: UnstableRegion | undefined;
+  /** Which parts of the map lie beneath these signals. */
+  fits: { folds: boolean; boundary: boolean };
+  colour: string;
+  scheme: Scheme;
+  fontSize: number;
+}
+
+const LEFT = 58;
+const BOTTOM = 38;
+const TOP = 8;
+const RIGHT = 12;
+/** The trail fades in so many pieces. */
+const PIECES = 24;
+
+/** A trajectory over the map of the unstable region. */
+export function paintPhase(ctx: CanvasRenderingContext2D, picture: PhasePicture): void {
+  const { width, height, scheme, fontSize } = picture;
+  const ink = CANVAS[scheme];
+  const right = width - RIGHT;
+  const bottom = height - BOTTOM;
+  const px = (value: number) => LEFT + ((value - picture.x.range[0]) / span(picture.x.range)) * (right - LEFT);
+  const py = (value: number) => bottom - ((value - picture.y.range[0]) / span(picture.y.range)) * (bottom - TOP);
+
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
+  ctx.clip();
+  if (picture.map) paintMap(ctx, picture, px, py, { right, bottom, alarm: ink.alarm });
+  ctx.restore();
+
+  ctx.font = fontFor(fontSize, 1);
+  ctx.strokeStyle = ink.grid;
+  ctx.fillStyle = ink.muted;
+  ctx.lineWidth = 1;
+  ctx.textAlign = "center";
+  ctx.textBaseline = "top";
+  for (const tick of scaled(picture.x, (right - LEFT) / 80)) {
+    line(ctx, px(tick), TOP, px(tick), bottom);
+    ctx.fillText(label(tick * picture.x.scale.factor), px(tick), bottom + 4);
+  }
+  ctx.textAlign = "right";
+  ctx.textBaseline = "middle";
+  for (const tick of scaled(picture.y, (bottom - TOP) / 30)) {
+    line(ctx, LEFT, py(tick), right, py(tick));
+    ctx.fillText(label(tick * picture.y.scale.factor), LEFT - 6, py(tick));
+  }
+  ctx.textBaseline = "bottom";
+  ctx.fillText(`${picture.x.name}, ${picture.x.scale.unit}`, right, height - 2);
+  ctx.textAlign = "left";
+  ctx.textBaseline = "top";
+  ctx.fillText(`${picture.y.name}, ${picture.y.scale.unit}`, LEFT + 6, TOP + 2);
+
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
+  ctx.clip();
+  paintTrail(ctx, picture, px, py);
+  ctx.restore();
+}
+
+type Place = (value: number) => number;
+
+function paintMap(
+  ctx: CanvasRenderingContext2D,
+  { map, fits, x, fontSize }: PhasePicture,
+  px: Place,
+  py: Place,
+  frame: { right: number; bottom: number; alarm: string },
+): void {
+  const { right, bottom, alarm } = frame;
+  const edge = fits.boundary ? map?.boundary : undefined;
+  ctx.fillStyle = `${alarm}2e`;
+  if (edge) {
+    ctx.beginPath();
+    ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
+    const inside = new Path2D();
+    for (let i = 0; i < edge.x_um.length; i += 1) inside.lineTo(px(edge.x_um[i]), py(edge.speed_um_ms[i]));
+    for (let i = edge.x_um.length - 1; i >= 0; i -= 1) inside.lineTo(px(edge.x_um[i]), py(-edge.speed_um_ms[i]));
+    inside.closePath();
+    const whole = new Path2D();
+    whole.rect(LEFT, TOP, right - LEFT, bottom - TOP);
+    whole.addPath(inside);
+    ctx.fill(whole, "evenodd");
+    ctx.strokeStyle = alarm;
+    ctx.lineWidth = 1.5;
+    ctx.stroke(inside);
+  }
+  if (!fits.folds || !map) return;
+  ctx.strokeStyle = alarm;
+  ctx.setLineDash([6, 4]);
+  ctx.font = fontFor(fontSize, 1);
+  for (const fold of map.folds) {
+    const at = px(fold.x_um);
+    if (!edge) {
+      if (fold.x_um > 0) ctx.fillRect(at, TOP, px(x.range[1]) - at, bottom - TOP);
+      else ctx.fillRect(LEFT, TOP, at - LEFT, bottom - TOP);
+    }
+    line(ctx, at, TOP, at, bottom);
+  }
+  ctx.setLineDash([]);
+}
+
+function paintTrail(ctx: CanvasRenderingContext2D, { points, colour }: PhasePicture, px: Place, py: Place): void {
+  const count = points.x.length;
+  ctx.strokeStyle = colour;
+  ctx.lineWidth = 1.8;
+  ctx.lineJoin = "round";
+  for (let piece = 0; piece < PIECES; piece += 1) {
+    const from = Math.floor((piece * count) / PIECES);
+    const to = Math.min(count - 1, Math.floor(((piece + 1) * count) / PIECES));
+    ctx.globalAlpha = 0.12 + (0.88 * (piece + 1)) / PIECES;
+    ctx.beginPath();
+    let drawing = false;
+    for (let i = from; i <= to; i += 1) {
+      const there = Number.isFinite(points.x[i]) && Number.isFinite(points.y[i]);
+      if (there && drawing) ctx.lineTo(px(points.x[i]), py(points.y[i]));
+      if (there && !drawing) ctx.moveTo(px(points.x[i]), py(points.y[i]));
+      drawing = there;
+    }
+    ctx.stroke();
+  }
+  ctx.globalAlpha = 1;
+  if (count === 0 || !Number.isFinite(points.x[count - 1])) return;
+  ctx.fillStyle = colour;
+  ctx.beginPath();
+  ctx.arc(px(points.x[count - 1]), py(points.y[count - 1]), 4.5, 0, 2 * Math.PI);
+  ctx.fill();
+}
+
+/** Ticks that are round in the unit shown. */
+function scaled({ range, scale }: PhasePicture["x"], count: number): number[] {
+  return linearTicks(range[0] * scale.factor, range[1] * scale.factor, Math.max(2, count)).map((t) => t / scale.factor);
+}
+
+const label = (value: number) => String(Number(value.toPrecision(6))).replace("-", "−");
+const span = ([low, high]: Range) => high - low;
+
+function line(ctx: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+  ctx.beginPath();
+  ctx.moveTo(Math.round(x1) + 0.5, Math.round(y1) + 0.5);
+  ctx.lineTo(Math.round(x2) + 0.5, Math.round(y2) + 0.5);
+  ctx.stroke();
+}

@@ -1,0 +1,92 @@
+import { Button, NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import { send } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { NumberField } from "../../ui/number-field";
+import styles from "./phase.module.css";
+import { PhasePlot } from "./phase-plot";
+import { mapFits, mapWords } from "./unstable-map";
+import { useUnstableRegion } from "./use-unstable-region";
+
+const WINDOWS_MS = [1, 2, 4, 10, 20, 40];
+
+/** One signal over another, with the map of the unstable region beneath travel and velocity. */
+export function PhasePanel() {
+  const signals = useBench((s) => s.bench?.signals);
+  const plant = useBench((s) =>
+    String((s.bench?.parameters.plant as { model?: string } | undefined)?.model ?? "linear"),
+  );
+  const [x, setX] = useState("plant.displacement");
+  const [y, setY] = useState("plant.velocity");
+  const [windowMs, setWindowMs] = useState(4);
+  const [driveV, setDriveV] = useState(0);
+  const { map, failed } = useUnstableRegion(driveV);
+  if (!signals)
+    return (
+      <EmptyState title="No bench yet">Displacement over velocity appears as soon as a bench is connected.</EmptyState>
+    );
+
+  const names = signals.map((s) => ({ value: s.name, label: s.name.replaceAll("_", " ").replace(".", " · ") }));
+  const fits = mapFits(x, y);
+  const flat = plant !== "planar" && plant !== "slaved_lateral";
+  return (
+    <section className={styles.panel} aria-label="Phase plane">
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          aria-label="Across"
+          value={x}
+          data={names}
+          onChange={(e) => setX(e.currentTarget.value)}
+        />
+        <NativeSelect size="xs" aria-label="Up" value={y} data={names} onChange={(e) => setY(e.currentTarget.value)} />
+        <NativeSelect
+          size="xs"
+          w={84}
+          aria-label="Length of the trail"
+          value={String(windowMs)}
+          data={WINDOWS_MS.map((ms) => ({ value: String(ms), label: `${ms}\u00a0ms` }))}
+          onChange={(e) => setWindowMs(Number(e.currentTarget.value))}
+        />
+        {!flat && fits.boundary && (
+          <span className={styles.held}>
+            map with the drive held at
+            <NumberField
+              label="Drive held"
+              unit="V"
+              value={driveV}
+              minimum={-1000}
+              maximum={1000}
+              onCommit={setDriveV}
+            />
+          </span>
+        )}
+      </div>
+      <PhasePlot x={x} y={y} windowMs={windowMs} map={fits.folds && !flat ? map : undefined} fits={fits} />
+      <p className={styles.words}>
+        {failed ??
+          (flat ? (
+            <>
+              No unstable region: the {plant} plant cannot move sideways. The planar one can.{" "}
+              <Button
+                size="compact-xs"
+                variant="light"
+                onClick={() => send({ kind: "set", values: { "plant.model": "planar" } }, "Planar plant")}
+              >
+                Use the planar plant
+              </Button>
+            </>
+          ) : fits.folds ? (
+            map ? (
+              mapWords(map)
+            ) : (
+              "Working out the unstable region."
+            )
+          ) : (
+            "The unstable region lies beneath a displacement; choose one across."
+          ))}
+      </p>
+    </section>
+  );
+}

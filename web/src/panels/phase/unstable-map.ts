@@ -1,0 +1,37 @@
+import type { UnstableRegion } from "../../api/types";
+import type { Range } from "./phase-range";
+
+const DISPLACEMENTS = ["plant.displacement", "sensor.displacement", "model.displacement"];
+
+/** Whether the map of the unstable region lies beneath two signals: folds need the travel, the boundary its speed too. */
+export function mapFits(x: string, y: string): { folds: boolean; boundary: boolean } {
+  const folds = DISPLACEMENTS.includes(x);
+  return { folds, boundary: folds && y === "plant.velocity" };
+}
+
+/** What an axis must hold to show the map: the boundary where there is one, else the folds. */
+export function mapExtent(map: UnstableRegion | undefined, axis: "x" | "y"): Range | undefined {
+  if (!map) return undefined;
+  if (map.boundary) {
+    const values = axis === "x" ? map.boundary.x_um : map.boundary.speed_um_ms;
+    const most = Math.max(...values.map(Math.abs));
+    return axis === "y" ? [-most * 1.15, most * 1.15] : [Math.min(...values) * 1.1, Math.max(...values) * 1.1];
+  }
+  if (axis === "y" || map.folds.length === 0) return undefined;
+  const places = map.folds.map((f) => f.x_um);
+  return [Math.min(...places, 0) * 1.15, Math.max(...places, 0) * 1.15];
+}
+
+/** In words what the map shows, or why there is none. */
+export function mapWords(map: UnstableRegion): string {
+  if (map.folds.some((f) => f.x_um === 0)) return "The rest itself is unstable: less bias is needed.";
+  const fold = map.folds[0];
+  const text = fold
+    ? `Dashed: a slow drive folds at ${Math.abs(fold.x_um).toFixed(2)} µm and ${Math.abs(fold.volts).toFixed(2)} V.`
+    : "";
+  if (map.boundary) return `${text} Shaded: the energy suffices to pull in.`.trim();
+  if (fold)
+    return `${text} Shaded: beyond it. With the drive held at ${map.drive_v} V nothing within the travel pulls in.`;
+  if (map.plant === "planar" || map.plant === "slaved_lateral") return "Nothing within the travel pulls in.";
+  return "";
+}

@@ -1,0 +1,51 @@
+import { NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatSi } from "../../ui/format";
+import styles from "../phase/phase.module.css";
+import { SpectrumPlot } from "./spectrum-plot";
+
+const TICKS = [512, 1024, 2048, 4096];
+/** Shares of the whole band, which ends at half the sample rate. */
+const BANDS = [20, 5, 1];
+
+/** The tones in a signal, live: every tick of the window counts, so nothing beyond the band folds back into it. */
+export function SpectrumPanel() {
+  const signals = useBench((s) => s.bench?.signals);
+  const dtMs = useBench((s) => s.bench?.dt_ms);
+  const [signal, setSignal] = useState("sensor.displacement");
+  const [ticks, setTicks] = useState(4096);
+  const [share, setShare] = useState(5);
+  if (!signals || !dtMs)
+    return <EmptyState title="No bench yet">The tones of a signal appear as soon as a bench is connected.</EmptyState>;
+  return (
+    <section className={styles.panel} aria-label="Spectrum">
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          aria-label="Signal"
+          value={signal}
+          data={signals.map((s) => ({ value: s.name, label: s.name.replaceAll("_", " ").replace(".", " · ") }))}
+          onChange={(e) => setSignal(e.currentTarget.value)}
+        />
+        <NativeSelect
+          size="xs"
+          aria-label="Length of the record"
+          value={String(ticks)}
+          data={TICKS.map((n) => ({ value: String(n), label: `${n} ticks` }))}
+          onChange={(e) => setTicks(Number(e.currentTarget.value))}
+        />
+        <NativeSelect
+          size="xs"
+          aria-label="Band"
+          value={String(share)}
+          data={BANDS.map((n) => ({ value: String(n), label: `to ${formatSi(0.5 / dtMs / n, "kHz", 3)}` }))}
+          onChange={(e) => setShare(Number(e.currentTarget.value))}
+        />
+        <span className={styles.held}>bins of {formatSi(1 / (ticks * dtMs), "kHz", 3)}, Hann window</span>
+      </div>
+      <SpectrumPlot signal={signal} ticks={ticks} dtMs={dtMs} highest={0.5 / dtMs / share} />
+    </section>
+  );
+}

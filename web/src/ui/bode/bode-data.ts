@@ -1,0 +1,46 @@
+/** One response over frequency. */
+export interface BodeCurve {
+  name: string;
+  colour: string;
+  dash?: string;
+  hertz: number[];
+  db: number[];
+  deg: number[];
+}
+
+/** Where responses may lie. */
+export interface BodeBand {
+  name: string;
+  hertz: number[];
+  db: { low: number[]; high: number[] };
+  deg: { low: number[]; high: number[] };
+}
+
+/** Tones as measured, with what the magnitude may be off by. */
+export interface BodePoints {
+  name: string;
+  colour: string;
+  hertz: number[];
+  db: number[];
+  errorDb: number[];
+  deg: number[];
+}
+
+export const decibels = (ratio: number): number => 20 * Math.log10(Math.max(Math.abs(ratio), 1e-12));
+
+/** Ends of an axis that holds all values with a little air, on round numbers. */
+export function dbRange(values: number[]): [number, number] {
+  const finite = values.filter(Number.isFinite);
+  const low = Math.min(...finite, 0);
+  const high = Math.max(...finite, 0);
+  return [Math.max(-120, Math.floor(low / 10) * 10), Math.ceil((high + 2) / 10) * 10];
+}
+
+/** Index of the sample nearest to a frequency, on a logarithmic axis. */
+export function nearest(hertz: readonly number[], at: number): number {
+  let best = 0;
+  hertz.forEach((f, i) => {
+    if (Math.abs(Math.log(f / at)) < Math.abs(Math.log(hertz[best] / at))) best = i;
+  });
+  return best;
+}

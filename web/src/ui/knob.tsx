@@ -1,0 +1,97 @@
+import { ActionIcon, Slider, Tooltip } from "@mantine/core";
+import { IconArrowBackUp } from "@tabler/icons-react";
+import { useState } from "react";
+import styles from "./knob.module.css";
+import { NumberField } from "./number-field";
+import { positionOf, valueAt } from "./slider-scale";
+import { unitText } from "./unit-scale";
+
+interface KnobProps {
+  label: string;
+  unit: string;
+  /** Ends of the slider; exact entry may go beyond, to the limits. */
+  low: number;
+  high: number;
+  step: number;
+  log?: boolean;
+  value: number;
+  original: number;
+  minimum?: number | null;
+  maximum?: number | null;
+  note?: string;
+  /** While the slider moves, if that should show at once. */
+  onMove?(value: number): void;
+  onChange(value: number): void;
+}
+
+/** A slider in words with exact entry, its unit, a mark where it was, and the way back there. */
+export function Knob(props: KnobProps) {
+  const {
+    label,
+    unit,
+    low,
+    high,
+    step,
+    log = false,
+    value,
+    original,
+    minimum,
+    maximum,
+    note,
+    onMove,
+    onChange,
+  } = props;
+  const [draft, setDraft] = useState<number | undefined>(undefined);
+  const scale = { low, high, log };
+  const shown = draft ?? value;
+  const isOriginal = Math.abs(value - original) <= 1e-9 * Math.abs(original);
+  const take = (position: number) => valueAt(position, scale, step);
+  return (
+    <div className={styles.knob} data-changed={!isOriginal}>
+      <div className={styles.line}>
+        <span className={styles.label}>{label}</span>
+        {!isOriginal && (
+          <Tooltip label={`Back to ${Number(original.toPrecision(4))} ${unitText(unit)}`}>
+            <ActionIcon
+              size={20}
+              variant="subtle"
+              aria-label={`${label}: back to ${Number(original.toPrecision(4))}`}
+              onClick={() => onChange(original)}
+            >
+              <IconArrowBackUp size={13} />
+            </ActionIcon>
+          </Tooltip>
+        )}
+        <NumberField
+          label={label}
+          unit={unitText(unit)}
+          value={Number(shown.toPrecision(6))}
+          minimum={minimum ?? null}
+          maximum={maximum ?? null}
+          integer={step === 1 && unit === ""}
+          onCommit={onChange}
+        />
+      </div>
+      <Slider
+        size="xs"
+        thumbSize={14}
+        min={0}
+        max={1}
+        step={0.001}
+        label={null}
+        thumbLabel={label}
+        value={positionOf(shown, scale)}
+        marks={[{ value: positionOf(original, scale) }]}
+        onChange={(position) => {
+          setDraft(take(position));
+          onMove?.(take(position));
+        }}
+        onChangeEnd={(position) => {
+          setDraft(undefined);
+          onChange(take(position));
+        }}
+      />
+      {note && <small className={styles.note}>{note}</small>}
+    </div>
+  );
+}
