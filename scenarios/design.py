@@ -41,8 +41,7 @@ def designed(device: dict[str, Any], environment: dict[str, Any]) -> Spec:
 def device_figures(spec: Spec) -> dict[str, float]:
     """Return the figures of the device in its environment, by the names of its metrics without ``device.``."""
     found = {name.removeprefix("device."): value for name, value in device_metrics(spec).items()}
-    pull_in = device_pull_in(spec.device)
-    return found if pull_in is None else {**found, "pull_in_v": pull_in}
+    return {**found, "pull_in_v": device_pull_in(spec.device)}
 
 
 def sensitivities(geometry: Geometry) -> dict[str, dict[str, float]]:

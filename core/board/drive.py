@@ -7,9 +7,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, FloatArray, Port, kernel, parameter
+from core.block import TIME_MS, Block, BlockParams, Context, FloatArray, Port, kernel, parameter
+from core.noise import key, uniform
 
-LIMIT, QUANTUM = range(2)
+LIMIT, QUANTUM, DITHER, CHIPS, KEY = range(5)
 COMMAND, MIDDLE_IN, END_IN, VOLTAGE, MIDDLE, END, CHARGE, SATURATED = range(8)
 
 
@@ -26,14 +27,17 @@ def convert(p: Any, u: float) -> float:
 
 def drive_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Apply the voltage asked for, as far as the drive can."""
-    u = w[io[COMMAND]]
+    dither = 0.0
+    if p[DITHER] > 0.0:
+        dither = p[DITHER] if uniform(p[KEY], math.floor(w[TIME_MS] * p[CHIPS])) < 0.5 else -p[DITHER]
+    u = w[io[COMMAND]] + dither
     w[io[VOLTAGE]] = convert(p, u)
-    if w[io[MIDDLE_IN]] == u and w[io[END_IN]] == u:
+    if w[io[MIDDLE_IN]] == w[io[COMMAND]] and w[io[END_IN]] == w[io[COMMAND]]:
         w[io[MIDDLE]] = w[io[VOLTAGE]]
         w[io[END]] = w[io[VOLTAGE]]
     else:
-        w[io[MIDDLE]] = convert(p, w[io[MIDDLE_IN]])
-        w[io[END]] = convert(p, w[io[END_IN]])
+        w[io[MIDDLE]] = convert(p, w[io[MIDDLE_IN]] + dither)
+        w[io[END]] = convert(p, w[io[END_IN]] + dither)
     w[io[CHARGE]] += w[io[VOLTAGE]]
     w[io[SATURATED]] = 1.0 if abs(u) > p[LIMIT] else 0.0
 
@@ -60,6 +64,14 @@ class Drive(Block):
 
         limit_v: float = parameter(30.0, "limit to either side", "V", gt=0, le=1000)
         quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
+        dither_v: float = parameter(
+            0.0,
+            "random signs added to what the controller asks for, so that a constant drive tells something",
+            "V",
+            ge=0,
+            le=100,
+        )
+        dither_rate_hz: float = parameter(10_000.0, "signs per second", "Hz", gt=0, le=1e6)
         kind: Literal["held", "analogue"] = parameter(
             "held", "held by a converter, or an analogue generator (open loop only)", live=False
         )
@@ -67,6 +79,7 @@ class Drive(Block):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        return np.array([params.limit_v, params.quantum_v])
+        dither = [params.dither_v, params.dither_rate_hz / 1e3, key(context.seed, "drive.dither")]
+        return np.array([params.limit_v, params.quantum_v, *dither])
 
     step = drive_step

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
-from pydantic import model_validator
 
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, parameter, settled
 from core.device.oscillator import transition
@@ -43,9 +42,11 @@ def regions_step(p: Any, s: Any, w: Any, io: Any) -> None:
         s[POWER] = 0.0
         s[SAMPLES] = 0.0
         w[io[LOSS]] = loss
-        w[io[REGION]] = (
-            0.0 if loss < p[DEGRADED_AT] else 1.0 if loss < p[UNACCEPTABLE_AT] else 2.0 if loss < p[DANGER_AT] else 3.0
-        )
+        region = 0.0
+        for i in range(3):
+            if loss >= p[DEGRADED_AT + i]:
+                region = 1.0 + i
+        w[io[REGION]] = region
     if abs(y) > p[DANGER_UM]:
         w[io[REGION]] = 3.0
 
@@ -84,12 +85,6 @@ class Regions(Block):
             None, "samples of a comparison; a period of the tone unless given", ge=2, le=1_000_000
         )
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
-
-        @model_validator(mode="after")
-        def _in_order(self) -> Self:
-            if not self.degraded_above <= self.unacceptable_above <= self.danger_above:
-                raise ValueError("needs degraded_above <= unacceptable_above <= danger_above")
-            return self
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

@@ -45,12 +45,12 @@ class Design(Body):
 
 
 class Figure(BaseModel):
-    """A figure of a device with its equation; no value where the device does not tell."""
+    """A figure of a device with its equation."""
 
     name: str
     label: str
     unit: str
-    value: float | None
+    value: float
     equation: EquationCard
 
 
@@ -149,7 +149,7 @@ def evaluate(body: Design) -> Evaluation:
                 name=quantity.name,
                 label=quantity.label,
                 unit=quantity.unit,
-                value=found.get(quantity.name),
+                value=found[quantity.name],
                 equation=equation_card(quantity.equation),
             )
             for quantity in QUANTITIES

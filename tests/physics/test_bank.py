@@ -47,7 +47,8 @@ def reference_bank(z: np.ndarray, u: np.ndarray, floor: float) -> np.ndarray:
 
 @pytest.mark.parametrize("floor", [1e-3, 0.0])
 def test_probabilities_against_an_independent_bank(floor):
-    scenario = with_values(get("ch5-seven-step"), {"diagnosers.kalman.probability_floor": floor})
+    values = {"diagnosers.kalman.probability_floor": floor, "diagnosers.kalman.least_drive_v": 0.0}
+    scenario = with_values(get("ch5-seven-step"), values)
     result = run(scenario, seed=11)
     names = [item["name"] for item in scenario.document["diagnosers"]["kalman"]["hypotheses"]]
     assert names == NAMES
@@ -61,7 +62,8 @@ def test_probabilities_against_an_independent_bank(floor):
 
 
 def test_first_probabilities_against_filterpy_bank():
-    values = {"diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 0.3, "probability_floor": 0.0}}}
+    bank = {"kind": "mmae", "process_noise_v": 0.3, "probability_floor": 0.0, "least_drive_v": 0.0}
+    values = {"diagnosers": {"kalman": bank}}
     trace = signals(60, values, {"stiffness": 0.05})
     filters = []
     for factors in FACTORS.values():

@@ -1324,7 +1324,7 @@ export interface components {
         };
         /**
          * Figure
-         * @description A figure of a device with its equation; no value where the device does not tell.
+         * @description A figure of a device with its equation.
          */
         Figure: {
             /** Name */
@@ -1334,7 +1334,7 @@ export interface components {
             /** Unit */
             unit: string;
             /** Value */
-            value: number | null;
+            value: number;
             equation: components["schemas"]["EquationCard"];
         };
         /**

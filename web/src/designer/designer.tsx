@@ -119,7 +119,11 @@ export function Designer() {
             />
           </section>
           <section className={styles.figures} aria-label="Figures">
-            <FigureGrid figures={evaluation.figures} original={original?.figures} />
+            <FigureGrid
+              figures={evaluation.figures}
+              original={original?.figures}
+              drawn={evaluation.geometry !== null}
+            />
           </section>
           <section className={styles.response} aria-label="Frequency response">
             <ResponseView bode={bode} drawing={drawing} />

@@ -7,8 +7,16 @@ import styles from "./designer.module.css";
 
 type Figure = Evaluation["figures"][number];
 
+interface FigureGridProps {
+  figures: Figure[];
+  /** Those of the device as the catalogue has it. */
+  original: Figure[] | undefined;
+  /** Whether the device has a drawing; without one, what needs the beams takes those of LCR-350. */
+  drawn: boolean;
+}
+
 /** What people quote of a device: value, unit, equation, and what changed since the catalogue. */
-export function FigureGrid({ figures, original }: { figures: Figure[]; original: Figure[] | undefined }) {
+export function FigureGrid({ figures, original, drawn }: FigureGridProps) {
   return (
     <dl className={styles.grid}>
       {figures.map((figure) => (
@@ -36,8 +44,10 @@ export function FigureGrid({ figures, original }: { figures: Figure[]; original:
             </Popover>
           </dt>
           <dd>
-            <b>{figure.value === null ? "–" : formatSi(figure.value, figure.unit)}</b>
-            <small>{figure.value === null ? "needs a drawing" : since(figure, original)}</small>
+            <b>{formatSi(figure.value, figure.unit)}</b>
+            <small>
+              {!drawn && figure.name === "pull_in_v" ? "with the beams of LCR-350" : since(figure, original)}
+            </small>
           </dd>
         </div>
       ))}
@@ -47,7 +57,7 @@ export function FigureGrid({ figures, original }: { figures: Figure[]; original:
 
 function since({ name, value }: Figure, original: Figure[] | undefined): string {
   const before = original?.find((f) => f.name === name)?.value;
-  if (!before || value === null) return "";
+  if (!before) return "";
   const change = 100 * (value / before - 1);
   if (Math.abs(change) < 0.05) return "as in the catalogue";
   return `${change > 0 ? "+" : ""}${formatNumber(change, 1)} %`;

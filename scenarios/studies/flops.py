@@ -1,0 +1,49 @@
+"""Floating-point operations of the diagnosers, and what a board could carry."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from core.block import BlockParams, parameter
+from core.board.flops import budget
+from scenarios.studies.study import Study
+
+if TYPE_CHECKING:
+    from core.board.board import Board
+
+
+class Flops(Study):
+    """Counts the operations of every diagnoser by running it on numbers that count, and holds them against a board.
+
+    ``flops.<id>.per_model`` is the number of additions, multiplications and divisions for each model and sample,
+    ``.functions`` that of exponentials, logarithms and the like for all models; ``.share`` is the part of the board's
+    operations it takes, ``.overrun`` 1 when what came before leaves too little, and ``.models_that_fit`` how many of
+    its models would still be in time.
+    """
+
+    title = "Operations"
+
+    class Params(BlockParams):
+        """The board."""
+
+        board_mflops: float = parameter(50.0, "operations of the board per second, in millions", gt=0, le=1e9)
+        function_flops: float = parameter(20.0, "operations an exponential or a logarithm is worth", ge=0, le=1e4)
+        warm: int = parameter(600, "samples run before counting", ge=2, le=100_000)
+
+    @classmethod
+    def figures(cls, board: Board, params: Any) -> dict[str, float]:
+        """Return the figures."""
+        while board.tick < params.warm and board.advance(params.warm - board.tick).count:
+            pass
+        found = budget(board, params.board_mflops * 1e6, params.function_flops)
+        figures = {"flops.share": found.share}
+        for load in found.loads:
+            figures |= {
+                f"flops.{load.name}.per_sample": load.operations,
+                f"flops.{load.name}.per_model": load.per_model,
+                f"flops.{load.name}.functions": load.functions,
+                f"flops.{load.name}.share": load.share,
+                f"flops.{load.name}.overrun": float(load.overrun),
+                f"flops.{load.name}.models_that_fit": float(load.models_that_fit),
+            }
+        return figures
