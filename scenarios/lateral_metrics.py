@@ -39,6 +39,8 @@ def lateral_metrics(board: Board) -> dict[str, float]:
         return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state[0]))
     if kind == "planar":
         return _planar(p, state, board.spec.device.drawing.far_finger_um)
+    if board.spec.device.capacitance_gradient == 0.0:
+        return {}  # nothing that could pull it in
     return {"device.pull_in_v": device_pull_in(board.spec.device)}
 
 

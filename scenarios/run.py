@@ -192,7 +192,8 @@ def _figures(
     table = signals or board.signals
     names = [*TRACED_FIGURES, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]
-    names = [name for name in names if prefix + name in table]
+    known = set(table.names)
+    names = [name for name in names if prefix + name in known]
     trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
     return measure(board, trace, scenario.head.metrics)
 
