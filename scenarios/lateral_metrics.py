@@ -39,17 +39,14 @@ def lateral_metrics(board: Board) -> dict[str, float]:
         return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state[0]))
     if kind == "planar":
         return _planar(p, state, board.spec.device.drawing.far_finger_um)
-    pull_in = device_pull_in(board.spec.device)
-    return {} if pull_in is None else {"device.pull_in_v": pull_in}
+    if board.spec.device.capacitance_gradient == 0.0:
+        return {}  # nothing that could pull it in
+    return {"device.pull_in_v": device_pull_in(board.spec.device)}
 
 
-def device_pull_in(device: Device) -> float | None:
-    """Return the bias of pull-in of a device, perfectly aligned; one without a drawing has the beams of LCR-350.
-
-    A plant given as a transfer function has no comb, and so none.
-    """
-    gradient = device.capacitance_gradient
-    return geometry_pull_in(device.drawing, gradient) if gradient > 0.0 else None
+def device_pull_in(device: Device) -> float:
+    """Return the bias of pull-in of a device, perfectly aligned; one without a drawing has the beams of LCR-350."""
+    return geometry_pull_in(device.drawing, device.capacitance_gradient)
 
 
 @lru_cache(maxsize=256)

@@ -49,7 +49,7 @@ class JoinedRecords(Study):
         joined = {name: np.concatenate([before[name][params.settle_samples :], after[name][joint:]]) for name in before}
         found: dict[str, float] = {}
         for name, section in board.spec.diagnosers.items():
-            hypotheses = getattr(section.params, "hypotheses", ())
+            hypotheses = list(getattr(section.params, "hypotheses", ()))
             if len(hypotheses) != 2:
                 raise InputError("needs two hypotheses, one for each record", f"diagnosers.{name}.hypotheses")
             believed = _play(board, name, hypotheses[1].name, joined)[params.first_samples :] > 0.5
