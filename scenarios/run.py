@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +20,8 @@ from scenarios.metrics import device_metrics, measure
 from scenarios.schema import Scenario
 from scenarios.verdict_metrics import TRACED_VERDICTS
 
+DEFAULT_SAMPLES = 10_000
+"""Length of a run whose scenario has no end."""
 TRACED_FIGURES = (
     "plant.displacement",
     "sensor.displacement",
@@ -138,24 +141,33 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     return board
 
 
-def run(scenario: Scenario, seed: int | None = None, *, taps: bool = False, compiled: bool = True) -> Result:
+def run(
+    scenario: Scenario,
+    seed: int | None = None,
+    *,
+    taps: bool = False,
+    compiled: bool = True,
+    on_tick: Callable[[int], None] | None = None,
+) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
 
     Parameters
     ----------
     scenario : Scenario
-        What to run; one without a length runs 10 000 samples.
+        What to run; one without a length runs `DEFAULT_SAMPLES`.
     seed : int, optional
         Instead of the scenario's own.
     taps : bool
         Keep the inner signals as well.
     compiled : bool
         Run compiled blocks.
+    on_tick : callable, optional
+        Called with the tick reached after every chunk; it may raise to end the run.
     """
     board = build(scenario, seed, compiled=compiled)
     if scenario.study is not None:
         return _run_study(scenario, board)
-    samples = scenario.samples or 10_000
+    samples = scenario.samples or DEFAULT_SAMPLES
     outputs = np.empty((samples, board.signals.outputs))
     kept = np.empty((samples, len(board.signals) - board.signals.outputs)) if taps else None
     began = time.perf_counter()
@@ -166,6 +178,8 @@ def run(scenario: Scenario, seed: int | None = None, *, taps: bool = False, comp
         outputs[rows.first_tick : board.tick] = rows.outputs
         if kept is not None:
             kept[rows.first_tick : board.tick] = rows.taps
+        if on_tick is not None:
+            on_tick(board.tick)
     elapsed = time.perf_counter() - began
     outputs = outputs[: board.tick]
     metrics = _figures(board, outputs, scenario)

@@ -21,6 +21,7 @@ from server.api import (
     scenarios,
     snapshots,
     stream,
+    sweeps,
     theory,
     trace,
 )
@@ -35,7 +36,20 @@ from server.settings import Settings
 from server.version import VERSION
 
 API = "/api/v1"
-ROUTERS = (catalog, devices, scenarios, benches, experiments, snapshots, recordings, trace, runs, theory, stream)
+ROUTERS = (
+    catalog,
+    devices,
+    scenarios,
+    benches,
+    experiments,
+    snapshots,
+    recordings,
+    trace,
+    runs,
+    sweeps,
+    theory,
+    stream,
+)
 
 
 def create_app(settings: Settings) -> FastAPI:

@@ -1,9 +1,10 @@
-"""The command line: ``combbench serve | run | gallery | catalog | bench | doctor``."""
+"""The command line: ``combbench serve | run | gallery | sweep | catalog | bench | doctor``."""
 
 from __future__ import annotations
 
 import fnmatch
 import json
+import os
 import sys
 from collections.abc import Callable
 from functools import wraps
@@ -144,6 +145,48 @@ def gallery(
                 measured = "-" if entry["measured"] is None else f"{entry['measured']:.5g}"
                 say(f"       {entry['metric']:<44} {entry['expected']:<18} {measured}")
     raise typer.Exit(0 if all(summary["ok"] for summary in summaries) else 1)
+
+
+@app.command()
+@plainly
+def sweep(
+    file: Annotated[Path, typer.Argument(help="Campaign in TOML.")],
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, help="Processes of this machine; as many as it has processors.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = False,
+) -> None:
+    """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
+    from scenarios.campaign import Stopped
+    from server.settings import load_settings
+    from server.sweeping import carry_out, read_sweep
+
+    if workers is not None and scheduler is not None:
+        raise InputError("give --workers or --scheduler, not both", "--scheduler")
+    campaign = read_sweep(file)
+    folder = out or Path("sweeps") / campaign.head.id
+    address = load_settings().database_url
+    again = f"; go on with: combbench sweep {file} --out {folder} --resume"
+    try:
+        with typer.progressbar(length=len(campaign), label=campaign.head.id, file=sys.stderr) as bar:
+
+            def show(done: int, total: int) -> None:
+                bar.length = total
+                bar.update(done - bar.pos)
+
+            ended = carry_out(campaign, folder, address, resume, workers or os.cpu_count() or 1, scheduler or "", show)
+    except Stopped as error:
+        sys.stderr.write(f"combbench: {error}{again}\n")
+        raise typer.Exit(1) from None
+    except KeyboardInterrupt:
+        sys.stderr.write(f"combbench: interrupted{again}\n")
+        raise typer.Exit(130) from None
+    say(f"{ended.done} of {ended.total} runs, {ended.failed} could not be carried out; {ended.folder}/report.html")
+    raise typer.Exit(1 if ended.failed or ended.done < ended.total else 0)
 
 
 def show_block(card: BlockCard) -> None:

@@ -11,6 +11,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
+from sqlalchemy.exc import DBAPIError
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -140,6 +141,12 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(ApiError)
     async def _(_request: Request, error: ApiError) -> JSONResponse:
         return reply(error.status_code, error.body, error.headers)
+
+    @app.exception_handler(DBAPIError)
+    async def _(_request: Request, error: DBAPIError) -> JSONResponse:
+        log.error("the database refused: %s", error.orig)
+        body = ErrorBody(code="storage", message="the database cannot be used now; the log says why")
+        return reply(503, body, {"Retry-After": "5"})
 
     @app.exception_handler(InputError)
     async def _(_request: Request, error: InputError) -> JSONResponse:

@@ -23,9 +23,11 @@ from server.bench.status import Bench
 from server.lag import Lateness, probe
 from server.metrics import Metrics
 from server.runs.jobs import Jobs
+from server.runs.sweeps import Sweeps
 from server.security.limits import Buckets
 from server.settings import Settings
 from server.store.database import Database
+from server.store.keeping import Keeping
 from server.store.recordings import Recordings
 from server.stream.hub import Hub
 
@@ -51,10 +53,12 @@ class Service:
         self.lag = Lateness(self.metrics.loop_lag)
         self.hub = Hub(settings, self.metrics, self._lateness)
         self.engine = Engine(self.metrics, self._after_round)
-        self.database = Database(settings.data / "combbench.sqlite3")
+        self.database = Database(settings.database_url or settings.data / "combbench.sqlite3")
         self.recordings = Recordings(self.database, settings.data / "recordings")
         self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
         self.jobs = Jobs(self.database, settings, self.metrics)
+        self.keeping = Keeping(self.database, settings)
+        self.sweeps = Sweeps(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
         self.theatre = _theatre()
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
@@ -68,11 +72,13 @@ class Service:
         self._loop = asyncio.get_running_loop()
         await asyncio.to_thread(self.database.migrate)
         await self.recordings.recover()
-        await self.jobs.recover()
         self.engine.start()
         await asyncio.to_thread(warm_up)
         self.has_kernels = True
+        await self.jobs.recover()
+        await self.sweeps.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
+        tasks.append(asyncio.create_task(self.keeping.run()))
         self.is_ready = True
         try:
             yield
@@ -83,6 +89,7 @@ class Service:
             await asyncio.gather(*tasks, return_exceptions=True)
             if self.theatre is not None:
                 await self.theatre.close()
+            await self.sweeps.close()
             await self.jobs.close()
             await self.benches.close()
             await asyncio.to_thread(self.engine.stop)

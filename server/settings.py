@@ -31,6 +31,7 @@ class Settings(BaseSettings):
     host: str = Field("127.0.0.1", description="Address to listen on; anything but loopback needs a token.")
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 picks a free one.")
     data: Path = Field(Path("data"), description="Folder for the database, recordings and run results.")
+    database_url: str = Field("", description="Database by address, such as postgresql://...; SQLite in data if unset.")
     token: SecretStr | None = Field(None, description="Access token; made and kept in the data folder if unset.")
     allowed_hosts: list[str] = Field([], description="Further host names the page may be opened under.")
     metrics_open: bool = Field(False, description="Serve /metrics without a token.")
@@ -43,7 +44,10 @@ class Settings(BaseSettings):
     max_queued_runs: int = Field(64, ge=1, description="Headless runs waiting or running.")
     max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
     max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
+    max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
+    quota_bytes: int = Field(50_000_000_000, ge=0, description="Bytes of recordings and runs; beyond, no new ones.")
+    retention_days: float = Field(0.0, ge=0, description="Days recordings and runs are kept; 0 keeps them for ever.")
     max_trace_ticks: int = Field(200_000, ge=1, description="Ticks of one full-rate trace download.")
     history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for.")
 
@@ -53,7 +57,10 @@ class Settings(BaseSettings):
     command_burst: int = Field(40, ge=1, description="Commands one client may send at once.")
     frame_rate_hz: float = Field(60.0, gt=0, le=120, description="Frames per second of a stream.")
 
-    run_workers: int = Field(1, ge=0, le=64, description="Processes for headless runs; 0 refuses them.")
+    run_workers: int = Field(
+        1, ge=0, le=64, description="Processes for headless runs, and as many for campaigns; 0 refuses them."
+    )
+    scheduler: str = Field("", description="Dask scheduler for campaigns; processes of this machine if unset.")
     log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
     log_level: str = Field("INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe line logged.")
 

@@ -29,7 +29,10 @@ def regions_step(p: Any, s: Any, w: Any, io: Any) -> None:
         v = s[V]
         s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest)
         s[V] = settled(p[PHI21] * x + p[PHI22] * v)
-    s[STARTED] = 1.0
+    else:
+        s[STARTED] = 1.0
+        w[io[REGION]] = 0.0
+        w[io[LOSS]] = 0.0
     if not math.isfinite(y):
         return
     error = y - s[X]

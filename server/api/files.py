@@ -8,15 +8,14 @@ import re
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Annotated, Any, BinaryIO
 
 import pyarrow as pa
-import pyarrow.parquet as pq
+from fastapi import Depends, Query
 from fastapi.responses import FileResponse, Response, StreamingResponse
 
-from server.errors import ApiError
 from server.service import Service
-from server.store.traces import MEDIA_TYPES, Format, write
+from server.store.traces import MEDIA_TYPES, Cut, Format, read_cut, write
 
 FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {"content": {media: {} for media in MEDIA_TYPES.values()}, "description": "The trace as a file"}
@@ -25,7 +24,7 @@ FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {
 PIECE = 1 << 16
 
 
-def file_name(name: str, kind: Format) -> str:
+def file_name(name: str, kind: str) -> str:
     """Make a harmless file name."""
     return (re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip("-.") or "trace") + f".{kind}"
 
@@ -55,18 +54,26 @@ def _pieces(file: BinaryIO) -> Iterator[bytes]:
             yield piece
 
 
-async def stored_trace(service: Service, path: Path, name: str, kind: Format) -> Response:
-    """Send a stored Parquet file as it is, or converted if it is not too long for that."""
-    if kind == "parquet":
+Tick = Annotated[int | None, Query(ge=-(2**53), le=2**53)]
+
+
+def get_cut(
+    signals: Annotated[str, Query(description="Names, separated by commas; all when empty", max_length=8000)] = "",
+    start_tick: Tick = None,
+    end_tick: Annotated[int | None, Query(ge=-(2**53), le=2**53, description="The one behind the last")] = None,
+    every: Annotated[int, Query(ge=1, le=1_000_000, description="Every so many ticks")] = 1,
+) -> Cut:
+    """Read which part of a trace is wanted."""
+    names = tuple(name.strip() for name in signals.split(",") if name.strip())
+    return Cut(tuple(dict.fromkeys(names)), start_tick, end_tick, every)
+
+
+CutDep = Annotated[Cut, Depends(get_cut)]
+
+
+async def stored_trace(service: Service, path: Path, name: str, kind: Format, cut: Cut) -> Response:
+    """Send a stored Parquet file as it is, or a part or conversion of it if that is not too long."""
+    if kind == "parquet" and cut.is_all:
         return FileResponse(path, media_type=MEDIA_TYPES[kind], filename=file_name(name, kind))
-    most = service.settings.max_trace_ticks
-    ticks = await asyncio.to_thread(lambda: pq.read_metadata(path).num_rows)
-    if ticks > most:
-        raise ApiError(
-            422,
-            "too_long",
-            f"{ticks} ticks are too many for {kind} ({most} at most)",
-            "format",
-            "take parquet",
-        )
-    return await table_response(service, await asyncio.to_thread(pq.read_table, path), name, kind)
+    table = await asyncio.to_thread(read_cut, path, cut, service.settings.max_trace_ticks)
+    return await table_response(service, table, name, kind)

@@ -2,25 +2,39 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import asyncio
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
-from server.api.files import FORMAT_RESPONSES, stored_trace
-from server.errors import not_found
-from server.store.recordings import Recording
+from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
+from server.bench.benches import Wanted
+from server.bench.status import Bench
+from server.store.compare import Comparison, compare
+from server.store.recordings import Recording, RecordingDetail
 from server.store.traces import Format
 
 router = APIRouter(tags=["recordings"], route_class=StrictRoute)
 
 
-class NewRecording(Body):
-    """What to call a recording."""
+class Replay(Body):
+    """How to play a recording."""
 
-    name: str = Field("recording", min_length=1, max_length=100)
+    speed: float = Field(1.0, ge=0.01, le=10.0, description="Multiple of the pace it was recorded at")
+    paused: bool = False
+
+
+class CompareWith(Body):
+    """What to compare a recording with."""
+
+    other: str = Field(description="Id of another recording")
+    absolute: float = Field(0.0, ge=0.0, description="Tolerance of every signal, in its unit")
+    relative: float = Field(0.0, ge=0.0, description="And that share of its largest value in the first")
+    tolerances: dict[str, float] = Field({}, description="Tolerance of some signals instead")
+    align: Literal["tick", "start"] = Field("tick", description="Equal ticks, or first upon first")
 
 
 class RecordingList(BaseModel):
@@ -31,10 +45,10 @@ class RecordingList(BaseModel):
 
 @router.post("/benches/{bench_id}/recordings", status_code=201, dependencies=[RateLimited])
 async def start_recording(
-    session: SessionDep, service: ServiceDep, caller: CallerDep, body: NewRecording | None = None
+    session: SessionDep, service: ServiceDep, caller: CallerDep, body: Wanted | None = None
 ) -> Recording:
-    """Begin to record."""
-    return await service.benches.record(session, body.name if body else "recording", caller)
+    """Begin to record: now, or when a condition holds, with some of the past; `ticks: 0` keeps the past alone."""
+    return await service.benches.record(session, body or Wanted(), caller, await service.keeping.room())
 
 
 @router.post("/benches/{bench_id}/recordings/{recording_id}/stop", dependencies=[RateLimited])
@@ -56,18 +70,41 @@ async def list_recordings(service: ServiceDep) -> RecordingList:
 
 
 @router.get("/recordings/{recording_id}")
-async def get_recording(recording_id: str, service: ServiceDep) -> Recording:
-    """Describe a recording."""
+async def get_recording(recording_id: str, service: ServiceDep) -> RecordingDetail:
+    """Describe a recording: scenario, seed, events, versions, layout."""
     return await service.recordings.get(recording_id)
+
+
+@router.delete("/recordings/{recording_id}", status_code=204, dependencies=[RateLimited])
+async def delete_recording(recording_id: str, service: ServiceDep) -> None:
+    """Delete a recording that has ended."""
+    await service.recordings.delete(recording_id)
+
+
+@router.post("/recordings/{recording_id}/replay", status_code=201, dependencies=[RateLimited])
+async def replay_recording(recording_id: str, body: Replay, service: ServiceDep, response: Response) -> Bench:
+    """Play a recording on a bench of its own: the same streams; commands start, pause, step, seek, loop, time_scale."""
+    recording, path = await service.recordings.finished(recording_id)
+    session = await service.benches.replay(recording, path, body.speed, body.paused)
+    response.headers["Location"] = f"/api/v1/benches/{session.id}"
+    return service.view(session)
+
+
+@router.post("/recordings/{recording_id}/compare")
+async def compare_recordings(recording_id: str, body: CompareWith, service: ServiceDep) -> Comparison:
+    """Compare two recordings signal by signal: pass or fail."""
+    _, first = await service.recordings.finished(recording_id)
+    _, second = await service.recordings.finished(body.other)
+    async with service.file_turn:
+        return await asyncio.to_thread(
+            compare, first, second, body.absolute, body.relative, body.tolerances, body.align == "start"
+        )
 
 
 @router.get("/recordings/{recording_id}/trace", response_class=Response, responses=FORMAT_RESPONSES)
 async def get_recording_trace(
-    recording_id: str, service: ServiceDep, kind: Annotated[Format, Query(alias="format")] = "parquet"
+    recording_id: str, service: ServiceDep, cut: CutDep, kind: Annotated[Format, Query(alias="format")] = "parquet"
 ) -> Response:
-    """Download a recording."""
-    recording = await service.recordings.get(recording_id)
-    path = service.recordings.path(recording.id)
-    if recording.state == "recording" or not path.is_file():
-        raise not_found("finished trace of recording", recording_id, "stop the recording first")
-    return await stored_trace(service, path, recording.name, kind)
+    """Download a recording, or a part of it."""
+    recording, path = await service.recordings.finished(recording_id)
+    return await stored_trace(service, path, recording.name, kind, cut)

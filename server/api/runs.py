@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.api.files import FORMAT_RESPONSES, stored_trace
+from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
 from server.bench.benches import prepare
 from server.runs.jobs import Run
 from server.store.traces import Format
@@ -36,8 +36,13 @@ class RunList(BaseModel):
     runs: list[Run]
 
 
-@router.post("", status_code=202, dependencies=[RateLimited])
-async def start_run(body: NewRun, service: ServiceDep) -> Run:
+@router.post(
+    "",
+    status_code=202,
+    dependencies=[RateLimited],
+    responses={200: {"model": Run, "description": "The same run is there already"}},
+)
+async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Run:
     """Queue a headless run; it never disturbs the live benches."""
     scenario, _ = await asyncio.to_thread(prepare, body.scenario, body.set, body.seed)
     seeds = [scenario.spec.seed if body.seed is None else body.seed]
@@ -49,7 +54,11 @@ async def start_run(body: NewRun, service: ServiceDep) -> Run:
         if not 0 <= first < end <= 2**53 or end - first > most:
             raise InputError(f"must be [first, end] with 0 <= first < end and at most {most} seeds", "seeds")
         seeds = list(range(first, end))
-    return await service.jobs.start(scenario, seeds)
+    await service.keeping.room()
+    run, is_new = await service.jobs.start(scenario, seeds)
+    response.status_code = 202 if is_new else 200
+    response.headers["Location"] = f"/api/v1/runs/{run.id}"
+    return run
 
 
 @router.get("")
@@ -66,15 +75,15 @@ async def get_run(run_id: str, service: ServiceDep) -> Run:
 
 @router.delete("/{run_id}", dependencies=[RateLimited])
 async def cancel_run(run_id: str, service: ServiceDep) -> Run:
-    """Cancel a run that waits."""
+    """Cancel a run that waits or is under way."""
     return await service.jobs.cancel(run_id)
 
 
 @router.get("/{run_id}/trace", response_class=Response, responses=FORMAT_RESPONSES)
 async def get_run_trace(
-    run_id: str, service: ServiceDep, kind: Annotated[Format, Query(alias="format")] = "parquet"
+    run_id: str, service: ServiceDep, cut: CutDep, kind: Annotated[Format, Query(alias="format")] = "parquet"
 ) -> Response:
     """Download the trace of a run (of its first seed)."""
     run = await service.jobs.get(run_id)
     path = service.jobs.trace_path(run.id)
-    return await stored_trace(service, path, run.scenario_id, kind)
+    return await stored_trace(service, path, run.scenario_id, kind, cut)

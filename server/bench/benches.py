@@ -3,26 +3,52 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import json
 from collections import Counter
-from typing import Any
+from pathlib import Path
+from typing import Any, Self
+
+import pyarrow.parquet as pq
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from core.board.board import Board
+from core.board.condition import parse_condition
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, Reset
+from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.recorder import Recorder
+from server.bench.recorder import CLOSED, Recorder
 from server.bench.session import Session
+from server.bench.tape import Tape
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
-from server.store.recordings import Recording, Recordings
+from server.store.recordings import About, Recording, RecordingDetail, Recordings
 from server.store.traces import schema_of
 from server.version import VERSION
+
+
+class Wanted(BaseModel):
+    """What to record: from now, or from when a condition holds, with some of the past."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    name: str = Field("recording", min_length=1, max_length=100)
+    past_ticks: int = Field(0, ge=0, le=5_000_000, description="Ticks of the past it takes along, as far as kept")
+    ticks: int | None = Field(None, ge=0, description="Ends by itself so many ticks after its beginning")
+    when: str | None = Field(None, max_length=200, description="Waits for '<signal> > <value>'")
+    layout: dict[str, Any] | None = Field(None, description="Layout of the page, kept with it")
+
+    @model_validator(mode="after")
+    def _has_something(self) -> Self:
+        if self.ticks == 0 and self.past_ticks == 0:
+            raise ValueError("needs past_ticks or ticks above 0")
+        return self
 
 
 class Benches:
@@ -110,6 +136,43 @@ class Benches:
         self._sessions[twin.id] = twin
         return twin
 
+    async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> Session:
+        """Make a bench that plays a recording, at a multiple of the pace it was recorded at.
+
+        Raises
+        ------
+        ApiError
+            If there are too many benches, or this version cannot read its scenario.
+        """
+        self._check_room()
+        self._coming += 1
+        try:
+            session = await asyncio.to_thread(self._play, recording, path, speed)
+            await self._engine.call(self._open, session, not paused)
+        finally:
+            self._coming -= 1
+        self._sessions[session.id] = session
+        return session
+
+    def _play(self, recording: RecordingDetail, path: Path, speed: float) -> Session:
+        """Build the bench of a replay."""
+        try:
+            scenario = Scenario.load(recording.scenario or {})
+            tape = Tape(build(scenario), path)
+        except InputError as error:
+            text = f"this version cannot play it: {error}"
+            raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
+        about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
+        pace = min(max((about.get("time_scale") or DEFAULT_SCALE) * speed, MIN_SCALE), MAX_SCALE)
+        history = self._settings.history_ticks
+        session = Session(scenario, tape, pace, history, self._metrics, self._engine.clock)
+        session.replay_of = recording.id
+        for event in recording.events or []:
+            session.events.add(
+                *(event.get(name) for name in ("tick", "actor", "kind", "text", "command", "old", "new"))  # type: ignore[arg-type]
+            )
+        return session
+
     async def close_bench(self, session: Session) -> None:
         """Stop a bench for good; its recordings are made whole."""
         self._sessions.pop(session.id, None)
@@ -132,7 +195,9 @@ class Benches:
         """
         kind = command.kind
         try:
-            if isinstance(command, Reset):
+            if isinstance(command, Reset) and isinstance(session.board, Tape):
+                event = await self._engine.call(session.execute, Seek(tick=session.board.first), actor)
+            elif isinstance(command, Reset):
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}
                 scenario, board = await asyncio.to_thread(prepare, session.scenario.document, values, None)
@@ -145,27 +210,67 @@ class Benches:
         self._metrics.commands.labels(kind, "done").inc()
         return event
 
-    async def record(self, session: Session, name: str, actor: str) -> Recording:
-        """Begin to record every signal of a bench."""
-        if len(session.recorders) >= 2:
+    async def record(self, session: Session, wanted: Wanted, actor: str, room_bytes: int) -> Recording:
+        """Begin to record every signal of a bench, now or when a condition holds.
+
+        Parameters
+        ----------
+        session : Session
+            The bench.
+        wanted : Wanted
+            What to record.
+        actor : str
+            Who asks.
+        room_bytes : int
+            How large the recording may become.
+        """
+        if len(session.recorders) + len(session.armed) >= 2:
             raise ApiError(409, "conflict", "two recordings of this bench are under way already")
-        about = {"version": VERSION, "scenario": session.scenario.id, "bench": session.id}
-        schema = schema_of({signal.name: signal.unit for signal in session.signals}, about)
-        title = session.scenario.head.title or session.scenario.id
-        recording, file = await self._recordings.open(session.id, name, title, session.dt_ms, schema)
-        recorder = Recorder(
-            recording.id,
-            file,
-            schema,
-            session.dt_ms,
-            self._settings.max_recording_ticks,
-            self._recordings.closer(recording.id),
+        condition = parse_condition(wanted.when, session.column_of) if wanted.when is not None else None
+        document = await self._engine.call(session.document)
+        file_says = {
+            "version": VERSION,
+            "scenario": document,
+            "bench": session.id,
+            "time_scale": session.pacer.scale,
+        }
+        schema = schema_of(
+            {signal.name: signal.unit for signal in session.signals}, json.loads(json.dumps(file_says, default=str))
         )
+        title = session.scenario.head.title or session.scenario.id
+        about = About(
+            session.id,
+            wanted.name,
+            title,
+            session.dt_ms,
+            document,
+            session.board.spec.seed,
+            wanted.layout,
+            wanted.when or "",
+        )
+        recording, file = await self._recordings.open(about, schema)
+        row_bytes = 16 + 4 * len(session.signals)
+        close = self._recordings.closer(recording.id)
+
+        def ended(first: int, ticks: int, reason: str) -> None:
+            close(first, ticks, reason)
+            with contextlib.suppress(RuntimeError):  # the engine may have stopped
+                self._engine.submit(session.forget_recording, recording.id)
+
+        most = min(self._settings.max_recording_ticks, room_bytes // row_bytes)
+        recorder = Recorder(recording.id, file, schema, session.dt_ms, most, ended)
         try:
-            tick = await self._engine.call(session.record, recorder, name, actor)
+            tick = await self._engine.call(
+                session.record, recorder, wanted.name, actor, wanted.past_ticks, wanted.ticks, condition
+            )
         except BaseException:
-            recorder.stop("the bench was closed")
+            recorder.stop(CLOSED)
             raise
+        if tick is None:
+            return recording
+        if not recorder.is_open:
+            await asyncio.to_thread(recorder.join)
+            return await self._recordings.get(recording.id)
         return await self._recordings.begin(recording.id, tick)
 
     async def stop_recording(self, session: Session, recording_id: str) -> Recording:

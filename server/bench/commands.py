@@ -63,6 +63,21 @@ class TimeScale(RunCommand):
     )
 
 
+class Seek(RunCommand):
+    """Go to a tick of the recording that is played."""
+
+    kind: Literal["seek"] = "seek"
+    tick: int = Field(ge=0, le=2**53)
+
+
+class Loop(RunCommand):
+    """Play a span of the recording again and again; without one, play it to its end."""
+
+    kind: Literal["loop"] = "loop"
+    start_tick: int | None = Field(None, ge=0, le=2**53)
+    end_tick: int | None = Field(None, ge=0, le=2**53)
+
+
 RUN_KINDS: dict[str, type[RunCommand]] = {
     "start": Start,
     "pause": Pause,
@@ -70,6 +85,8 @@ RUN_KINDS: dict[str, type[RunCommand]] = {
     "step_period": StepPeriod,
     "reset": Reset,
     "time_scale": TimeScale,
+    "seek": Seek,
+    "loop": Loop,
 }
 
 
@@ -96,7 +113,7 @@ def parse(document: Any) -> Any:
 
 
 Command = Annotated[
-    Start | Pause | Step | StepPeriod | Reset | TimeScale | Inject | Heal | Set | Switch | ResetTrip,
+    Start | Pause | Step | StepPeriod | Reset | TimeScale | Seek | Loop | Inject | Heal | Set | Switch | ResetTrip,
     BeforeValidator(parse),
 ]
 """In a model or a route: parsed by `parse`, described by the union."""

@@ -18,6 +18,7 @@ MAX_PENDING = 100
 def status_of(session: Session) -> BenchStatus:
     """Return the status: an object nobody changes afterwards."""
     board, pacer = session.board, session.pacer
+    faults: dict[str, Any] = dict(board.faults)
     state: State = "running" if session.is_running else "paused"
     if board.trip is not None:
         state = "tripped"
@@ -34,12 +35,12 @@ def status_of(session: Session) -> BenchStatus:
         faults=[
             ActiveFault(
                 name=name,
-                severity=params.severity,  # type: ignore[attr-defined]
-                profile=params.profile.model_dump(),  # type: ignore[attr-defined]
+                severity=params.severity,
+                profile=params.profile.model_dump(),
                 parameters=params.model_dump(exclude=set(FaultParams.model_fields)),
-                since_tick=params.start_tick,  # type: ignore[attr-defined]
+                since_tick=params.start_tick,
             )
-            for name, params in board.faults.items()
+            for name, params in faults.items()
         ],
         pending=[
             Pending(
@@ -54,6 +55,7 @@ def status_of(session: Session) -> BenchStatus:
         scores=board.scores(),
         last_event=session.events.last,
         recording=list(session.recorders),
+        armed=list(session.armed),
     )
 
 
@@ -94,6 +96,7 @@ def bench_of(session: Session, around: dict[str, Any], view3d: str | None) -> Be
         },
         parameters=spec.document,
         view3d=view3d,
+        replay_of=session.replay_of or None,
     )
 
 
@@ -106,7 +109,8 @@ def document_of(session: Session) -> dict[str, Any]:
         "title": f"{title}, as run live"[:200],
         "source": session.scenario.head.source,
     }
-    document = {**head, **session.board.save()}
+    graded = {key: value for key, value in session.scenario.document.items() if key in ("expect", "metrics")}
+    document = {**head, **session.board.save(), **graded}
     if session.board.tick == 0:  # nothing has happened yet: what is saved is what would
         document.pop("samples", None)
         if session.scenario.samples is not None:

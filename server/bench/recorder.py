@@ -1,7 +1,8 @@
 """Records every signal of a live bench at full rate, in a thread of its own.
 
-The engine hands over copies and goes on; it never waits for the disk. If the disk cannot follow, or the size
-limit is reached, the recording ends there, whole and readable, and the event log says so.
+The engine hands over copies and goes on; it never waits for the disk. If the disk cannot follow, or a limit is
+reached, the recording ends there, whole and readable, and the event log says so. What was before the recording began
+is read from the history, by this thread as well.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,7 +27,23 @@ BATCH_TICKS = 8192
 FLUSH_S = 0.5
 """What is not written yet is never older than this."""
 
-NOTHING = (0, np.empty((0, 0), np.float32))
+STOPPED = "stopped"
+COMPLETE = "it is as long as it was meant to be"
+FULL = "it reached its size limit"
+CLOSED = "the bench was closed"
+WANTED = (STOPPED, COMPLETE, FULL, CLOSED)
+"""Ends somebody asked for or set; any other is an alarm."""
+
+Samples = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Past:
+    """A span of the history, to be read when its turn comes."""
+
+    read: Callable[[int, int], Samples]
+    first: int
+    end: int
 
 
 class Recorder:
@@ -44,7 +62,7 @@ class Recorder:
     max_ticks : int
         Size limit.
     on_end : callable
-        Called on the writer thread with the ticks written and the reason.
+        Called on the writer thread with the first tick, the ticks written and the reason.
     """
 
     def __init__(
@@ -54,15 +72,17 @@ class Recorder:
         schema: Any,
         dt_ms: float,
         max_ticks: int,
-        on_end: Callable[[int, str], None],
+        on_end: Callable[[int, int, str], None],
     ) -> None:
         self.id = recording_id
         self._file, self._schema, self._dt_ms = file, schema, dt_ms
         self._left, self._on_end = max_ticks, on_end
-        self._queue: queue.SimpleQueue[tuple[int, NDArray[np.float32]] | None] = queue.SimpleQueue()
+        self._full = FULL
+        self._queue: queue.SimpleQueue[tuple[int, Samples] | Past | str | None] = queue.SimpleQueue()
         self._bytes = 0
         self._lock = threading.Lock()
         self.reason = ""
+        self._first: int | None = None
         self._thread = threading.Thread(target=self._write, name=f"combbench-recorder-{recording_id[:8]}")
         self._thread.start()
 
@@ -71,22 +91,37 @@ class Recorder:
         """Whether it still takes rows."""
         return not self.reason
 
-    def append(self, first_tick: int, samples: NDArray[np.float32]) -> None:
+    def begin(self, past: Past, ticks: int | None) -> None:
+        """Take what has been, and end by itself so many ticks behind it."""
+        length = past.end - past.first
+        if ticks is not None and length + ticks <= self._left:
+            self._left, self._full = length + ticks, COMPLETE
+        if length > self._left:
+            past, length = Past(past.read, past.end - self._left, past.end), self._left
+        if length:
+            self._queue.put(past)
+            self._take(length)
+
+    def append(self, first_tick: int, samples: Samples) -> None:
         """Take samples ``(n_signals, ticks)``; called on the engine thread."""
         if not self.is_open:
             return
+        samples = samples[:, : self._left]
         with self._lock:
             self._bytes += samples.nbytes
             too_slow = self._bytes > QUEUE_BYTES
-        self._left -= samples.shape[1]
         if too_slow:
             self.stop("the disk could not keep up")
-        elif self._left < 0:
-            self.stop("it reached its size limit")
-        else:
-            self._queue.put((first_tick, samples))
+            return
+        self._queue.put((first_tick, samples))
+        self._take(samples.shape[1])
 
-    def stop(self, reason: str = "stopped") -> None:
+    def note(self, line: str) -> None:
+        """Take an event, as a line of JSON."""
+        if self.is_open:
+            self._queue.put(line)
+
+    def stop(self, reason: str = STOPPED) -> None:
         """End the recording behind what has been taken; returns at once."""
         if self.is_open:
             self.reason = reason
@@ -96,28 +131,54 @@ class Recorder:
         """Wait until the file is whole."""
         self._thread.join()
 
+    def _take(self, ticks: int) -> None:
+        """Count what was taken against the limit."""
+        self._left -= ticks
+        if self._left <= 0:
+            self.stop(self._full)
+
     def _write(self) -> None:
         """Write batches until the end or an error of the disk."""
-        batch: list[NDArray[np.float32]] = []
+        batch: list[Samples] = []
         first, held, due = 0, 0, time.monotonic() + FLUSH_S
         try:
             while True:
                 try:
                     item = self._queue.get(timeout=FLUSH_S)
                 except queue.Empty:
-                    item = NOTHING
-                if item is not None and item[1].size:
+                    item = ""
+                if isinstance(item, Past):
+                    self._write_past(item)
+                elif isinstance(item, str):
+                    if item:
+                        self._file.note(item)
+                elif item is not None and item[1].size:
                     first = first if batch else item[0]
                     batch.append(item[1])
                     held += item[1].shape[1]
                     with self._lock:
                         self._bytes -= item[1].nbytes
                 if batch and (item is None or held >= BATCH_TICKS or time.monotonic() >= due):
-                    self._file.append(table_of(self._schema, first, self._dt_ms, np.hstack(batch)))
+                    self._put(first, np.hstack(batch))
                     batch, held, due = [], 0, time.monotonic() + FLUSH_S
                 if item is None:
                     break
-            self._on_end(self._file.finish(), self.reason)
+            self._end(self._file.finish())
         except OSError as error:
             self.reason = f"the disk failed: {error.strerror or error}"
-            self._on_end(self._file.salvage(), self.reason)
+            self._end(self._file.salvage())
+
+    def _write_past(self, past: Past) -> None:
+        """Copy a span of the history; what has been overwritten meanwhile is missing at its old end."""
+        for start in range(past.first, past.end, BATCH_TICKS):
+            end = min(start + BATCH_TICKS, past.end)
+            samples = past.read(start, end)
+            if samples.shape[1]:
+                self._put(end - samples.shape[1], samples)
+
+    def _put(self, first: int, samples: Samples) -> None:
+        self._first = first if self._first is None else self._first
+        self._file.append(table_of(self._schema, first, self._dt_ms, samples))
+
+    def _end(self, ticks: int) -> None:
+        self._on_end(self._first or 0, ticks, self.reason)

@@ -10,26 +10,31 @@ import secrets
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from core.board.board import Board, Checkpoint, Rows
+from core.board.condition import Condition
 from core.board.history import History
 from core.device.geometry import Geometry
 from core.errors import InputError
 from core.signals import Signal
 from scenarios.schema import Scenario
-from server.bench.commands import Pause, Start, Step, StepPeriod, TimeScale
+from server.bench.commands import Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
 from server.bench.events import Event, EventLog
 from server.bench.pacing import Pacer
 from server.bench.portrait import MAX_PENDING, document_of, status_of
-from server.bench.recorder import Recorder
+from server.bench.recorder import CLOSED, STOPPED, WANTED, Past, Recorder
 from server.bench.status import BenchStatus, Snapshot
+from server.bench.tape import Tape
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 
+RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
+RUN = get_args(RunsBench)
 STATUS_S = 0.2
+LEAST_LOOP = 100
 FORK_TICKS = 20_000
 """Past a fork brings along."""
 
@@ -42,6 +47,16 @@ class Kept:
     checkpoint: Checkpoint
 
 
+@dataclass(frozen=True)
+class Armed:
+    """A recording that waits for a condition."""
+
+    recorder: Recorder
+    condition: Condition
+    past: int
+    ticks: int | None
+
+
 class Session:
     """A live bench.
 
@@ -49,8 +64,8 @@ class Session:
     ----------
     scenario : Scenario
         What it was made from.
-    board : Board
-        Built from it.
+    board : Board or Tape
+        Built from it; or a recording that is played.
     time_scale : float or None
         Device seconds per wall second; none: as fast as possible.
     history_ticks : int
@@ -64,24 +79,28 @@ class Session:
     def __init__(
         self,
         scenario: Scenario,
-        board: Board,
+        board: Board | Tape,
         time_scale: float | None,
         history_ticks: int,
         metrics: Metrics,
         clock: Callable[[], float],
     ) -> None:
         self.id = secrets.token_hex(6)
-        self.scenario, self.board = scenario, board
+        self.scenario = scenario
+        self.board: Board | Tape = board
         self.created = datetime.now(UTC)
         self.events = EventLog()
         self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
         self.snapshots: dict[str, Kept] = {}
         self.recorders: dict[str, Recorder] = {}
+        self.armed: dict[str, Armed] = {}
         self._history_ticks, self._metrics, self._clock = history_ticks, metrics, clock
         self._running = False
         self._closed = False
         self._logged = 0
-        self._ends_at = scenario.samples
+        self._ends_at = board.end if isinstance(board, Tape) else scenario.samples
+        self.replay_of = ""
+        self.loop: tuple[int, int] | None = None
         self._counted = (0, 0.0)
         self._status_due = 0.0
         self.history = History(len(board.signals), history_ticks)
@@ -150,7 +169,7 @@ class Session:
         """
         if self._closed:
             raise not_found("bench", self.id)
-        if isinstance(command, Start | Pause | Step | StepPeriod | TimeScale):
+        if isinstance(command, RUN):
             event = self._run_command(command, actor)
         else:
             if len(self.board.pending) >= MAX_PENDING:
@@ -231,29 +250,67 @@ class Session:
             raise not_found("snapshot", snapshot_id)
         return self.snapshots[snapshot_id]
 
-    def record(self, recorder: Recorder, name: str, actor: str) -> int:
-        """Begin a recording here; returns its first tick."""
+    def record(
+        self, recorder: Recorder, name: str, actor: str, past: int, ticks: int | None, condition: Condition | None
+    ) -> int | None:
+        """Begin a recording here with some of the past, or arm it; returns its first tick once that is known.
+
+        Parameters
+        ----------
+        past : int
+            Ticks before the beginning that it takes along, as far as the history has them.
+        ticks : int or None
+            Ticks behind the beginning after which it ends by itself.
+        condition : Condition or None
+            What it waits for.
+        """
         if self._closed:
             raise not_found("bench", self.id)
-        self.recorders[recorder.id] = recorder
+        if condition is not None:
+            self.armed[recorder.id] = Armed(recorder, condition, past, ticks)
+            self._note(actor, "recording_armed", f"recording {name} waits for its condition")
+            self.status = self._look()
+            return None
         self._note(actor, "recording_started", f"recording {name} began")
-        self.status = self._look()
-        return self.board.tick
+        return self._begin_recording(recorder, self.board.tick, past, ticks)
 
-    def stop_recording(self, recording_id: str, reason: str = "stopped") -> Recorder:
-        """End a recording here."""
-        recorder = self.recorders.pop(recording_id, None)
+    def _begin_recording(self, recorder: Recorder, at: int, past: int, ticks: int | None) -> int:
+        """Let a recording begin at a tick that has been or is now."""
+        history, columns = self.history, list(range(len(self._index)))
+        end = self.board.tick
+        first = min(max(at - past, history.first_tick), end) if history.end_tick == end else end
+        after = None if ticks is None else max(0, ticks - (end - at))
+        recorder.begin(Past(lambda start, stop: history.read(columns, start, stop), first, end), after)
+        self.recorders[recorder.id] = recorder
+        if not recorder.is_open:
+            self.stop_recording(recorder.id)
+        self.status = self._look()
+        return first
+
+    def stop_recording(self, recording_id: str, reason: str = STOPPED) -> Recorder:
+        """End a recording here, or one that waits."""
+        waiting = self.armed.pop(recording_id, None)
+        recorder = waiting.recorder if waiting is not None else self.recorders.get(recording_id)
         if recorder is None:
             raise not_found("recording under way", recording_id)
         recorder.stop(reason)
-        self._note("board", "recording_stopped", f"a recording ended: {recorder.reason}")
+        if recorder.reason in WANTED:
+            self._note("board", "recording_stopped", f"a recording ended: {recorder.reason}")
+        else:
+            self._note("board", "recording_failed", f"a recording broke off: {recorder.reason}")
+        self.recorders.pop(recording_id, None)
         self.status = self._look()
         return recorder
+
+    def forget_recording(self, recording_id: str) -> None:
+        """Let go of a recording that has ended by itself."""
+        if recording_id in self.recorders or recording_id in self.armed:
+            self.stop_recording(recording_id)
 
     def close(self) -> list[Recorder]:
         """Stop for good; returns the recordings that were under way."""
         self._running, self._closed = False, True
-        return [self.stop_recording(key, "the bench was closed") for key in list(self.recorders)]
+        return [self.stop_recording(key, CLOSED) for key in [*self.recorders, *self.armed]]
 
     # ---- what the event loop reads
 
@@ -279,6 +336,11 @@ class Session:
         frequency = getattr(self.board.spec.reference.params, "frequency_hz", None)
         return 1e3 / (float(frequency) * self.dt_ms) if isinstance(frequency, int | float) and frequency else None
 
+    @property
+    def column_of(self) -> dict[str, int]:
+        """Column of each signal by name."""
+        return self._index
+
     def indices(self, names: Sequence[str]) -> list[int]:
         """Return the columns of signals; an unknown name is an `InputError` with suggestions."""
         return [self.board.signals.index(name) for name in names]
@@ -289,9 +351,11 @@ class Session:
 
     # ---- inside
 
-    def _run_command(self, command: Start | Pause | Step | StepPeriod | TimeScale, actor: str) -> Event:
+    def _run_command(self, command: RunsBench, actor: str) -> Event:
         """Carry out a command that runs the bench."""
         document = command.model_dump()
+        if isinstance(command, Seek | Loop):
+            return self._play(command, actor)
         if isinstance(command, TimeScale):
             old = self.pacer.scale
             self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
@@ -309,6 +373,9 @@ class Session:
                 code="tripped",
             )
         if isinstance(command, Start):
+            if isinstance(self.board, Tape) and self.board.tick >= self.board.end:
+                self.board.seek(self.board.first)
+                self._rewound()
             self._running = True
             self.pacer.anchor(self.board.tick, self._clock())
             return self._note(actor, "start", "started", document)
@@ -317,8 +384,43 @@ class Session:
         goal = self.board.tick + ticks
         event = self._note(actor, command.kind, f"stepped {ticks} tick{'s' if ticks > 1 else ''}", document)
         while self.board.tick < goal and self.board.trip is None:
-            self._advance(min(self.board.chunk, goal - self.board.tick))
+            if not self._advance(min(self.board.chunk, goal - self.board.tick)):
+                break
         return event
+
+    def _play(self, command: Seek | Loop, actor: str) -> Event:
+        """Carry out a command to a bench that plays a recording."""
+        tape = self.board
+        if not isinstance(tape, Tape):
+            raise InputError("only a recording that is played can do that", "kind", code="conflict")
+        if isinstance(command, Seek):
+            tape.seek(command.tick)
+            self._rewound()
+            return self._note(actor, "seek", f"went to tick {command.tick}", command.model_dump())
+        if command.start_tick is None and command.end_tick is None:
+            self.loop, self._ends_at = None, tape.end
+            return self._note(actor, "loop", "plays to the end", command.model_dump())
+        start = tape.first if command.start_tick is None else command.start_tick
+        end = tape.end if command.end_tick is None else command.end_tick
+        if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
+            text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
+            raise InputError(text, "end_tick")
+        self.loop, self._ends_at = (start, end), end
+        if not start <= tape.tick < end:
+            tape.seek(start)
+            self._rewound()
+        return self._note(actor, "loop", f"plays ticks {start} to {end} again and again", command.model_dump())
+
+    def _rewound(self) -> None:
+        """Let history and clock follow a jump of the tick."""
+        tick = self.board.tick
+        if self.history.first_tick <= tick <= self.history.end_tick:
+            self.history.end_tick = tick
+        else:
+            self.history = History(len(self._index), self._history_ticks)
+        if self._ends_at is None and isinstance(self.board, Tape):
+            self._ends_at = self.board.end
+        self.pacer.anchor(tick, self._clock())
 
     def _period(self) -> int:
         """Return the drive period as a number of ticks one may step."""
@@ -327,19 +429,22 @@ class Session:
             raise InputError("the reference has no period", "kind", "step a number of ticks", "conflict")
         return max(1, min(100_000, round(period)))
 
-    def _advance(self, ticks: int) -> None:
-        """Run ticks; keep them, record them, note what happened."""
+    def _advance(self, ticks: int) -> int:
+        """Run ticks; keep them, record them, note what happened; return how many there were."""
         rows = self.board.advance(ticks)
         if rows.count:
             self.history.append(rows)
             self._metrics.ticks.inc(rows.count)
             if self.recorders:
                 self._record(rows)
+            if self.armed:
+                self._watch(rows)
         if self.board.log.last > self._logged:
             self._sync_log()
         if self.board.trip is not None and self._running and not self._has_due():
             self._running = False
             self.status = self._look()
+        return rows.count
 
     def _has_due(self) -> bool:
         """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
@@ -353,15 +458,31 @@ class Session:
             if not recorder.is_open:
                 self.stop_recording(key)
 
+    def _watch(self, rows: Rows) -> None:
+        """Begin the armed recordings whose condition holds at some tick of these."""
+        for key, waiting in list(self.armed.items()):
+            column = self._index[waiting.condition.signal]
+            values = np.hstack((rows.outputs, rows.taps))[:, column]
+            found = np.flatnonzero(waiting.condition.sign * (values - waiting.condition.threshold) > 0.0)
+            if found.size:
+                del self.armed[key]
+                at = rows.first_tick + int(found[0])
+                self._note("board", "recording_started", f"a recording began: its condition held at tick {at}")
+                self._begin_recording(waiting.recorder, at, waiting.past, waiting.ticks)
+
     def _finish(self) -> None:
-        """Pause at the end of the scenario; starting again goes beyond it."""
+        """Pause at the end of the scenario; starting again goes beyond it. A loop begins anew."""
+        if self.loop is not None and isinstance(self.board, Tape):
+            self.board.seek(self.loop[0])
+            self._rewound()
+            return
         self._running, self._ends_at = False, None
         self._note("scenario", "finished", "scenario finished; start again to go on")
         self.status = self._look()
 
     def _jumped(self, actor: str, kind: str, text: str) -> Event:
         """Note that time has jumped: recordings end, the clock is anchored anew."""
-        for key in list(self.recorders):
+        for key in [*self.recorders, *self.armed]:
             self.stop_recording(key, f"the bench was {kind}")
         if self.board.trip is not None:
             self._running = False
@@ -381,16 +502,23 @@ class Session:
     ) -> Event:
         """Add an event of the bench itself."""
         self._metrics.events.labels(kind).inc()
-        return self.events.add(self.board.tick, actor, kind, text, command, old, new)
+        return self._tell(self.events.add(self.board.tick, actor, kind, text, command, old, new))
+
+    def _tell(self, event: Event) -> Event:
+        """Let the recordings under way have an event."""
+        for recorder in self.recorders.values():
+            recorder.note(event.model_dump_json())
+        return event
 
     def _sync_log(self) -> list[Event]:
         """Take over what the board has logged since the last time."""
         added = []
         for entry in self.board.log.after(self._logged):
             self._metrics.events.labels(entry.kind).inc()
-            added.append(
-                self.events.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
+            event = self.events.add(
+                entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new
             )
+            added.append(self._tell(event))
         self._logged = self.board.log.last
         return added
 

@@ -60,6 +60,7 @@ class BenchStatus(BaseModel):
     scores: dict[str, Scores] = Field(description="Of each diagnoser, against the truth the bench knows")
     last_event: int
     recording: list[str] = Field(description="Recordings under way")
+    armed: list[str] = Field(description="Recordings that wait for their condition")
     watchers: int = 0
     loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")
     wake_late_ms: float = Field(0.0, description="99th percentile of the engine's lateness, last minute")
@@ -91,3 +92,4 @@ class Bench(BenchStatus):
     diagnosers: dict[str, DiagnoserInfo]
     parameters: dict[str, Any] = Field(description="The scenario as it is now, every live change in it")
     view3d: str | None = Field(description="Path of the 3D page, if there is one")
+    replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")

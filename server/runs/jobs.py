@@ -1,37 +1,44 @@
 """Headless runs: queued, run in a process of lower priority, kept in the run table.
 
-The table is the truth: a run that was under way when the server died is marked aborted at the next start.
+The table is the truth. A run is known by its key (scenario, seeds, version), so asking twice gives the same run; one
+that was under way when the server ended begins again at the next start, and is marked aborted if that happens often.
 """
 
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import json
 import logging
 import multiprocessing
-import secrets
 import shutil
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from datetime import UTC, datetime
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import select, update
+from sqlalchemy.orm import Session
 
 from core.errors import InputError
-from scenarios.kernel_cache import core_hash
+from scenarios.executor import prepare
+from scenarios.key import content_hash, run_key
+from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
-from server.runs.worker import PROGRESS, TRACE, prepare, work
+from server.runs.worker import CANCEL, NICE, PROGRESS, TRACE, Cancelled, work
 from server.settings import Settings
 from server.store.database import Database
-from server.store.models import RunRow
+from server.store.models import RunRow, now
 
 log = logging.getLogger(__name__)
+
+ACTIVE = ("queued", "running")
+MAX_ATTEMPTS = 3
+"""Starts of one run; whatever ends the server or its worker so often is most likely that run."""
+CANCEL_S = 5.0
 
 
 class Run(BaseModel):
@@ -71,9 +78,11 @@ class Jobs:
         self._pool: ProcessPoolExecutor | None = None
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._futures: dict[str, Future[dict[str, Any]]] = {}
+        self._turn = asyncio.Semaphore(max(1, settings.run_workers))
+        self._is_closing = False
 
-    async def start(self, scenario: Scenario, seeds: list[int]) -> Run:
-        """Queue a run.
+    async def start(self, scenario: Scenario, seeds: list[int]) -> tuple[Run, bool]:
+        """Queue a run, or return the same one that is there; true when it is new.
 
         Raises
         ------
@@ -83,26 +92,48 @@ class Jobs:
         settings = self._settings
         if settings.run_workers == 0:
             raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
-        if len(self._tasks) >= settings.max_queued_runs:
-            raise ApiError(429, "too_many_runs", f"{len(self._tasks)} runs wait or run, the limit (max_queued_runs)")
-        ticks = (scenario.samples or 10_000) * len(seeds)
+        ticks = (scenario.samples or DEFAULT_SAMPLES) * len(seeds)
         if ticks > settings.max_run_ticks:
             text = f"this run has {ticks} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
             raise ApiError(422, "too_long", text, "scenario")
         document = json.loads(json.dumps(scenario.document, default=str))
-        text = json.dumps([document, seeds, core_hash()], sort_keys=True)
+        key = run_key(content_hash(document), *seeds)
         row = RunRow(
-            id=secrets.token_hex(16),
-            key=hashlib.sha256(text.encode()).hexdigest(),
+            id=key[:32],
+            key=key,
             state="queued",
             scenario_id=scenario.id,
             title=scenario.head.title,
             document=document,
             seeds=seeds,
+            created=now(),
+            attempts=0,
+            progress=0.0,
+            finished=None,
+            summary=None,
+            error=None,
         )
-        await self._database.run(lambda session: session.add(row))
-        self._tasks[row.id] = asyncio.create_task(self._carry_out(row.id, document, seeds))
-        return Run.model_validate(row)
+        has_room = len(self._tasks) < settings.max_queued_runs
+
+        def settle(session: Session) -> RunRow | None:
+            known = session.get(RunRow, row.id)
+            if known is not None and (known.state in ACTIVE or known.state == "done"):
+                return known
+            if has_room:
+                session.merge(row)
+            return None
+
+        known = await self._database.run(settle)
+        if known is not None:
+            return self._live(Run.model_validate(known)), False
+        if not has_room:
+            raise ApiError(429, "too_many_runs", f"{len(self._tasks)} runs wait or run, the limit (max_queued_runs)")
+        self._queue(row.id, document, seeds)
+        return Run.model_validate(row), True
+
+    def _queue(self, run_id: str, document: dict[str, Any], seeds: list[int]) -> None:
+        """Carry a run out in its turn."""
+        self._tasks[run_id] = asyncio.create_task(self._carry_out(run_id, document, seeds))
 
     async def all(self, limit: int = 200) -> list[Run]:
         """List runs, newest first."""
@@ -118,12 +149,18 @@ class Jobs:
         return self._live(Run.model_validate(row))
 
     async def cancel(self, run_id: str) -> Run:
-        """Take a run that waits out of the queue; one under way is left to end."""
+        """End a run that waits or is under way; a study under way is left to end, and its result dropped."""
         run = await self.get(run_id)
-        future = self._futures.get(run_id)
-        if future is None or not future.cancel():
-            raise ApiError(409, "conflict", f"the run is {run.state}; only a queued one can be cancelled")
-        await asyncio.gather(self._tasks[run_id], return_exceptions=True)
+        task = self._tasks.get(run_id)
+        if task is None:
+            raise ApiError(409, "conflict", f"the run is {run.state}; it cannot be cancelled any more")
+        if run_id not in self._futures:
+            task.cancel()
+        else:
+            place = self._folder / run_id
+            await asyncio.to_thread(place.mkdir, parents=True, exist_ok=True)
+            await asyncio.to_thread((place / CANCEL).touch)
+        await asyncio.wait([task], timeout=CANCEL_S)
         return await self.get(run_id)
 
     def trace_path(self, run_id: str) -> Path:
@@ -134,20 +171,22 @@ class Jobs:
         return path
 
     async def recover(self) -> None:
-        """Mark what a crash interrupted."""
-        query = select(RunRow.id).where(RunRow.state.in_(("queued", "running")))
-        ids = await self._database.run(lambda session: list(session.scalars(query)))
-        for run_id in ids:
-            await asyncio.to_thread(shutil.rmtree, self._folder / run_id, ignore_errors=True)
-            error = {"code": "aborted", "message": "the server stopped before this run was done"}
-            await self._update(run_id, state="aborted", finished=datetime.now(UTC), error=error)
-        if ids:
-            log.warning("%d runs were interrupted and are marked aborted", len(ids))
+        """Begin again what the end of the server interrupted; give up what has been begun too often."""
+        query = select(RunRow).where(RunRow.state.in_(ACTIVE)).order_by(RunRow.created)
+        for row in await self._database.run(lambda session: list(session.scalars(query))):
+            if row.attempts >= MAX_ATTEMPTS or self._settings.run_workers == 0:
+                text = f"the server stopped before this run was done, {row.attempts} times"
+                await self._end(row.id, "aborted", error={"code": "aborted", "message": text})
+                continue
+            log.info("run %s begins again", row.id)
+            self._queue(row.id, row.document, row.seeds)
 
     async def close(self) -> None:
-        """Let go of the queue and the processes."""
-        for future in self._futures.values():
-            future.cancel()
+        """Let go of the queue and the processes; what is not done begins again at the next start."""
+        self._is_closing = True
+        for run_id, task in self._tasks.items():
+            if run_id not in self._futures:
+                task.cancel()
         pool, self._pool = self._pool, None
         if pool is not None:
             for process in list((pool._processes or {}).values()):
@@ -157,26 +196,57 @@ class Jobs:
 
     async def _carry_out(self, run_id: str, document: dict[str, Any], seeds: list[int]) -> None:
         """Wait for a worker, then for the result; whatever happens ends up in the table."""
-        future = self._executor().submit(work, document, seeds, str(self._folder / run_id))
-        self._futures[run_id] = future
-        values: dict[str, Any]
+        state, values = "lost", dict[str, Any]()
         try:
-            values = {"state": "done", "progress": 1.0, "summary": await asyncio.wrap_future(future)}
+            async with self._turn:
+                while state == "lost" and not self._is_closing:
+                    state, values = await self._attempt(run_id, document, seeds)
         except asyncio.CancelledError:
-            values = {"state": "cancelled"}
-        except InputError as error:
-            values = {"state": "failed", "error": body_of(error).model_dump()}
-        except BrokenProcessPool:
-            self._pool = None
-            values = {"state": "aborted", "error": {"code": "aborted", "message": "the worker process died"}}
+            state = "cancelled"
         except Exception as error:
             log.exception("run %s failed", run_id)
-            values = {"state": "failed", "error": {"code": "internal", "message": str(error)}}
+            state, values = "failed", {"error": {"code": "internal", "message": str(error)}}
         finally:
             self._futures.pop(run_id, None)
             self._tasks.pop(run_id, None)
-        self._metrics.runs.labels(values["state"]).inc()
-        await self._update(run_id, finished=datetime.now(UTC), **values)
+        if state == "cancelled":
+            await asyncio.to_thread(shutil.rmtree, self._folder / run_id, ignore_errors=True)
+        if state == "done" or not self._is_closing:
+            await self._end(run_id, state, **values)
+
+    async def _attempt(self, run_id: str, document: dict[str, Any], seeds: list[int]) -> tuple[str, dict[str, Any]]:
+        """Run in a worker; ``lost`` when the worker died and there is reason to try again."""
+        await self._update(run_id, state="running", attempts=RunRow.attempts + 1)
+        place = self._folder / run_id
+        await asyncio.to_thread(shutil.rmtree, place, ignore_errors=True)
+        pool = self._executor()
+        future = self._futures[run_id] = pool.submit(work, document, seeds, str(place))
+        try:
+            summary = await asyncio.wrap_future(future)
+        except Cancelled:
+            return "cancelled", {}
+        except InputError as error:
+            return "failed", {"error": body_of(error).model_dump()}
+        except BrokenProcessPool:
+            self._pool = None if self._pool is pool else self._pool
+            row = await self._database.run(lambda session: session.get(RunRow, run_id))
+            if row is not None and row.attempts < MAX_ATTEMPTS:
+                log.warning("the worker of run %s died; it begins again", run_id)
+                return "lost", {}
+            text = f"its worker process died {MAX_ATTEMPTS} times"
+            return "aborted", {"error": {"code": "aborted", "message": text}}
+        except OSError as error:
+            log.exception("run %s failed", run_id)
+            text = f"the disk failed: {error.strerror or error}"
+            return "failed", {"error": {"code": "no_space", "message": text}}
+        if (place / CANCEL).exists():
+            return "cancelled", {}
+        return "done", {"progress": 1.0, "summary": summary}
+
+    async def _end(self, run_id: str, state: str, **values: Any) -> None:
+        """Note how a run ended."""
+        self._metrics.runs.labels(state).inc()
+        await self._update(run_id, state=state, finished=now(), **values)
 
     async def _update(self, run_id: str, **values: Any) -> None:
         """Change a row."""
@@ -184,19 +254,18 @@ class Jobs:
         await self._database.run(lambda session: session.execute(statement))
 
     def _live(self, run: Run) -> Run:
-        """Add what only the running process knows: whether it has begun, and how far it is."""
-        future = self._futures.get(run.id)
-        if future is None or run.state != "queued" or not future.running():
+        """Add how far a run is, which its worker says."""
+        if run.state != "running":
             return run
         try:
             progress = float((self._folder / run.id / PROGRESS).read_text())
         except (OSError, ValueError):
             progress = 0.0
-        return run.model_copy(update={"state": "running", "progress": progress})
+        return run.model_copy(update={"progress": progress})
 
     def _executor(self) -> ProcessPoolExecutor:
         """Return the pool; its processes are spawned, because forking a process with threads is not safe."""
         if self._pool is None:
             context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(self._settings.run_workers, context, prepare)
+            self._pool = ProcessPoolExecutor(self._settings.run_workers, context, prepare, (NICE,))
         return self._pool

@@ -1,4 +1,4 @@
-"""The database: SQLite in WAL mode, migrated at the start, used from one thread of its own."""
+"""The database: SQLite in WAL mode, or PostgreSQL; migrated at the start, used from one thread of its own."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from sqlalchemy import Engine, create_engine, event, inspect, text
+from sqlalchemy import Engine, create_engine, event, inspect, make_url, text
+from sqlalchemy.exc import ArgumentError
 from sqlalchemy.orm import Session, sessionmaker
+
+from core.errors import InputError
 
 if TYPE_CHECKING:
     from alembic.config import Config
@@ -20,17 +23,19 @@ T = TypeVar("T")
 
 
 class Database:
-    """Sessions over one SQLite file.
+    """Sessions over one database.
 
     Parameters
     ----------
-    path : Path
-        The file; its folder is made.
+    place : Path or str
+        A file for SQLite, whose folder is made; or the address of a database.
     """
 
-    def __init__(self, path: Path) -> None:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self.url = f"sqlite:///{path}"
+    def __init__(self, place: Path | str) -> None:
+        if isinstance(place, Path):
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place = f"sqlite:///{place}"
+        self.url = full_url(place)
         self._engine = make_engine(self.url)
         self._sessions = sessionmaker(self._engine, expire_on_commit=False)
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="combbench-db")
@@ -69,8 +74,10 @@ class Database:
         """Whether a write transaction can be opened."""
 
         def probe(session: Session) -> bool:
-            session.execute(text("BEGIN IMMEDIATE"))
-            return True
+            if session.get_bind().dialect.name == "sqlite":
+                session.execute(text("BEGIN IMMEDIATE"))
+                return True
+            return not session.execute(text("SELECT pg_is_in_recovery()")).scalar()
 
         try:
             return await asyncio.wait_for(self.run(probe), 2.0)
@@ -83,8 +90,29 @@ class Database:
         self._engine.dispose()
 
 
+def full_url(address: str) -> str:
+    """Return the address with the driver we have.
+
+    Raises
+    ------
+    InputError
+        For an address that is neither SQLite's nor PostgreSQL's.
+    """
+    try:
+        url = make_url(address)
+    except ArgumentError:
+        raise InputError("is no address of a database", "database_url", "postgresql://user@host/name") from None
+    if url.drivername in ("postgresql", "postgres"):
+        url = url.set(drivername="postgresql+psycopg")
+    if url.drivername not in ("sqlite", "postgresql+psycopg"):
+        raise InputError(f"{url.drivername} is not known; use sqlite or postgresql", "database_url")
+    return url.render_as_string(hide_password=False)
+
+
 def make_engine(url: str) -> Engine:
-    """Open the database with its pragmas."""
+    """Open the database; SQLite with its pragmas."""
+    if not url.startswith("sqlite"):
+        return create_engine(url, pool_pre_ping=True)
     engine = create_engine(url)
 
     @event.listens_for(engine, "connect")

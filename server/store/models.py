@@ -1,11 +1,11 @@
-"""Tables: headless runs and recordings. Bulk data is in files; a row says which."""
+"""Tables: headless runs, campaigns, their results, recordings. Bulk data is in files; a row says which."""
 
 from __future__ import annotations
 
 from datetime import UTC, datetime
 from typing import Any, ClassVar
 
-from sqlalchemy import JSON, DateTime, Float, Integer, MetaData, String
+from sqlalchemy import JSON, BigInteger, DateTime, Float, Integer, MetaData, String
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 
@@ -48,8 +48,36 @@ class RunRow(Base):
     created: Mapped[datetime] = mapped_column(default=now, index=True)
     finished: Mapped[datetime | None]
     progress: Mapped[float] = mapped_column(Float, default=0.0)
+    attempts: Mapped[int] = mapped_column(Integer, default=0, server_default="0")
     summary: Mapped[dict[str, Any] | None]
     error: Mapped[dict[str, Any] | None]
+
+
+class SweepRow(Base):
+    """One campaign: what was asked, and how it ended; what came out is in the results."""
+
+    __tablename__ = "sweeps"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    state: Mapped[str] = mapped_column(String(16), index=True)
+    name: Mapped[str] = mapped_column(String(64))
+    title: Mapped[str] = mapped_column(String(200))
+    document: Mapped[dict[str, Any]]
+    version: Mapped[str] = mapped_column(String(16))
+    runs: Mapped[int] = mapped_column(Integer)
+    created: Mapped[datetime] = mapped_column(default=now, index=True)
+    finished: Mapped[datetime | None]
+    error: Mapped[dict[str, Any] | None]
+
+
+class ResultRow(Base):
+    """One run of a campaign, by its key: scenario, seed and version. Whoever needs it finds it here."""
+
+    __tablename__ = "results"
+
+    key: Mapped[str] = mapped_column(String(64), primary_key=True)
+    outcome: Mapped[dict[str, Any]]
+    created: Mapped[datetime] = mapped_column(default=now, index=True)
 
 
 class RecordingRow(Base):
@@ -63,9 +91,16 @@ class RecordingRow(Base):
     state: Mapped[str] = mapped_column(String(16), index=True)
     title: Mapped[str] = mapped_column(String(400))
     dt_ms: Mapped[float] = mapped_column(Float)
-    start_tick: Mapped[int] = mapped_column(Integer)
-    ticks: Mapped[int] = mapped_column(Integer, default=0)
+    start_tick: Mapped[int] = mapped_column(BigInteger)
+    ticks: Mapped[int] = mapped_column(BigInteger, default=0)
     signals: Mapped[list[Any]]
+    scenario: Mapped[dict[str, Any] | None]
+    events: Mapped[list[Any] | None]
+    layout: Mapped[dict[str, Any] | None]
+    seed: Mapped[int | None] = mapped_column(BigInteger)
+    version: Mapped[str] = mapped_column(String(64), default="", server_default="")
+    condition: Mapped[str] = mapped_column(String(200), default="", server_default="")
+    bytes: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")
     created: Mapped[datetime] = mapped_column(default=now, index=True)
     finished: Mapped[datetime | None]
     reason: Mapped[str] = mapped_column(String(400), default="")

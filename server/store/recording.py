@@ -7,14 +7,16 @@ end it is rewritten as Parquet. What a crash left behind is recovered at the nex
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-PART = ".arrows"
+PART, EVENTS = ".arrows", ".events"
 
 
 class RecordingFile:
@@ -39,6 +41,11 @@ class RecordingFile:
         self._stream.write_table(table)
         self._sink.flush()
 
+    def note(self, line: str) -> None:
+        """Write an event, a line of JSON; it survives from here on."""
+        with self._path.with_suffix(EVENTS).open("a", encoding="utf-8") as file:
+            file.write(line + "\n")
+
     def finish(self) -> int:
         """Close the stream, turn it into Parquet, return the number of ticks."""
         self._stream.close()
@@ -53,6 +60,31 @@ class RecordingFile:
             return convert(self._path)
         except (OSError, pa.ArrowException):
             return 0
+
+
+def rescue(path: Path) -> int:
+    """Make whole what a crash has left of a recording; return the ticks of its Parquet file, 0 without one."""
+    try:
+        if path.with_suffix(PART).exists():
+            return convert(path)
+        return int(pq.read_metadata(path).num_rows)
+    except (OSError, pa.ArrowException):
+        return 0
+
+
+def first_tick(path: Path) -> int:
+    """Return the first tick of a recording that has some."""
+    batch = next(pq.ParquetFile(path).iter_batches(1, columns=["tick"]))
+    return int(batch.column(0)[0].as_py())
+
+
+def events_of(path: Path) -> list[dict[str, Any]]:
+    """Return the events beside a recording; a line that was cut off is left out."""
+    try:
+        lines = path.with_suffix(EVENTS).read_text("utf-8", errors="replace").splitlines(keepends=True)
+    except OSError:
+        return []
+    return [json.loads(line) for line in lines if line.endswith("\n")]
 
 
 def convert(path: Path) -> int:

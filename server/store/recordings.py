@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 import secrets
 from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 from pydantic import BaseModel, ConfigDict
-from sqlalchemy import select, update
+from sqlalchemy import delete, select, update
 
+from scenarios.key import code_version
 from server.errors import ApiError, not_found
 from server.store.database import Database
 from server.store.models import RecordingRow
-from server.store.recording import PART, RecordingFile, convert
+from server.store.recording import EVENTS, PART, RecordingFile, events_of, first_tick, rescue
+from server.version import VERSION
 
 log = logging.getLogger(__name__)
+
+OPEN = ("armed", "recording")
 
 
 class Recording(BaseModel):
@@ -36,9 +42,35 @@ class Recording(BaseModel):
     start_tick: int
     ticks: int
     signals: list[dict[str, str]]
+    seed: int | None
+    version: str
+    condition: str
+    bytes: int
     created: datetime
     finished: datetime | None
     reason: str
+
+
+class RecordingDetail(Recording):
+    """A recording with all that it takes to understand and repeat it."""
+
+    scenario: dict[str, Any] | None
+    events: list[dict[str, Any]] | None
+    layout: dict[str, Any] | None
+
+
+@dataclass(frozen=True)
+class About:
+    """What a recording says of itself."""
+
+    bench_id: str
+    name: str
+    title: str
+    dt_ms: float
+    scenario: dict[str, Any]
+    seed: int
+    layout: dict[str, Any] | None = None
+    condition: str = ""
 
 
 class Recordings:
@@ -59,22 +91,25 @@ class Recordings:
         """Return the file of a recording; the id is ours, never a caller's text."""
         return self._folder / f"{recording_id}.parquet"
 
-    async def open(
-        self, bench_id: str, name: str, title: str, dt_ms: float, schema: pa.Schema
-    ) -> tuple[Recording, RecordingFile]:
+    async def open(self, about: About, schema: pa.Schema) -> tuple[Recording, RecordingFile]:
         """Make the row and the growing file of a new recording."""
         row = RecordingRow(
             id=secrets.token_hex(16),
-            bench_id=bench_id,
-            name=name,
-            title=title,
-            state="recording",
-            dt_ms=dt_ms,
+            bench_id=about.bench_id,
+            name=about.name,
+            title=about.title,
+            state="armed" if about.condition else "recording",
+            dt_ms=about.dt_ms,
             start_tick=0,
             signals=[
                 {"name": field.name, "unit": (field.metadata or {}).get(b"unit", b"").decode()}
                 for field in list(schema)[2:]
             ],
+            scenario=json.loads(json.dumps(about.scenario, default=str)),
+            layout=about.layout,
+            seed=about.seed,
+            version=f"{VERSION} {code_version()}",
+            condition=about.condition,
         )
         try:
             file = await asyncio.to_thread(RecordingFile, self.path(row.id), schema)
@@ -86,27 +121,32 @@ class Recordings:
 
     async def begin(self, recording_id: str, start_tick: int) -> Recording:
         """Note the first tick, which is known once the engine has begun."""
-        statement = update(RecordingRow).where(RecordingRow.id == recording_id).values(start_tick=start_tick)
+        statement = update(RecordingRow).where(RecordingRow.id == recording_id)
+        statement = statement.values(start_tick=start_tick, state="recording")
         await self._database.run(lambda session: session.execute(statement))
         return await self.get(recording_id)
 
-    def closer(self, recording_id: str) -> Callable[[int, str], None]:
+    def closer(self, recording_id: str) -> Callable[[int, int, str], None]:
         """Return the function that closes the row; called on the recorder's thread."""
 
-        def close(ticks: int, reason: str) -> None:
-            values: dict[str, Any] = {
-                "state": "done" if ticks else "failed",
-                "ticks": ticks,
-                "reason": reason,
-                "finished": datetime.now(UTC),
-            }
-            statement = update(RecordingRow).where(RecordingRow.id == recording_id).values(**values)
-            try:
-                self._database.transact(lambda session: session.execute(statement))
-            except Exception:
-                log.exception("recording %s could not be closed in the database", recording_id)
+        def close(first: int, ticks: int, reason: str) -> None:
+            state = "done" if ticks else "failed"
+            self._close(recording_id, {"state": state, "start_tick": first, "ticks": ticks, "reason": reason})
 
         return close
+
+    def _close(self, recording_id: str, values: dict[str, Any]) -> None:
+        """Close a row; the events move into it from the file beside the trace."""
+        path = self.path(recording_id)
+        values |= {"finished": datetime.now(UTC), "events": events_of(path)}
+        values["bytes"] = path.stat().st_size if path.exists() else 0
+        statement = update(RecordingRow).where(RecordingRow.id == recording_id).values(**values)
+        try:
+            self._database.transact(lambda session: session.execute(statement))
+        except Exception:
+            log.exception("recording %s could not be closed in the database", recording_id)
+        else:
+            path.with_suffix(EVENTS).unlink(missing_ok=True)
 
     async def all(self, bench_id: str | None = None) -> list[Recording]:
         """List recordings, newest first."""
@@ -116,33 +156,48 @@ class Recordings:
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         return [Recording.model_validate(row) for row in rows]
 
-    async def get(self, recording_id: str) -> Recording:
+    async def get(self, recording_id: str) -> RecordingDetail:
         """Return one recording, or refuse with 404."""
         row = await self._database.run(lambda session: session.get(RecordingRow, recording_id))
         if row is None:
             raise not_found("recording", recording_id)
-        return Recording.model_validate(row)
+        return RecordingDetail.model_validate(row)
+
+    async def finished(self, recording_id: str) -> tuple[RecordingDetail, Path]:
+        """Return a recording that has ended, and its file."""
+        recording = await self.get(recording_id)
+        path = self.path(recording.id)
+        if recording.state in OPEN or not path.is_file():
+            raise not_found("finished trace of recording", recording_id, "stop the recording first")
+        return recording, path
+
+    async def delete(self, recording_id: str) -> None:
+        """Delete a recording that has ended, row and file."""
+        recording = await self.get(recording_id)
+        if recording.state in OPEN:
+            raise ApiError(409, "conflict", "the recording is under way", hint="stop it first")
+        await self._database.run(lambda session: session.execute(delete(RecordingRow).filter_by(id=recording_id)))
+        await asyncio.to_thread(self.path(recording_id).unlink, missing_ok=True)
 
     async def recover(self) -> None:
         """Make whole what a crash has left: keep the ticks that reached the disk, mark the row aborted."""
-        query = select(RecordingRow.id).where(RecordingRow.state == "recording")
-        ids = await self._database.run(lambda session: list(session.scalars(query)))
-        for recording_id in ids:
-            ticks = await asyncio.to_thread(self._rescue, recording_id)
-            statement = (
-                update(RecordingRow)
-                .where(RecordingRow.id == recording_id)
-                .values(state="aborted", ticks=ticks, reason="the server stopped", finished=datetime.now(UTC))
-            )
-            await self._database.run(lambda session, do=statement: session.execute(do))  # type: ignore[misc]
-            log.warning("recovered %d ticks of recording %s", ticks, recording_id)
+        query = select(RecordingRow.id, RecordingRow.state)
+        known = {row.id: row.state for row in await self._database.run(lambda session: list(session.execute(query)))}
+        for recording_id, state in known.items():
+            # A disk that was full leaves a stream of a recording that has ended.
+            if state in OPEN or self.path(recording_id).with_suffix(PART).exists():
+                ticks = await asyncio.to_thread(self._rescue, recording_id)
+                log.warning("recovered %d ticks of recording %s", ticks, recording_id)
+        for path in self._folder.glob("*"):  # a crash between making a file and its row leaves an empty one
+            if path.suffix in (PART, EVENTS, ".part") and path.name.split(".")[0] not in known:
+                path.unlink(missing_ok=True)
 
     def _rescue(self, recording_id: str) -> int:
-        """Convert a stream that was cut off; 0 if there is nothing in it."""
+        """Make a file whole and close its row."""
         path = self.path(recording_id)
-        if not path.with_suffix(PART).exists():
-            return 0
-        try:
-            return convert(path)
-        except (OSError, pa.ArrowException):
-            return 0
+        ticks = rescue(path)
+        values: dict[str, Any] = {"state": "aborted", "ticks": ticks, "reason": "the server stopped"}
+        if ticks:
+            values["start_tick"] = first_tick(path)
+        self._close(recording_id, values)
+        return ticks

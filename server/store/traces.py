@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, BinaryIO, Literal, cast
 
 import numpy as np
@@ -12,6 +14,9 @@ import pyarrow.csv
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from core.errors import InputError, unknown
+
+LARGEST = 2**62
 Format = Literal["csv", "parquet", "npz", "mat"]
 
 MEDIA_TYPES: dict[str, str] = {
@@ -43,6 +48,67 @@ def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[
     columns = [pa.array(ticks), pa.array(ticks * dt_ms)]
     columns += [pa.array(np.ascontiguousarray(row, np.float32)) for row in samples]
     return pa.Table.from_arrays(columns, schema=schema)
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Which part of a trace: signals (all when empty), ticks from start to before end, every so many."""
+
+    signals: tuple[str, ...] = ()
+    start: int | None = None
+    end: int | None = None
+    every: int = 1
+
+    @property
+    def is_all(self) -> bool:
+        """Whether nothing is left out."""
+        return self == Cut()
+
+
+def read_cut(path: Path, cut: Cut, most: int) -> pa.Table:
+    """Read a part of a stored trace, piece by piece, so that a long one fits as well.
+
+    Parameters
+    ----------
+    path : Path
+        A Parquet file with a column ``tick``.
+    cut : Cut
+        The part.
+    most : int
+        Ticks it may have.
+
+    Raises
+    ------
+    InputError
+        For a signal that is not in it, or when nothing or too much is left.
+    """
+    file = pq.ParquetFile(path)
+    known = file.schema_arrow.names
+    for name in cut.signals:
+        if name not in known[2:]:
+            raise unknown("signal", name, known[2:], "signals")
+    columns = [*known[:2], *cut.signals] if cut.signals else known
+    start, end = cut.start if cut.start is not None else -LARGEST, cut.end if cut.end is not None else LARGEST
+    pieces, count, first = [], 0, None
+    for batch in file.iter_batches(columns=columns):
+        tick = batch.column(0).to_numpy()
+        inside = (tick >= start) & (tick < end)
+        if first is None and inside.any():
+            first = tick[inside.argmax()]
+        if first is not None:
+            inside &= (tick - first) % cut.every == 0
+        piece = batch.filter(pa.array(inside))
+        count += piece.num_rows
+        if count > most:
+            text = f"more than {most} ticks (max_trace_ticks)"
+            raise InputError(
+                text, "end_tick", "a shorter span, every so many ticks, or all of it as parquet", "too_long"
+            )
+        pieces.append(piece)
+    if not count:
+        raise InputError("nothing of the trace lies in that span", "start_tick")
+    schema = pa.schema([file.schema_arrow.field(name) for name in columns], metadata=file.schema_arrow.metadata)
+    return pa.Table.from_batches(pieces).cast(schema)
 
 
 def write(table: pa.Table, file: BinaryIO, kind: Format) -> None:

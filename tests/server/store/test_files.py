@@ -98,7 +98,8 @@ class Ends:
     def __init__(self) -> None:
         self.told: list[tuple[int, str]] = []
 
-    def __call__(self, ticks: int, reason: str) -> None:
+    def __call__(self, first: int, ticks: int, reason: str) -> None:
+        self.first = first
         self.told.append((ticks, reason))
 
 
@@ -143,7 +144,7 @@ def test_a_disk_that_is_too_slow_ends_the_recording_and_not_the_bench(
     path, ends = tmp_path / "r.parquet", Ends()
     one = recorder(path, ends)
     while one.is_open:
-        one.append(0, np.zeros((2, 10_000), np.float32))
+        one.append(0, np.zeros((2, 20_000), np.float32))
     one.join()
     assert ends.told[0][1] == "the disk could not keep up"
     assert pq.read_metadata(path).num_rows == ends.told[0][0]

@@ -167,7 +167,9 @@ def test_a_shuttle_in_the_plane_shifts_turns_and_warns(live: Any) -> None:
     live.command(bench["id"], "step", ticks=400)
     session, pose = pose_of(live, bench)
     assert session.board.trip is not None
-    assert pose.contact == 1 and max(pose.warnings) > 0.9 and pose.short in (1, 2, 3)
+    # the short frees the shuttle, which may have sprung back within the sample of the contact
+    assert pose.contact == 1 and pose.short in (1, 2, 3)
+    assert pose.warnings == pytest.approx([(abs(eta) / 2.1) ** 0.5 for eta in pose.combs_um], abs=0.011)
 
 
 def test_light_is_seen_where_a_sensor_uses_it(live: Any) -> None:

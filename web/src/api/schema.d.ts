@@ -451,7 +451,7 @@ export interface paths {
         put?: never;
         /**
          * Start Recording
-         * @description Begin to record.
+         * @description Begin to record: now, or when a condition holds, with some of the past; `ticks: 0` keeps the past alone.
          */
         post: operations["start_recording_api_v1_benches__bench_id__recordings_post"];
         delete?: never;
@@ -509,11 +509,55 @@ export interface paths {
         };
         /**
          * Get Recording
-         * @description Describe a recording.
+         * @description Describe a recording: scenario, seed, events, versions, layout.
          */
         get: operations["get_recording_api_v1_recordings__recording_id__get"];
         put?: never;
         post?: never;
+        /**
+         * Delete Recording
+         * @description Delete a recording that has ended.
+         */
+        delete: operations["delete_recording_api_v1_recordings__recording_id__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/recordings/{recording_id}/replay": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Replay Recording
+         * @description Play a recording on a bench of its own: the same streams; commands start, pause, step, seek, loop, time_scale.
+         */
+        post: operations["replay_recording_api_v1_recordings__recording_id__replay_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/recordings/{recording_id}/compare": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Compare Recordings
+         * @description Compare two recordings signal by signal: pass or fail.
+         */
+        post: operations["compare_recordings_api_v1_recordings__recording_id__compare_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -529,7 +573,7 @@ export interface paths {
         };
         /**
          * Get Recording Trace
-         * @description Download a recording.
+         * @description Download a recording, or a part of it.
          */
         get: operations["get_recording_trace_api_v1_recordings__recording_id__trace_get"];
         put?: never;
@@ -600,7 +644,7 @@ export interface paths {
         post?: never;
         /**
          * Cancel Run
-         * @description Cancel a run that waits.
+         * @description Cancel a run that waits or is under way.
          */
         delete: operations["cancel_run_api_v1_runs__run_id__delete"];
         options?: never;
@@ -620,6 +664,114 @@ export interface paths {
          * @description Download the trace of a run (of its first seed).
          */
         get: operations["get_run_trace_api_v1_runs__run_id__trace_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Sweeps
+         * @description List campaigns.
+         */
+        get: operations["list_sweeps_api_v1_sweeps_get"];
+        put?: never;
+        /**
+         * Start Sweep
+         * @description Start a campaign, or go on with one that was stopped; asked twice, the same one answers.
+         */
+        post: operations["start_sweep_api_v1_sweeps_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sweep
+         * @description Return how far a campaign is.
+         */
+        get: operations["get_sweep_api_v1_sweeps__sweep_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Cancel Sweep
+         * @description Stop a campaign; what is done stays.
+         */
+        delete: operations["cancel_sweep_api_v1_sweeps__sweep_id__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/points": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sweep Points
+         * @description Return figures, confusion, delays and receiver operating characteristics, of what is done so far.
+         */
+        get: operations["get_sweep_points_api_v1_sweeps__sweep_id__points_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sweep Runs
+         * @description Download one row for each run that is done: point, seed, digest and every figure.
+         */
+        get: operations["get_sweep_runs_api_v1_sweeps__sweep_id__runs_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sweep Report
+         * @description Download the report, one HTML file that needs nothing else.
+         */
+        get: operations["get_sweep_report_api_v1_sweeps__sweep_id__report_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -866,6 +1018,11 @@ export interface components {
              */
             recording: string[];
             /**
+             * Armed
+             * @description Recordings that wait for their condition
+             */
+            armed: string[];
+            /**
              * Watchers
              * @default 0
              */
@@ -930,6 +1087,11 @@ export interface components {
              * @description Path of the 3D page, if there is one
              */
             view3d: string | null;
+            /**
+             * Replay Of
+             * @description The recording it plays; such a bench takes no changes
+             */
+            replay_of?: string | null;
         };
         /**
          * BenchList
@@ -1055,6 +1217,63 @@ export interface components {
             entry: components["schemas"]["Event"];
         };
         /**
+         * CompareWith
+         * @description What to compare a recording with.
+         */
+        CompareWith: {
+            /**
+             * Other
+             * @description Id of another recording
+             */
+            other: string;
+            /**
+             * Absolute
+             * @description Tolerance of every signal, in its unit
+             * @default 0
+             */
+            absolute?: number;
+            /**
+             * Relative
+             * @description And that share of its largest value in the first
+             * @default 0
+             */
+            relative?: number;
+            /**
+             * Tolerances
+             * @description Tolerance of some signals instead
+             * @default {}
+             */
+            tolerances?: {
+                [key: string]: number;
+            };
+            /**
+             * Align
+             * @description Equal ticks, or first upon first
+             * @default tick
+             * @enum {string}
+             */
+            align?: "tick" | "start";
+        };
+        /**
+         * Comparison
+         * @description The table of a comparison.
+         */
+        Comparison: {
+            /** Ok */
+            ok: boolean;
+            /**
+             * Ticks
+             * @description Ticks compared
+             */
+            ticks: number;
+            /** Signals */
+            signals: components["schemas"]["SignalDifference"][];
+            /** Only In First */
+            only_in_first: string[];
+            /** Only In Second */
+            only_in_second: string[];
+        };
+        /**
          * Curve
          * @description A quantity over frequency, and the band it lies in.
          */
@@ -1149,6 +1368,23 @@ export interface components {
             kind: string;
             /** Names */
             names: string[];
+        };
+        /**
+         * DiagnosisTally
+         * @description What one diagnoser said in all runs of a point.
+         */
+        DiagnosisTally: {
+            /** Names */
+            names: string[];
+            /** Confusion */
+            confusion: number[][];
+            /** Delays */
+            delays: {
+                [key: string]: number;
+            };
+            /** Missed */
+            missed: number;
+            roc: components["schemas"]["Roc"] | null;
         };
         /**
          * Digest
@@ -1557,6 +1793,22 @@ export interface components {
             frequency: number;
         };
         /**
+         * Loop
+         * @description Play a span of the recording again and again; without one, play it to its end.
+         */
+        Loop: {
+            /**
+             * Kind
+             * @default loop
+             * @constant
+             */
+            kind?: "loop";
+            /** Start Tick */
+            start_tick?: number | null;
+            /** End Tick */
+            end_tick?: number | null;
+        };
+        /**
          * MapSource
          * @description Which rule, on which plant kv/(b2 s^2 + b1 s + 1), and the axes of the map.
          */
@@ -1714,17 +1966,6 @@ export interface components {
             time_scale?: number | null;
         };
         /**
-         * NewRecording
-         * @description What to call a recording.
-         */
-        NewRecording: {
-            /**
-             * Name
-             * @default recording
-             */
-            name?: string;
-        };
-        /**
          * NewRun
          * @description What to run.
          */
@@ -1762,6 +2003,19 @@ export interface components {
              * @default
              */
             name?: string;
+        };
+        /**
+         * NewSweep
+         * @description What to run.
+         */
+        NewSweep: {
+            /**
+             * Sweep
+             * @description Campaign as TOML text or as a document
+             */
+            sweep: string | {
+                [key: string]: unknown;
+            };
         };
         /**
          * ParameterCard
@@ -1816,6 +2070,50 @@ export interface components {
             tick: number | null;
             /** When */
             when: string | null;
+        };
+        /**
+         * PointTally
+         * @description All runs of a point.
+         */
+        PointTally: {
+            /** Labels */
+            labels: {
+                [key: string]: string | number;
+            };
+            /**
+             * Runs
+             * @default 0
+             */
+            runs?: number;
+            /**
+             * Ok
+             * @default 0
+             */
+            ok?: number;
+            /**
+             * Tripped
+             * @default 0
+             */
+            tripped?: number;
+            /**
+             * Errors
+             * @default []
+             */
+            errors?: string[];
+            /**
+             * Metrics
+             * @default {}
+             */
+            metrics?: {
+                [key: string]: components["schemas"]["Spread"];
+            };
+            /**
+             * Diagnosis
+             * @default {}
+             */
+            diagnosis?: {
+                [key: string]: components["schemas"]["DiagnosisTally"];
+            };
         };
         /**
          * PortCard
@@ -1947,6 +2245,14 @@ export interface components {
             signals: {
                 [key: string]: string;
             }[];
+            /** Seed */
+            seed: number | null;
+            /** Version */
+            version: string;
+            /** Condition */
+            condition: string;
+            /** Bytes */
+            bytes: number;
             /**
              * Created
              * Format: date-time
@@ -1958,12 +2264,84 @@ export interface components {
             reason: string;
         };
         /**
+         * RecordingDetail
+         * @description A recording with all that it takes to understand and repeat it.
+         */
+        RecordingDetail: {
+            /** Id */
+            id: string;
+            /** Bench Id */
+            bench_id: string;
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /** State */
+            state: string;
+            /** Dt Ms */
+            dt_ms: number;
+            /** Start Tick */
+            start_tick: number;
+            /** Ticks */
+            ticks: number;
+            /** Signals */
+            signals: {
+                [key: string]: string;
+            }[];
+            /** Seed */
+            seed: number | null;
+            /** Version */
+            version: string;
+            /** Condition */
+            condition: string;
+            /** Bytes */
+            bytes: number;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /** Finished */
+            finished: string | null;
+            /** Reason */
+            reason: string;
+            /** Scenario */
+            scenario: {
+                [key: string]: unknown;
+            } | null;
+            /** Events */
+            events: {
+                [key: string]: unknown;
+            }[] | null;
+            /** Layout */
+            layout: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
          * RecordingList
          * @description Recordings, newest first.
          */
         RecordingList: {
             /** Recordings */
             recordings: components["schemas"]["Recording"][];
+        };
+        /**
+         * Replay
+         * @description How to play a recording.
+         */
+        Replay: {
+            /**
+             * Speed
+             * @description Multiple of the pace it was recorded at
+             * @default 1
+             */
+            speed?: number;
+            /**
+             * Paused
+             * @default false
+             */
+            paused?: boolean;
         };
         /**
          * Reset
@@ -2011,6 +2389,20 @@ export interface components {
              * @constant
              */
             kind?: "reset_trip";
+        };
+        /**
+         * Roc
+         * @description Share of faulty samples called faulty against share of healthy ones, as the threshold falls.
+         */
+        Roc: {
+            /** False Alarm */
+            false_alarm: number[];
+            /** Detection */
+            detection: number[];
+            /** Log10 Odds */
+            log10_odds: number[];
+            /** Area */
+            area: number;
         };
         /**
          * Run
@@ -2143,6 +2535,20 @@ export interface components {
             confusion: number[][];
         };
         /**
+         * Seek
+         * @description Go to a tick of the recording that is played.
+         */
+        Seek: {
+            /**
+             * Kind
+             * @default seek
+             * @constant
+             */
+            kind?: "seek";
+            /** Tick */
+            tick: number;
+        };
+        /**
          * Set
          * @description Set parameters by their paths, all in one tick.
          */
@@ -2198,6 +2604,32 @@ export interface components {
             index: number;
         };
         /**
+         * SignalDifference
+         * @description One signal of both.
+         */
+        SignalDifference: {
+            /** Signal */
+            signal: string;
+            /** Unit */
+            unit: string;
+            /**
+             * Max Difference
+             * @description Largest absolute difference
+             */
+            max_difference: number;
+            /**
+             * At Tick
+             * @description Tick of the first recording where that is
+             */
+            at_tick: number;
+            /** Rms Difference */
+            rms_difference: number;
+            /** Tolerance */
+            tolerance: number;
+            /** Ok */
+            ok: boolean;
+        };
+        /**
          * Snapshot
          * @description A moment that can be gone back to.
          */
@@ -2221,6 +2653,22 @@ export interface components {
         SnapshotList: {
             /** Snapshots */
             snapshots: components["schemas"]["Snapshot"][];
+        };
+        /**
+         * Spread
+         * @description A figure over runs; ``std`` is that of a sample.
+         */
+        Spread: {
+            /** Count */
+            count: number;
+            /** Mean */
+            mean: number;
+            /** Std */
+            std: number;
+            /** Min */
+            min: number;
+            /** Max */
+            max: number;
         };
         /**
          * SpreadOf
@@ -2308,6 +2756,57 @@ export interface components {
              * @constant
              */
             kind?: "step_period";
+        };
+        /**
+         * SweepList
+         * @description Campaigns, newest first.
+         */
+        SweepList: {
+            /** Sweeps */
+            sweeps: components["schemas"]["SweepRun"][];
+        };
+        /**
+         * SweepPoints
+         * @description Results of a campaign, point by point.
+         */
+        SweepPoints: {
+            sweep: components["schemas"]["SweepRun"];
+            /** Points */
+            points: components["schemas"]["PointTally"][];
+        };
+        /**
+         * SweepRun
+         * @description A campaign as the API shows it.
+         */
+        SweepRun: {
+            /** Id */
+            id: string;
+            /** State */
+            state: string;
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /** Version */
+            version: string;
+            /** Runs */
+            runs: number;
+            /**
+             * Done
+             * @default 0
+             */
+            done?: number;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /** Finished */
+            finished: string | null;
+            /** Error */
+            error: {
+                [key: string]: unknown;
+            } | null;
         };
         /**
          * SweptSine
@@ -2451,6 +2950,40 @@ export interface components {
             boundary: components["schemas"]["SafeBoundary"] | null;
         };
         /**
+         * Wanted
+         * @description What to record: from now, or from when a condition holds, with some of the past.
+         */
+        Wanted: {
+            /**
+             * Name
+             * @default recording
+             */
+            name?: string;
+            /**
+             * Past Ticks
+             * @description Ticks of the past it takes along, as far as kept
+             * @default 0
+             */
+            past_ticks?: number;
+            /**
+             * Ticks
+             * @description Ends by itself so many ticks after its beginning
+             */
+            ticks?: number | null;
+            /**
+             * When
+             * @description Waits for '<signal> > <value>'
+             */
+            when?: string | null;
+            /**
+             * Layout
+             * @description Layout of the page, kept with it
+             */
+            layout?: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
          * Ack
          * @description The client has drawn (or taken) every frame up to this one.
          */
@@ -2476,7 +3009,7 @@ export interface components {
             /** Id */
             id: string;
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["TimeScale"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
         };
         /**
          * Rearm
@@ -2790,6 +3323,11 @@ export interface components {
              * @description Recordings under way
              */
             recording: string[];
+            /**
+             * Armed
+             * @description Recordings that wait for their condition
+             */
+            armed: string[];
             /**
              * Watchers
              * @default 0
@@ -3229,7 +3767,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["TimeScale"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
             };
         };
         responses: {
@@ -3653,7 +4191,7 @@ export interface operations {
         };
         requestBody?: {
             content: {
-                "application/json": components["schemas"]["NewRecording"] | null;
+                "application/json": components["schemas"]["Wanted"] | null;
             };
         };
         responses: {
@@ -3755,7 +4293,106 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Recording"];
+                    "application/json": components["schemas"]["RecordingDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    delete_recording_api_v1_recordings__recording_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                recording_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    replay_recording_api_v1_recordings__recording_id__replay_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                recording_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Replay"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    compare_recordings_api_v1_recordings__recording_id__compare_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                recording_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CompareWith"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Comparison"];
                 };
             };
             /** @description Refused or failed */
@@ -3773,6 +4410,13 @@ export interface operations {
         parameters: {
             query?: {
                 format?: "csv" | "parquet" | "npz" | "mat";
+                /** @description Names, separated by commas; all when empty */
+                signals?: string;
+                start_tick?: number | null;
+                /** @description The one behind the last */
+                end_tick?: number | null;
+                /** @description Every so many ticks */
+                every?: number;
             };
             header?: never;
             path: {
@@ -3888,6 +4532,15 @@ export interface operations {
             };
         };
         responses: {
+            /** @description The same run is there already */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Run"];
+                };
+            };
             /** @description Successful Response */
             202: {
                 headers: {
@@ -3974,6 +4627,13 @@ export interface operations {
         parameters: {
             query?: {
                 format?: "csv" | "parquet" | "npz" | "mat";
+                /** @description Names, separated by commas; all when empty */
+                signals?: string;
+                start_tick?: number | null;
+                /** @description The one behind the last */
+                end_tick?: number | null;
+                /** @description Every so many ticks */
+                every?: number;
             };
             header?: never;
             path: {
@@ -3992,6 +4652,234 @@ export interface operations {
                     "text/csv; charset=utf-8": unknown;
                     "application/vnd.apache.parquet": unknown;
                     "application/octet-stream": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_sweeps_api_v1_sweeps_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    start_sweep_api_v1_sweeps_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewSweep"];
+            };
+        };
+        responses: {
+            /** @description The same campaign is there already */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRun"];
+                };
+            };
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sweep_api_v1_sweeps__sweep_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    cancel_sweep_api_v1_sweeps__sweep_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sweep_points_api_v1_sweeps__sweep_id__points_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepPoints"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sweep_runs_api_v1_sweeps__sweep_id__runs_get: {
+        parameters: {
+            query?: {
+                format?: "csv" | "parquet";
+            };
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv; charset=utf-8": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sweep_report_api_v1_sweeps__sweep_id__report_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
                 };
             };
             /** @description Refused or failed */

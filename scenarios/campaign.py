@@ -1,0 +1,189 @@
+"""Carries a campaign out: what the run table does not have is computed, in batches, and put into it.
+
+The table is the truth. Whoever dies (a worker, the scheduler, this process), what is in the table is never computed
+again, and what is not is computed by whoever goes on.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from statistics import fmean
+from typing import Any, Protocol
+
+from scenarios.executor import LOST, open_executor
+from scenarios.key import code_version
+from scenarios.outcome import outcome
+from scenarios.schema import Scenario
+from scenarios.sweep import Sweep
+
+BATCH_S = 1.0
+"""A batch is worth this much computing, so that sending it costs nothing beside."""
+MAX_BATCH = 500
+AHEAD = 2
+"""Batches under way for each worker."""
+LOOK_S = 0.2
+PATIENCE = 5
+"""Losses in a row without one result before a campaign gives up."""
+
+Task = tuple[str, dict[str, Any], int]
+Found = list[tuple[str, dict[str, Any]]]
+
+
+class Table(Protocol):
+    """The run table."""
+
+    def have(self, keys: Sequence[str]) -> set[str]:
+        """Return which of the keys are there."""
+
+    def put(self, found: Found) -> None:
+        """Add outcomes in one transaction; one that is there already stays as it is."""
+
+
+class Stopped(Exception):
+    """The campaign could not go on; what is done stays done."""
+
+
+def compute(tasks: list[Task], version: str) -> Found:
+    """Compute a batch; in a worker.
+
+    Raises
+    ------
+    RuntimeError
+        When the worker runs another version of the code.
+    """
+    if version != code_version():
+        raise RuntimeError(f"the worker runs version {code_version()} of the code, the campaign is of {version}")
+    found: Found = []
+    scenario, read = None, None
+    for key, document, seed in tasks:
+        if scenario is None or document is not read:
+            scenario, read = Scenario.load(document), document
+        found.append((key, outcome(scenario, seed).model_dump()))
+    return found
+
+
+class Campaign:
+    """A campaign under way.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        What to run.
+    table : Table
+        Where results are and go.
+    workers : int
+        Processes of this machine.
+    scheduler : str
+        Address of a Dask scheduler instead.
+    niceness : int
+        How far the processes give way.
+    on_progress : callable
+        Called with the runs done and the number of all, after every batch.
+    """
+
+    def __init__(
+        self,
+        sweep: Sweep,
+        table: Table,
+        *,
+        workers: int = 1,
+        scheduler: str = "",
+        niceness: int = 0,
+        on_progress: Callable[[int, int], None] = lambda _done, _all: None,
+    ) -> None:
+        self.sweep, self.total = sweep, len(sweep)
+        self._table, self._on_progress = table, on_progress
+        self._workers, self._scheduler, self._niceness = workers, scheduler, niceness
+        self._cost = BATCH_S
+        self._left: dict[str, Task] = {}
+        self._is_cancelled = self._is_abandoned = False
+
+    @property
+    def done(self) -> int:
+        """Runs that are in the table."""
+        return self.total - len(self._left)
+
+    def cancel(self) -> None:
+        """Stop after the batches under way; what is done stays."""
+        self._is_cancelled = True
+
+    def abandon(self) -> None:
+        """Stop at once; the runs under way are lost, and computed by whoever goes on."""
+        self._is_cancelled = self._is_abandoned = True
+
+    def run(self) -> bool:
+        """Compute what is missing; true when everything is there.
+
+        Raises
+        ------
+        Stopped
+            When nothing computes any more: no worker, or no scheduler.
+        """
+        tasks = {key: (key, point.document, seed) for key, point, seed in self.sweep.runs()}
+        self.total = len(tasks)  # two points may be the same run
+        have = self._table.have(list(tasks))
+        self._left = {key: task for key, task in tasks.items() if key not in have}
+        self._on_progress(self.done, self.total)
+        losses = 0
+        while self._left and not self._is_cancelled:
+            before = self.done
+            try:
+                with open_executor(self._workers, self._scheduler, self._niceness) as executor:
+                    self._work(executor)
+            except LOST as error:
+                losses = 1 if self.done > before else losses + 1
+                if losses >= PATIENCE:
+                    where = f"the scheduler at {self._scheduler}" if self._scheduler else "worker processes"
+                    text = f"lost {where} {losses} times in a row; {self.done} of {self.total} runs are done"
+                    raise Stopped(text) from error
+                time.sleep(min(2.0**losses, 10.0) / 4)
+        return not self._left
+
+    def _work(self, executor: Executor) -> None:
+        """Keep the workers busy until nothing is left; what comes in is put into the table at once."""
+        waiting = deque(self._left.values())
+        pending: set[Future[Found]] = set()
+        lost: BaseException | None = None
+        while (waiting and not self._is_cancelled) or pending:
+            try:
+                width = self._width(executor)
+                while waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * width:
+                    pending.add(executor.submit(compute, self._batch(waiting, width), code_version()))
+            except LOST as error:
+                lost = error
+            done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)
+            for future in done:
+                try:
+                    self._take(future.result())
+                except LOST as error:
+                    lost = error
+            if lost is not None and not pending:
+                raise lost
+            if self._is_cancelled:
+                for future in pending:
+                    future.cancel()
+            if self._is_abandoned:
+                for process in list((getattr(executor, "_processes", None) or {}).values()):
+                    process.kill()
+                return
+
+    def _batch(self, waiting: deque[Task], width: int) -> list[Task]:
+        """Take runs worth `BATCH_S` from the queue, fewer when every worker would not get some."""
+        size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, -(-len(waiting) // width))
+        return [waiting.popleft() for _ in range(min(size, len(waiting)))]
+
+    def _take(self, found: Found) -> None:
+        """Put results into the table and learn what a run costs."""
+        self._table.put(found)
+        self._cost = max(fmean(entry["elapsed_s"] for _, entry in found), 1e-6)
+        for key, _ in found:
+            self._left.pop(key, None)
+        self._on_progress(self.done, self.total)
+
+    def _width(self, executor: Executor) -> int:
+        """Return how many batches are computed at once."""
+        client = getattr(executor, "_client", None)
+        return max(1, sum(client.nthreads().values())) if client is not None else self._workers

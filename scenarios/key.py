@@ -1,0 +1,36 @@
+"""The key of a run: the same scenario, seed and version give the same bits, so one run of them is enough."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from core.board.spec import with_values
+from scenarios.kernel_cache import CORE
+
+SCENARIOS = Path(__file__).resolve().parent
+
+
+@cache
+def code_version() -> str:
+    """Return a hash of all code a result depends on: every Python file of ``core`` and ``scenarios``."""
+    digest = hashlib.sha256()
+    for folder in (CORE, SCENARIOS):
+        for path in sorted(folder.rglob("*.py")):
+            digest.update(path.relative_to(folder.parent).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def content_hash(document: dict[str, Any]) -> str:
+    """Return a hash of a scenario without its seed; neither the order of fields nor where they stand matters."""
+    content = {name: value for name, value in with_values(document, {}).items() if name != "seed"}
+    return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()
+
+
+def run_key(content: str, *seeds: int) -> str:
+    """Return the key of the runs of a scenario, by the hash of its content, with some seeds and this version."""
+    return hashlib.sha256(f"{content} {seeds} {code_version()}".encode()).hexdigest()

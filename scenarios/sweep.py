@@ -1,0 +1,224 @@
+"""A campaign: one scenario at many points, each with many seeds."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Literal, Self
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from core.block import FloatArray
+from core.device.spread import Tolerances, draw
+from core.errors import InputError, from_validation
+from scenarios.edit import with_values
+from scenarios.key import content_hash, run_key
+from scenarios.library import get
+from scenarios.schema import Scenario
+
+MAX_RUNS = 1_000_000
+MAX_POINTS = 20_000
+Values = dict[str, Any]
+
+
+class Part(BaseModel):
+    """Base of every table of a campaign."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class Seeds(Part):
+    """Noise seeds; every point runs with the same ones, so that points differ by their values alone."""
+
+    first: int = Field(1, ge=0, le=2**53)
+    count: int = Field(1, ge=1, le=MAX_RUNS)
+
+
+class Range(Part):
+    """Where a value may lie."""
+
+    min: float
+    max: float
+    scale: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.min >= self.max:
+            raise ValueError("needs min < max")
+        if self.scale == "log" and self.min <= 0:
+            raise ValueError("needs min > 0 for a logarithmic scale")
+        return self
+
+    def at(self, share: FloatArray) -> FloatArray:
+        """Return the values at shares from 0 to 1 of the range."""
+        if self.scale == "linear":
+            return self.min + (self.max - self.min) * share
+        return self.min * np.exp(math.log(self.max / self.min) * share)
+
+
+class LatinHypercube(Part):
+    """Points spread evenly in every value at once (McKay, Beckman, Conover 1979)."""
+
+    points: int = Field(ge=1, le=MAX_POINTS)
+    seed: int = Field(1, ge=0)
+    ranges: dict[str, Range] = Field(min_length=1)
+
+    def values(self) -> list[Values]:
+        """Return the points: each value has one in every stratum, in an order of its own."""
+        generator = np.random.default_rng(self.seed)
+        columns = [
+            entry.at((generator.permutation(self.points) + generator.random(self.points)) / self.points)
+            for entry in self.ranges.values()
+        ]
+        return [dict(zip(self.ranges, row, strict=True)) for row in np.array(columns).T.tolist()]
+
+
+class ProcessSpread(Part):
+    """Devices of the scenario's drawing as a process would make them; standard deviations."""
+
+    devices: int = Field(ge=1, le=MAX_POINTS)
+    seed: int = Field(1, ge=0)
+    beam_bias_um: float = Field(Tolerances.beam_bias_um, ge=0)
+    comb_bias_um: float = Field(Tolerances.comb_bias_um, ge=0)
+    thickness_um: float = Field(Tolerances.thickness_um, ge=0)
+    film_gap_um: float = Field(Tolerances.film_gap_um, ge=0)
+    youngs_modulus_gpa: float = Field(Tolerances.youngs_modulus_gpa, ge=0)
+
+    def values(self, base: Scenario) -> list[Values]:
+        """Return the numbers of each drawn device."""
+        geometry = base.spec.device.geometry
+        if geometry is None:
+            raise InputError("has no drawing to vary; choose lcr-350", "device.id")
+        tolerances = Tolerances(**self.model_dump(exclude={"devices", "seed"}))
+        drawn = draw(geometry, tolerances, self.devices, self.seed).drawn
+        rows = np.array(list(drawn.values())).T.tolist()
+        return [{f"device.geometry.{name}": value for name, value in zip(drawn, row, strict=True)} for row in rows]
+
+
+class Variant(Part):
+    """One of several alternatives, such as a controller or a set of diagnosers."""
+
+    name: str = Field(min_length=1, max_length=100)
+    set: Values
+
+
+class Head(Part):
+    """The file of a campaign."""
+
+    schema_: Literal[1] = Field(1, alias="schema")
+    id: str = Field("sweep", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")
+    title: str = Field("", max_length=200)
+    scenario: str | dict[str, Any]
+    set: Values = {}
+    seeds: Seeds = Seeds()
+    variants: list[Variant] = Field([], max_length=1000)
+    grid: dict[str, list[Any]] = {}
+    latin_hypercube: LatinHypercube | None = None
+    process_spread: ProcessSpread | None = None
+
+
+@dataclass(frozen=True)
+class Point:
+    """One set of values: what it is called in tables, and the scenario with it."""
+
+    labels: dict[str, str | float]
+    document: dict[str, Any]
+
+
+class Sweep:
+    """A checked campaign.
+
+    Attributes
+    ----------
+    document : dict
+        What it was read from.
+    head : Head
+        Its tables.
+    points : list of Point
+        Every combination of variant, grid, hypercube and device.
+    """
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document = document
+        try:
+            self.head = Head.model_validate(document)
+        except ValidationError as error:
+            raise from_validation(error, {"": [*FIELDS]}) from None
+        source = self.head.scenario
+        base = get(source) if isinstance(source, str) else Scenario.load(source)
+        self.base = with_values(base, self.head.set)
+        axes = self._axes()
+        count = math.prod(len(axis) for axis in axes)
+        if count > MAX_POINTS or count * self.head.seeds.count > MAX_RUNS:
+            text = f"{count} points with {self.head.seeds.count} seeds each; at most {MAX_POINTS} points"
+            raise InputError(f"{text} and {MAX_RUNS} runs", "grid", code="too_long")
+        self.points = [self._point(chosen) for chosen in itertools.product(*axes)]
+
+    @classmethod
+    def load(cls, text: str | dict[str, Any]) -> Sweep:
+        """Read a campaign from TOML or from a document.
+
+        Raises
+        ------
+        InputError
+            Naming the field, or the line of malformed TOML.
+        """
+        if isinstance(text, dict):
+            return cls(text)
+        try:
+            return cls(tomllib.loads(text))
+        except tomllib.TOMLDecodeError as error:
+            raise InputError(f"malformed TOML: {error}", "sweep", code="malformed") from None
+
+    @property
+    def seeds(self) -> range:
+        """The noise seeds of every point."""
+        return range(self.head.seeds.first, self.head.seeds.first + self.head.seeds.count)
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return len(self.points) * len(self.seeds)
+
+    def runs(self) -> Iterator[tuple[str, Point, int]]:
+        """Yield every run: its key, point and seed."""
+        for point in self.points:
+            content = content_hash(point.document)
+            for seed in self.seeds:
+                yield run_key(content, seed), point, seed
+
+    def _axes(self) -> list[list[tuple[Values, Values]]]:
+        """Return what is combined: for each axis its steps, each with labels and values."""
+        head = self.head
+        axes: list[list[tuple[Values, Values]]] = []
+        if head.variants:
+            axes.append([({"variant": variant.name}, variant.set) for variant in head.variants])
+        for path, choices in head.grid.items():
+            if not choices:
+                raise InputError("needs at least one value", f"grid.{path}")
+            axes.append([({path: _label(value)}, {path: value}) for value in choices])
+        if head.latin_hypercube is not None:
+            axes.append([(values, values) for values in head.latin_hypercube.values()])
+        if head.process_spread is not None:
+            found = head.process_spread.values(self.base)
+            axes.append([({"device": float(number)}, values) for number, values in enumerate(found, 1)])
+        return axes
+
+    def _point(self, chosen: tuple[tuple[Values, Values], ...]) -> Point:
+        labels: dict[str, str | float] = {}
+        values: Values = {}
+        for names, written in chosen:
+            labels |= names
+            values |= written
+        return Point(labels, with_values(self.base, values).document)
+
+
+FIELDS = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
+
+
+def _label(value: Any) -> str | float:
+    """Say a value of a grid in a table."""
+    return value if isinstance(value, str | int | float) and not isinstance(value, bool) else str(value)

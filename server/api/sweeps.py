@@ -1,0 +1,112 @@
+"""Campaigns: start, watch, cancel, read the results."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel, Field
+
+from scenarios.report import campaign_report, results_table
+from scenarios.sweep import Sweep
+from scenarios.tally import PointTally, tally
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import RateLimited, ServiceDep
+from server.api.files import file_name, table_response
+from server.errors import ApiError
+from server.runs.sweeps import SweepRun
+from server.store.traces import MEDIA_TYPES
+
+router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=StrictRoute)
+
+HTML = "text/html"
+
+
+class NewSweep(Body):
+    """What to run."""
+
+    sweep: str | dict[str, Any] = Field(description="Campaign as TOML text or as a document")
+
+
+class SweepList(BaseModel):
+    """Campaigns, newest first."""
+
+    sweeps: list[SweepRun]
+
+
+class SweepPoints(BaseModel):
+    """Results of a campaign, point by point."""
+
+    sweep: SweepRun
+    points: list[PointTally]
+
+
+@router.post(
+    "",
+    status_code=202,
+    dependencies=[RateLimited],
+    responses={200: {"model": SweepRun, "description": "The same campaign is there already"}},
+)
+async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -> SweepRun:
+    """Start a campaign, or go on with one that was stopped; asked twice, the same one answers."""
+    document = (
+        body.sweep if isinstance(body.sweep, dict) else (await asyncio.to_thread(Sweep.load, body.sweep)).document
+    )
+    found, is_new = await service.sweeps.start(document)
+    response.status_code = 202 if is_new else 200
+    response.headers["Location"] = f"/api/v1/sweeps/{found.id}"
+    return found
+
+
+@router.get("")
+async def list_sweeps(service: ServiceDep) -> SweepList:
+    """List campaigns."""
+    return SweepList(sweeps=await service.sweeps.all())
+
+
+@router.get("/{sweep_id}")
+async def get_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
+    """Return how far a campaign is."""
+    return await service.sweeps.get(sweep_id)
+
+
+@router.delete("/{sweep_id}", dependencies=[RateLimited])
+async def cancel_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
+    """Stop a campaign; what is done stays."""
+    return await service.sweeps.cancel(sweep_id)
+
+
+@router.get("/{sweep_id}/points")
+async def get_sweep_points(sweep_id: str, service: ServiceDep) -> SweepPoints:
+    """Return figures, confusion, delays and receiver operating characteristics, of what is done so far."""
+    return SweepPoints(sweep=await service.sweeps.get(sweep_id), points=await service.sweeps.points(sweep_id))
+
+
+@router.get("/{sweep_id}/runs", response_class=Response, responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}})
+async def get_sweep_runs(
+    sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"
+) -> Response:
+    """Download one row for each run that is done: point, seed, digest and every figure."""
+    sweep, outcomes = await service.sweeps.outcomes(sweep_id)
+    table = await asyncio.to_thread(results_table, sweep, outcomes)
+    if not table.num_rows:
+        raise ApiError(409, "conflict", "no run of this campaign is done yet")
+    return await table_response(service, table, f"{sweep.head.id}-runs", kind)
+
+
+@router.get("/{sweep_id}/report", response_class=Response, responses={200: {"content": {HTML: {}}}})
+async def get_sweep_report(sweep_id: str, service: ServiceDep) -> Response:
+    """Download the report, one HTML file that needs nothing else."""
+    sweep, outcomes = await service.sweeps.outcomes(sweep_id)
+    text = await asyncio.to_thread(lambda: campaign_report(sweep, tally(sweep, outcomes)))
+    return report_response(text, sweep.head.id)
+
+
+def report_response(text: str, name: str) -> Response:
+    """Send a report: shown under a policy that allows its own style and nothing else."""
+    headers = {
+        "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'self'",
+        "Content-Disposition": f'inline; filename="{file_name(name, "html")}"',
+    }
+    return Response(text, media_type=HTML, headers=headers)

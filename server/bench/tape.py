@@ -1,0 +1,100 @@
+"""A recording played where a bench has its board: the same ticks, the same signals, nothing computed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from core.board.board import Board, Rows
+from core.errors import InputError
+from server.store.recording import first_tick
+
+REFUSAL = "this bench plays a recording"
+
+
+class Tape:
+    """Stands for a board and advances by reading.
+
+    Parameters
+    ----------
+    board : Board
+        Made from the scenario of the recording; says what the signals and blocks are.
+    path : Path
+        The file of the recording.
+    """
+
+    def __init__(self, board: Board, path: Path) -> None:
+        self._board = board
+        self._file = pq.ParquetFile(path)
+        recorded = set(self._file.schema_arrow.names)
+        names = [signal.name for signal in board.signals]
+        self._columns = [(at, name) for at, name in enumerate(names) if name in recorded]
+        if not self._columns:
+            raise InputError("has no signal this version knows", "recording")
+        self._width, self._outputs = len(names), board.signals.outputs
+        self.first = self.tick = first_tick(path)
+        self.end = self.first + self._file.metadata.num_rows
+        sizes = [self._file.metadata.row_group(i).num_rows for i in range(self._file.num_row_groups)]
+        self._edges = self.first + np.concatenate([[0], np.cumsum(sizes)])
+        self._group: tuple[int, NDArray[np.float32]] | None = None
+        self.trip = None
+        self.pending: list[Any] = []
+        self.faults: dict[str, Any] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        """Answer for the board in all that does not change: specification, signals, log, sample interval."""
+        return getattr(self._board, name)
+
+    def advance(self, n: int) -> Rows:
+        """Read up to ``n`` ticks, to the end of the recording or of a piece of its file."""
+        count = min(n, self._board.chunk, self.end - self.tick)
+        if count <= 0:
+            return self._rows(np.zeros((0, self._width)))
+        number = int(np.searchsorted(self._edges, self.tick, "right")) - 1
+        samples = self._read(number)
+        start = self.tick - int(self._edges[number])
+        found = self._rows(samples[start : start + count].astype(np.float64))
+        self.tick += found.count
+        return found
+
+    def seek(self, tick: int) -> None:
+        """Go to a tick of the recording."""
+        if not self.first <= tick < self.end:
+            raise InputError(f"the recording has ticks {self.first} to {self.end - 1}", "tick")
+        self.tick = tick
+
+    def scores(self) -> dict[str, Any]:
+        """Return nothing: scores are among the signals."""
+        return {}
+
+    def digest(self) -> str:
+        """Return nothing: what is recorded is rounded."""
+        return ""
+
+    def apply(self, *_: Any) -> NoReturn:
+        """Refuse: the past cannot be changed."""
+        raise InputError(REFUSAL, "command", "run its scenario to change something", "conflict")
+
+    def checkpoint(self) -> NoReturn:
+        """Refuse: there is no state."""
+        raise InputError(REFUSAL, "bench", "run its scenario to branch off", "conflict")
+
+    save = checkpoint
+
+    def _read(self, number: int) -> NDArray[np.float32]:
+        """Return a row group as ``(ticks, signals)``; what was not recorded is not a number."""
+        if self._group is None or self._group[0] != number:
+            table = self._file.read_row_group(number, columns=[name for _, name in self._columns])
+            samples = np.full((table.num_rows, self._width), np.nan, np.float32)
+            for at, name in self._columns:
+                samples[:, at] = table.column(name).to_numpy()
+            self._group = number, samples
+        return self._group[1]
+
+    def _rows(self, samples: NDArray[np.float64]) -> Rows:
+        outputs, taps = np.split(samples, [self._outputs], axis=1)
+        return Rows(self.tick, len(samples), np.ascontiguousarray(outputs), np.ascontiguousarray(taps))

@@ -1,0 +1,234 @@
+"""Campaigns of the service: one after the other, in processes of lower priority or on a cluster.
+
+Rows say what was asked, the run table what is done. A campaign that the end of the server interrupted goes on at the
+next start with what is missing.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from datetime import UTC, datetime
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+from sqlalchemy import select, update
+
+from core.errors import InputError
+from scenarios.campaign import Campaign, Stopped
+from scenarios.key import code_version, content_hash, run_key
+from scenarios.outcome import Outcome
+from scenarios.sweep import Sweep
+from scenarios.tally import PointTally, tally
+from server.errors import ApiError, body_of, not_found
+from server.metrics import Metrics
+from server.runs.worker import NICE
+from server.settings import Settings
+from server.store.database import Database
+from server.store.models import SweepRow
+from server.store.results import Results
+
+log = logging.getLogger(__name__)
+
+ACTIVE = ("queued", "running")
+
+
+class SweepRun(BaseModel):
+    """A campaign as the API shows it."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: str
+    state: str
+    name: str
+    title: str
+    version: str
+    runs: int
+    done: int = 0
+    created: datetime
+    finished: datetime | None
+    error: dict[str, Any] | None
+
+
+class Sweeps:
+    """Queues campaigns and keeps their results.
+
+    Parameters
+    ----------
+    database : Database
+        Where campaigns and results are.
+    settings : Settings
+        Limits, number of processes, scheduler.
+    metrics : Metrics
+        Where ended campaigns are counted.
+    """
+
+    def __init__(self, database: Database, settings: Settings, metrics: Metrics) -> None:
+        self._database, self._settings, self._metrics = database, settings, metrics
+        self._results = Results(database)
+        self._turn = asyncio.Semaphore(1)
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._campaigns: dict[str, Campaign] = {}
+        self._is_closing = False
+
+    async def start(self, source: str | dict[str, Any]) -> tuple[SweepRun, bool]:
+        """Queue a campaign, or return the same one that is there; true when it is new.
+
+        Raises
+        ------
+        ApiError
+            If too many wait, or it has too many runs.
+        """
+        settings = self._settings
+        if settings.run_workers == 0 and not settings.scheduler:
+            raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
+        sweep = await asyncio.to_thread(Sweep.load, source)
+        if len(sweep) > settings.max_sweep_runs:
+            text = f"this campaign has {len(sweep)} runs, the limit is {settings.max_sweep_runs} (max_sweep_runs)"
+            raise ApiError(422, "too_long", text, "sweep")
+        longest = max(point.document.get("samples") or 10_000 for point in sweep.points)
+        if longest > settings.max_run_ticks:
+            text = f"a run of this campaign has {longest} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
+            raise ApiError(422, "too_long", text, "sweep")
+        sweep_id = run_key(content_hash({"sweep": sweep.document}))[:32]
+        known = await self._row(sweep_id)
+        if known is not None and known.state in (*ACTIVE, "done"):
+            return await self.get(sweep_id), False
+        if len(self._tasks) >= settings.max_queued_runs:
+            raise ApiError(
+                429, "too_many_runs", f"{len(self._tasks)} campaigns wait or run, the limit (max_queued_runs)"
+            )
+        values: dict[str, Any] = {
+            "id": sweep_id,
+            "state": "queued",
+            "name": sweep.head.id,
+            "title": sweep.head.title,
+            "document": json.loads(json.dumps(sweep.document, default=str)),
+            "version": code_version(),
+            "runs": len({key for key, _, _ in sweep.runs()}),
+            "finished": None,
+            "error": None,
+        }
+        await self._database.run(lambda session: session.merge(SweepRow(**values)))
+        self._tasks[sweep_id] = asyncio.create_task(self._carry_out(sweep_id, sweep))
+        return await self.get(sweep_id), True
+
+    async def all(self, limit: int = 200) -> list[SweepRun]:
+        """List campaigns, newest first."""
+        query = select(SweepRow).order_by(SweepRow.created.desc()).limit(limit)
+        rows = await self._database.run(lambda session: list(session.scalars(query)))
+        return [self._live(SweepRun.model_validate(row)) for row in rows]
+
+    async def get(self, sweep_id: str) -> SweepRun:
+        """Return one campaign, or refuse with 404."""
+        return self._live(SweepRun.model_validate(await self._known(sweep_id)))
+
+    async def cancel(self, sweep_id: str) -> SweepRun:
+        """Stop a campaign after the runs in hand; what is done stays, and the same campaign goes on from there."""
+        found = await self.get(sweep_id)
+        task = self._tasks.get(sweep_id)
+        if task is None:
+            raise ApiError(409, "conflict", f"the campaign is {found.state}; it cannot be cancelled any more")
+        campaign = self._campaigns.get(sweep_id)
+        if campaign is not None:
+            campaign.cancel()
+        else:
+            task.cancel()
+        await asyncio.wait([task], timeout=10.0)
+        return await self.get(sweep_id)
+
+    async def outcomes(self, sweep_id: str) -> tuple[Sweep, dict[str, Outcome]]:
+        """Return a campaign with the results that are there."""
+        row = await self._known(sweep_id)
+        return await asyncio.to_thread(self._read, row.document, row.version)
+
+    async def points(self, sweep_id: str) -> list[PointTally]:
+        """Return the results of a campaign, added up point by point."""
+        sweep, outcomes = await self.outcomes(sweep_id)
+        return await asyncio.to_thread(tally, sweep, outcomes)
+
+    async def recover(self) -> None:
+        """Go on with what the end of the server interrupted."""
+        query = select(SweepRow).where(SweepRow.state.in_(ACTIVE)).order_by(SweepRow.created)
+        for row in await self._database.run(lambda session: list(session.scalars(query))):
+            try:
+                if row.version != code_version():
+                    raise InputError("was begun by another version of the code; start it again", "sweep")
+                sweep = await asyncio.to_thread(Sweep.load, row.document)
+            except InputError as error:
+                await self._end(row.id, "aborted", body_of(error).model_dump())
+                continue
+            self._tasks[row.id] = asyncio.create_task(self._carry_out(row.id, sweep))
+            log.info("campaign %s goes on", row.id)
+
+    async def close(self) -> None:
+        """Stop what is under way; it goes on at the next start."""
+        self._is_closing = True
+        for sweep_id, task in list(self._tasks.items()):
+            campaign = self._campaigns.get(sweep_id)
+            if campaign is not None:
+                campaign.abandon()
+            else:
+                task.cancel()
+        await asyncio.gather(*self._tasks.values(), return_exceptions=True)
+
+    async def _carry_out(self, sweep_id: str, sweep: Sweep) -> None:
+        """Wait for the turn, then for the end."""
+        state, error = "done", None
+        try:
+            async with self._turn:
+                await self._update(sweep_id, state="running")
+                settings = self._settings
+                campaign = Campaign(
+                    sweep,
+                    self._results,
+                    workers=settings.run_workers,
+                    scheduler=settings.scheduler,
+                    niceness=NICE,
+                )
+                self._campaigns[sweep_id] = campaign
+                if not await asyncio.to_thread(campaign.run):
+                    state = "cancelled"
+        except asyncio.CancelledError:
+            state = "cancelled"
+        except Stopped as stopped:
+            state, error = "aborted", {"code": "aborted", "message": str(stopped)}
+        except Exception as failure:
+            log.exception("campaign %s failed", sweep_id)
+            state, error = "failed", {"code": "internal", "message": str(failure)}
+        finally:
+            self._tasks.pop(sweep_id, None)
+            self._campaigns.pop(sweep_id, None)
+        if not self._is_closing or state == "done":
+            await self._end(sweep_id, state, error)
+
+    async def _end(self, sweep_id: str, state: str, error: dict[str, Any] | None) -> None:
+        self._metrics.runs.labels(state).inc()
+        await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC))
+
+    def _read(self, document: dict[str, Any], version: str) -> tuple[Sweep, dict[str, Outcome]]:
+        if version != code_version():
+            raise ApiError(409, "conflict", f"its runs are of version {version} of the code, this is {code_version()}")
+        sweep = Sweep.load(document)
+        keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
+        return sweep, {key: Outcome.model_validate(found) for key, found in self._results.outcomes(keys)}
+
+    def _live(self, found: SweepRun) -> SweepRun:
+        """Add how far it is."""
+        campaign = self._campaigns.get(found.id)
+        done = campaign.done if campaign is not None else found.runs if found.state == "done" else 0
+        return found.model_copy(update={"done": done})
+
+    async def _row(self, sweep_id: str) -> SweepRow | None:
+        return await self._database.run(lambda session: session.get(SweepRow, sweep_id))
+
+    async def _known(self, sweep_id: str) -> SweepRow:
+        row = await self._row(sweep_id)
+        if row is None:
+            raise not_found("campaign", sweep_id)
+        return row
+
+    async def _update(self, sweep_id: str, **values: Any) -> None:
+        statement = update(SweepRow).where(SweepRow.id == sweep_id).values(**values)
+        await self._database.run(lambda session: session.execute(statement))

@@ -1,0 +1,96 @@
+"""How much is kept, and for how long: the quota and the retention of recordings and runs."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import shutil
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from sqlalchemy import delete, select
+
+from server.errors import ApiError
+from server.settings import Settings
+from server.store.database import Database
+from server.store.models import RecordingRow, RunRow
+
+log = logging.getLogger(__name__)
+
+EVERY_S = 3600.0
+FOLDERS = ("recordings", "runs")
+
+
+class Keeping:
+    """Watches what recordings and runs take.
+
+    Parameters
+    ----------
+    database : Database
+        Where their rows are.
+    settings : Settings
+        Folder, quota, retention.
+    """
+
+    def __init__(self, database: Database, settings: Settings) -> None:
+        self._database, self._settings = database, settings
+
+    async def room(self) -> int:
+        """Return the bytes that may still be written.
+
+        Raises
+        ------
+        ApiError
+            When the quota is used up.
+        """
+        used = await asyncio.to_thread(self._used)
+        left = self._settings.quota_bytes - used
+        if left <= 0:
+            text = f"recordings and runs take {used} bytes, the quota is {self._settings.quota_bytes} (quota_bytes)"
+            raise ApiError(507, "no_space", text, hint="delete recordings, or wait for their retention to end")
+        return left
+
+    async def run(self) -> None:
+        """Delete what is older than it may be, now and every hour."""
+        while True:
+            try:
+                await self.expire()
+            except Exception:
+                log.exception("old recordings and runs could not be deleted")
+            await asyncio.sleep(EVERY_S)
+
+    async def expire(self) -> int:
+        """Delete what ended longer ago than the retention; return how many."""
+        if not self._settings.retention_days:
+            return 0
+        before = datetime.now(UTC) - timedelta(days=self._settings.retention_days)
+        count = 0
+        for table, folder in ((RecordingRow, "recordings"), (RunRow, "runs")):
+            query = select(table.id).where(table.finished < before)
+            ids = await self._database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
+            for one in ids:
+                statement = delete(table).filter_by(id=one)
+                await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
+                await asyncio.to_thread(_remove, self._settings.data / folder, one)
+            count += len(ids)
+        if count:
+            log.info("deleted %d recordings and runs older than %g days", count, self._settings.retention_days)
+        return count
+
+    def _used(self) -> int:
+        """Return the bytes of all files of recordings and runs."""
+        total = 0
+        for folder in FOLDERS:
+            for path in (self._settings.data / folder).rglob("*"):
+                try:
+                    total += path.stat().st_size if path.is_file() else 0
+                except FileNotFoundError:  # gone meanwhile
+                    continue
+        return total
+
+
+def _remove(folder: Path, name: str) -> None:
+    """Remove the files of a recording, or the folder of a run."""
+    shutil.rmtree(folder / name, ignore_errors=True)
+    for path in folder.glob(f"{name}.*"):
+        path.unlink(missing_ok=True)

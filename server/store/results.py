@@ -1,0 +1,55 @@
+"""The results of campaigns, by the key of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from sqlalchemy import Insert, select
+from sqlalchemy.dialects import postgresql, sqlite
+
+from server.store.database import Database
+from server.store.models import ResultRow
+
+AT_ONCE = 500
+"""Keys in one query: SQLite takes 999 parameters where it is old."""
+
+
+class Results:
+    """The run table of campaigns.
+
+    Parameters
+    ----------
+    database : Database
+        Where it is.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def have(self, keys: Sequence[str]) -> set[str]:
+        """Return which of the keys are there."""
+        found: set[str] = set()
+        for start in range(0, len(keys), AT_ONCE):
+            query = select(ResultRow.key).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
+            found |= set(self._database.transact(lambda session, q=query: list(session.scalars(q))))  # type: ignore[misc]
+        return found
+
+    def put(self, found: list[tuple[str, dict[str, Any]]]) -> None:
+        """Add outcomes in one transaction; one that is there already stays as it is."""
+        rows = [{"key": key, "outcome": outcome} for key, outcome in found]
+        if rows:
+            self._database.transact(lambda session: session.execute(self._insert(), rows))
+
+    def outcomes(self, keys: Sequence[str]) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Yield the outcomes that are there, a few hundred at a time."""
+        for start in range(0, len(keys), AT_ONCE):
+            query = select(ResultRow.key, ResultRow.outcome).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
+            rows = self._database.transact(lambda session, q=query: list(session.execute(q)))  # type: ignore[misc]
+            yield from ((key, outcome) for key, outcome in rows)
+
+    def _insert(self) -> Insert:
+        """Say "insert unless it is there" in the words of the database."""
+        if self._database.url.startswith("sqlite"):
+            return sqlite.insert(ResultRow).on_conflict_do_nothing()
+        return postgresql.insert(ResultRow).on_conflict_do_nothing()

@@ -1,0 +1,127 @@
+"""A campaign from the command line: a folder with the run table, the results, and the report."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow.csv
+import pyarrow.parquet as pq
+
+from core.errors import InputError
+from scenarios.campaign import Campaign
+from scenarios.outcome import Outcome
+from scenarios.report import campaign_report, results_table
+from scenarios.sweep import Sweep
+from scenarios.tally import tally
+from scenarios.traces import write_json
+from server.store.database import Database
+from server.store.results import Results
+
+TABLE, REPORT, POINTS, RUNS_PARQUET, RUNS_CSV = (
+    "campaign.sqlite3",
+    "report.html",
+    "points.json",
+    "runs.parquet",
+    "runs.csv",
+)
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a campaign ended."""
+
+    done: int
+    total: int
+    failed: int
+    folder: Path
+
+
+def read_sweep(path: Path) -> Sweep:
+    """Read a campaign file; a scenario named by a path is looked for beside it.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be read, or what it says is wrong.
+    """
+    document = _toml(path, "sweep")
+    source = document.get("scenario")
+    if isinstance(source, str) and source.endswith(".toml"):
+        document["scenario"] = _toml(path.parent / source, "scenario")
+    return Sweep.load(document)
+
+
+def _toml(path: Path, field: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}", field) from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path} is not UTF-8 text", field) from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"malformed TOML in {path}: {error}", field, code="malformed") from None
+
+
+def carry_out(
+    sweep: Sweep,
+    folder: Path,
+    database_url: str,
+    resume: bool,
+    workers: int,
+    scheduler: str,
+    on_progress: Callable[[int, int], None],
+) -> Ended:
+    """Run what is missing of a campaign and write what is there.
+
+    Raises
+    ------
+    InputError
+        When the folder holds a campaign and it is not to be gone on with, or cannot be written.
+    Stopped
+        When nothing computes any more; what is done is written first.
+    """
+    place = folder / TABLE
+    if (place.exists() or (folder / REPORT).exists()) and not resume:
+        text = f"{folder} holds a campaign already"
+        raise InputError(text, "--out", "--resume goes on with it; or choose another folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not os.access(folder, os.W_OK):
+            raise PermissionError(13, "Permission denied")
+    except OSError as error:
+        raise InputError(f"cannot write to {folder}: {error.strerror}", "--out") from None
+    database = Database(database_url or place)
+    try:
+        database.migrate()
+        results = Results(database)
+        campaign = Campaign(sweep, results, workers=workers, scheduler=scheduler, on_progress=on_progress)
+        try:
+            campaign.run()
+        finally:
+            failed = write(sweep, results, folder)
+    finally:
+        database.close()
+    return Ended(campaign.done, campaign.total, failed, folder)
+
+
+def write(sweep: Sweep, results: Results, folder: Path) -> int:
+    """Write report and tables, each under a temporary name first; return how many runs could not be carried out."""
+    keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
+    outcomes = {key: Outcome.model_validate(found) for key, found in results.outcomes(keys)}
+    points = tally(sweep, outcomes)
+    table = results_table(sweep, outcomes)
+    write_json(folder / POINTS, [point.model_dump() for point in points])
+    for name, put in (
+        (REPORT, lambda path: path.write_text(campaign_report(sweep, points), "utf-8")),
+        (RUNS_PARQUET, lambda path: pq.write_table(table, path, compression="zstd")),
+        (RUNS_CSV, lambda path: pyarrow.csv.write_csv(table, path)),
+    ):
+        part = folder / f"{name}.part"
+        put(part)
+        part.rename(folder / name)
+    return sum(bool(outcome.error) for outcome in outcomes.values())

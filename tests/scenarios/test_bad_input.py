@@ -1,0 +1,154 @@
+"""Bad input is refused in one line that names its field."""
+
+from __future__ import annotations
+
+import copy
+import math
+from typing import Any
+
+import pytest
+
+from core.errors import InputError
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import build
+from scenarios.schema import Scenario
+from tests.lab import document
+
+BAD: list[tuple[dict[str, Any], str]] = [
+    ({"sensor.noise_nm": 5}, "sensor.noise_nm"),
+    ({"sensor.noise": 5}, "sensor.noise"),
+    ({"sensor.noise_um": "loud"}, "sensor.noise_um"),
+    ({"sensor.noise_um": "0.6 um"}, "sensor.noise_um"),
+    ({"sensor.noise_um": -0.1}, "sensor.noise_um"),
+    ({"sensor.noise_um": math.nan}, "sensor.noise_um"),
+    ({"sensor.noise_um": math.inf}, "sensor.noise_um"),
+    ({"sensor.noise_um": [1]}, "sensor.noise_um"),
+    ({"sensor.kind": "perfect"}, "sensor.kind"),
+    ({"sensor.kind": 3}, "sensor.kind"),
+    ({"sensor": 3}, "sensor"),
+    ({"reference.kind": "sinus"}, "reference.kind"),
+    ({"reference": {"kind": "sine"}}, "reference"),
+    ({"reference.amplitude_um": 1.0}, "reference"),
+    ({"reference.frequency_hz": -5}, "reference.frequency_hz"),
+    ({"reference.frequency_khz": 2}, "reference.frequency_khz"),
+    ({"controller.kind": "pdi"}, "controller.kind"),
+    ({"controller": {"kind": "pid", "gain": 1}}, "controller.gain"),
+    ({"controllers.pid.pole": 99}, "controllers.pid.pole"),
+    ({"controllers.nobody.gain": 1}, "controllers"),
+    ({"plant.model": "quadratic"}, "plant.model"),
+    ({"plant.drive": "wireless"}, "plant.kind"),
+    ({"plant.mass": 1}, "plant.mass"),
+    ({"device.id": "ch7"}, "device.id"),
+    ({"device.mass_g": 1}, "device.mass_g"),
+    ({"device.mass_kg": 0}, "device.mass_kg"),
+    ({"device.geometry.fingers": 3.5}, "device.geometry.fingers"),
+    ({"sample_rate_khz": 0}, "sample_rate_khz"),
+    ({"sample_rate_hz": 5}, "sample_rate_hz"),
+    ({"seed": -1}, "seed"),
+    ({"seed": 1.5}, "seed"),
+    ({"samples": 0}, "samples"),
+    ({"samples": 100, "duration_ms": 3.0}, "duration_ms"),
+    ({"schema": 2}, "schema"),
+    ({"id": "No Spaces"}, "id"),
+    ({"verdict": "true"}, "verdict"),
+    ({"nonsense": 1}, "nonsense"),
+    ({"diagnosers.kalman.kind": "oracle"}, "diagnosers.kalman.kind"),
+    ({"diagnosers.Kal man.kind": "mmae"}, "diagnosers.Kal man"),
+    ({"diagnosers.kalman": {"kind": "mmae", "probability_floor": 0.2}}, "diagnosers.kalman.probability_floor"),
+    ({"diagnosers.kalman": {"kind": "mmae", "hypotheses": []}}, "diagnosers.kalman.hypotheses"),
+    (
+        {"diagnosers.kalman": {"kind": "mmae", "hypotheses": [{"name": "a"}, {"name": "a"}]}},
+        "diagnosers.kalman",
+    ),
+    (
+        {"diagnosers.kalman": {"kind": "mmae", "hypotheses": [{"name": "a"}, {"name": "b", "mass": -1}]}},
+        "diagnosers.kalman.hypotheses.1.mass",
+    ),
+    ({"diagnosers.kalman": {"kind": "mmae", "every": 0}}, "diagnosers.kalman.every"),
+    ({"events": [{"at_sample": 1}]}, "events.0"),
+    ({"events": [{"fault": "damping", "severity": 1.0}]}, "events.0"),
+    ({"events": [{"at_sample": 1, "fault": "damping"}]}, "events.0"),
+    ({"events": [{"at_sample": 1, "heal": "all"}, {"at_ms": 1, "fault": "dampling", "severity": 1}]}, "events.1.fault"),
+    ({"events": [{"at_sample": 1, "fault": "damping", "severity": 1e9}]}, "events.0.severity"),
+    ({"events": [{"at_sample": 1, "fault": "damping", "severity": math.nan}]}, "events.0.severity"),
+    ({"events": [{"at_ms": 1, "fault": "damping", "severity": 1, "profile": {"kind": "x"}}]}, "events.0.profile.kind"),
+    ({"events": [{"at_sample": 1, "at_ms": 2.0, "heal": "all"}]}, "events.0"),
+    ({"events": [{"when": "nothing > 1", "heal": "all"}]}, "events.0.when"),
+    ({"events": [{"at_sample": 1, "set": {"sensor.noise_nm": 1}}]}, "events.0.sensor.noise_nm"),
+    ({"events": [{"at_sample": 1, "switch": "nobody"}]}, "events.0.controller"),
+    ({"events": [{"at_sample": 1, "explode": True}]}, "events.0.explode"),
+    ({"expect": [{"metric": "x"}]}, "expect.0"),
+    ({"expect": [{"metric": "x", "value": 1.0}]}, "expect.0"),
+    ({"expect": [{"min": 1.0}]}, "expect.0.metric"),
+    ({"expect": [{"metric": "x", "min": math.nan}]}, "expect.0.min"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("values", "field"), BAD, ids=[str(values)[:80] for values, _ in BAD])
+def test_bad_input_is_refused_with_its_field(values, field):
+    whole = copy.deepcopy(document())
+    for path, value in values.items():
+        table = whole
+        *parents, leaf = path.split(".")
+        for part in parents:
+            table = table.setdefault(part, {})
+        table[leaf] = value
+    with pytest.raises(InputError) as error:
+        build(Scenario.load(whole))
+    assert error.value.field == field, str(error.value)
+    text = str(error.value)
+    assert "\n" not in text and text.startswith(f"{field}: ") and len(text) > len(field) + 8
+
+
+@pytest.mark.parametrize(
+    "text", ["a = ", "schema = 1\n[device", "schema = 1\nschema = 1", "\x00", "x = 1e", "[[events]\n"]
+)
+def test_malformed_toml(text):
+    with pytest.raises(InputError, match="malformed TOML") as error:
+        Scenario.load(text)
+    assert error.value.code == "malformed" and "\n" not in str(error.value)
+    assert "line" in str(error.value) or "end of document" in str(error.value)
+
+
+@pytest.mark.parametrize("thing", [None, 3, [], [1]])
+def test_a_scenario_must_be_a_table(thing):
+    with pytest.raises(InputError):
+        Scenario(thing)
+
+
+@pytest.mark.parametrize(
+    ("path", "word"),
+    [
+        ("sensor.noise_nm", "noise_um"),
+        ("sensor.nois_um", "noise_um"),
+        ("device.mass_g", "mass_kg"),
+        ("reference.amplitud_v", "amplitude_v"),
+    ],
+)
+def test_the_hint_names_what_was_meant(path, word):
+    with pytest.raises(InputError) as error:
+        with_values(Scenario.load(document()), {path: 1.0})
+    assert word in f"{error.value} {error.value.hint}"
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"": 1},
+        {"a..b": 1},
+        {"seed.deep": 1},
+        {"events.5.severity": 1},
+        {"events.x.severity": 1},
+        {"sensor.noise_um.x": 1},
+    ],
+)
+def test_paths_that_lead_nowhere(values):
+    with pytest.raises(InputError):
+        with_values(get("ch5-seven-step"), values)
+
+
+def test_amplitude_in_micrometres_needs_a_device_that_moves():
+    still = {"device": {"id": "lcr-350", "opposite_bias_v": 10.0}, "reference": {"kind": "sine", "amplitude_um": 1.0}}
+    with pytest.raises(InputError):
+        build(Scenario.load(document(still)))
