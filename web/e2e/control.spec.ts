@@ -4,10 +4,7 @@ import { expect, test } from "./lab";
 test("the controller changes live", async ({ page, openBench }) => {
   await openBench();
   await page.getByRole("combobox", { name: "Controller" }).click();
-  await page
-    .getByRole("option", { name: /reference adaptive|MRAC/i })
-    .first()
-    .click();
+  await page.getByRole("option", { name: "Direct MRAC", exact: true }).click();
   await page.getByRole("tab", { name: "Events" }).click();
   await expect(page.getByRole("button", { name: /switch to mrac/ })).toBeVisible();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
