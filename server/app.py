@@ -13,6 +13,7 @@ from server.api import (
     benches,
     catalog,
     devices,
+    diagnosis,
     experiments,
     health,
     metrics,
@@ -39,6 +40,7 @@ API = "/api/v1"
 ROUTERS = (
     catalog,
     devices,
+    diagnosis,
     scenarios,
     benches,
     experiments,

@@ -104,6 +104,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/explanation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Explanation
+         * @description Explain what one sample did to the probabilities; of the history as far as it is kept.
+         */
+        get: operations["get_explanation_api_v1_benches__bench_id__diagnosers__name__explanation_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Get Aliases
+         * @description Say which hypotheses of a list the drive does not tell apart.
+         */
+        post: operations["get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/scenarios": {
         parameters: {
             query?: never;
@@ -925,6 +965,24 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
+         * Account
+         * @description What one sample did to all of them; the recorded probabilities stand beside those worked out here.
+         */
+        Account: {
+            /** Diagnoser */
+            diagnoser: string;
+            /** Kind */
+            kind: string;
+            /** Tick */
+            tick: number;
+            /** Time Ms */
+            time_ms: number;
+            /** Floor */
+            floor: number;
+            /** Models */
+            models: components["schemas"]["ModelAccount"][];
+        };
+        /**
          * ActiveFault
          * @description A fault on the device now.
          */
@@ -947,6 +1005,68 @@ export interface components {
             };
             /** Since Tick */
             since_tick: number;
+        };
+        /**
+         * AliasMap
+         * @description Responses of all hypotheses, distances between them, and what mass and stiffness are worth in one another.
+         */
+        AliasMap: {
+            /** Tones Hz */
+            tones_hz: number[];
+            /** Stiffness Per Mass */
+            stiffness_per_mass: number;
+            /** Responses */
+            responses: components["schemas"]["Response"][];
+            /** Pairs */
+            pairs: components["schemas"]["Pair"][];
+        };
+        /**
+         * AliasReport
+         * @description Where hypotheses lie apart and where they coincide, now and at other drive frequencies.
+         */
+        AliasReport: {
+            map: components["schemas"]["AliasMap"];
+            /** Sensor Noise Um */
+            sensor_noise_um: number;
+            /** F0 Hz */
+            f0_hz: number;
+            sweep: components["schemas"]["AliasSweep"];
+        };
+        /**
+         * AliasSource
+         * @description Which hypotheses under which drive; those of the diagnoser under the drive of the bench unless given.
+         */
+        AliasSource: {
+            /** Hypotheses */
+            hypotheses?: components["schemas"]["Hypothesis"][] | null;
+            /** Tones */
+            tones?: components["schemas"]["DriveTone"][] | null;
+            /**
+             * Within Um
+             * @description Distance below which two count as coincident
+             * @default 0
+             */
+            within_um?: number;
+        };
+        /**
+         * AliasSweep
+         * @description For a single tone of the first amplitude, the closest pair over frequency.
+         */
+        AliasSweep: {
+            /** Frequency Hz */
+            frequency_hz: number[];
+            /** Distance Um */
+            distance_um: number[];
+            /**
+             * Pair
+             * @description Index into pairs_named
+             */
+            pair: number[];
+            /** Pairs Named */
+            pairs_named: [
+                string,
+                string
+            ][];
         };
         /**
          * Bench
@@ -1397,6 +1517,16 @@ export interface components {
             digest: string;
         };
         /**
+         * DriveTone
+         * @description One tone of a drive.
+         */
+        DriveTone: {
+            /** Frequency Hz */
+            frequency_hz: number;
+            /** Amplitude V */
+            amplitude_v: number;
+        };
+        /**
          * EquationCard
          * @description An equation, with its erratum when the printed one is wrong.
          */
@@ -1655,6 +1785,41 @@ export interface components {
             checks: {
                 [key: string]: boolean;
             };
+        };
+        /**
+         * Hypothesis
+         * @description One model of the bank, as factors on the nominal device.
+         */
+        Hypothesis: {
+            /**
+             * Name
+             * @description short name, without spaces or dots
+             */
+            name: string;
+            /**
+             * Mass
+             * @description mass over nominal
+             * @default 1
+             */
+            mass?: number;
+            /**
+             * Stiffness
+             * @description stiffness over nominal
+             * @default 1
+             */
+            stiffness?: number;
+            /**
+             * Damping
+             * @description damping over nominal
+             * @default 1
+             */
+            damping?: number;
+            /**
+             * Gain
+             * @description drive gain over nominal
+             * @default 1
+             */
+            gain?: number;
         };
         /**
          * Identification
@@ -1932,6 +2097,26 @@ export interface components {
             phase_deg: number;
         };
         /**
+         * ModelAccount
+         * @description What one sample did to one hypothesis.
+         */
+        ModelAccount: {
+            /** Name */
+            name: string;
+            /** Residual Um */
+            residual_um: number;
+            /** Covariance Um2 */
+            covariance_um2: number | null;
+            /** Log Likelihood */
+            log_likelihood: number | null;
+            /** Prior */
+            prior: number;
+            /** Posterior */
+            posterior: number;
+            /** Recorded */
+            recorded: number;
+        };
+        /**
          * NewBench
          * @description What to make a bench from.
          */
@@ -2016,6 +2201,20 @@ export interface components {
             sweep: string | {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * Pair
+         * @description How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it.
+         */
+        Pair: {
+            /** First */
+            first: string;
+            /** Second */
+            second: string;
+            /** Distance Um */
+            distance_um: number;
+            /** Coincident */
+            coincident: boolean;
         };
         /**
          * ParameterCard
@@ -2389,6 +2588,22 @@ export interface components {
              * @constant
              */
             kind?: "reset_trip";
+        };
+        /**
+         * Response
+         * @description The motion of a hypothesis at the tones, and the changes of one parameter that have the same.
+         */
+        Response: {
+            /** Name */
+            name: string;
+            /** Amplitudes Um */
+            amplitudes_um: number[];
+            /** Phases Deg */
+            phases_deg: number[];
+            /** Equivalents */
+            equivalents: {
+                [key: string]: number;
+            };
         };
         /**
          * Roc
@@ -3528,6 +3743,78 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ProcessSpread"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_explanation_api_v1_benches__bench_id__diagnosers__name__explanation_get: {
+        parameters: {
+            query: {
+                tick: number;
+            };
+            header?: never;
+            path: {
+                /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Account"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AliasSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasReport"];
                 };
             };
             /** @description Refused or failed */
