@@ -16,6 +16,12 @@ export const api = {
     data(
       client.GET("/api/v1/benches/{bench_id}/unstable-region", { params: { path: { bench_id }, query: { drive_v } } }),
     ),
+  explanation: (bench_id: string, name: string, tick: number) =>
+    data(
+      client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/explanation", {
+        params: { path: { bench_id, name }, query: { tick } },
+      }),
+    ),
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,

@@ -3,7 +3,9 @@ import type { components } from "./schema";
 /** The server's own types, under the names the page uses. */
 type Schemas = components["schemas"];
 
+export type Account = Schemas["Account"];
 export type ActiveFault = Schemas["ActiveFault"];
+export type AliasReport = Schemas["AliasReport"];
 export type ApiErrorBody = Schemas["ErrorBody"];
 export type Bode = Schemas["Bode"];
 export type Bench = Schemas["Bench"];
@@ -18,6 +20,7 @@ export type FaultProfile = Schemas["Profile"];
 export type Identification = Schemas["Identification"];
 export type LogEntry = Schemas["Event"];
 export type MeasuredPlant = Schemas["MeasuredPlant"];
+export type ModelAccount = Schemas["ModelAccount"];
 export type NewBench = Schemas["NewBench"];
 export type Parameter = Schemas["ParameterCard"];
 export type ProcessSpread = Schemas["ProcessSpread"];

@@ -6,7 +6,7 @@ import { type LayoutName, useView } from "./view-store";
 
 let current: DockviewApi | undefined;
 
-const storageKey = (name: LayoutName) => `combbench.layout.3.${name}`;
+const storageKey = (name: LayoutName) => `combbench.layout.4.${name}`;
 
 /** The dock to lay out; called once it stands. */
 export function attachDock(api: DockviewApi): void {

@@ -12,6 +12,10 @@ interface ViewStore {
   page: PageName;
   layout: LayoutName;
   card: CardId;
+  /** The sample of a diagnoser that was clicked, to be explained. */
+  sample: { diagnoser: string; tick: number } | undefined;
+  /** A hidden fault is to be found: the page keeps the truth to itself. */
+  blind: boolean;
   dialog: "none" | "keys" | "bench";
   /** Reading size: lectures are read from the last row. */
   large: boolean;
@@ -25,6 +29,8 @@ export const useView = create<ViewStore>(() => ({
   page: pageInAddress(),
   layout: window.innerWidth >= WIDE ? "research" : "lab",
   card: "diagnosers.kalman",
+  sample: undefined,
+  blind: false,
   dialog: "none",
   large: false,
 }));
