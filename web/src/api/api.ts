@@ -31,6 +31,8 @@ export const api = {
   removeBench: (id: string) => data(client.DELETE("/api/v1/benches/{bench_id}", bench(id))),
   fork: (id: string, snapshot: string | null = null) =>
     data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body: { snapshot } })),
+  variant: (id: string, set: Record<string, unknown>) =>
+    data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set } })),
   snapshots: async (id: string) =>
     (await data(client.GET("/api/v1/benches/{bench_id}/snapshots", bench(id)))).snapshots,
   keep: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/snapshots", { ...bench(id), body: {} })),

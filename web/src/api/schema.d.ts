@@ -352,6 +352,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/variant": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Vary Bench
+         * @description Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
+         */
+        post: operations["vary_bench_api_v1_benches__bench_id__variant_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/identification": {
         parameters: {
             query?: never;
@@ -3165,6 +3185,20 @@ export interface components {
             boundary: components["schemas"]["SafeBoundary"] | null;
         };
         /**
+         * Variant
+         * @description How the second bench differs.
+         */
+        Variant: {
+            /**
+             * Set
+             * @description Values by dotted path; a whole table may be one
+             * @default {}
+             */
+            set?: {
+                [key: string]: unknown;
+            };
+        };
+        /**
          * Wanted
          * @description What to record: from now, or from when a condition holds, with some of the past.
          */
@@ -4186,6 +4220,41 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["ForkFrom"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    vary_bench_api_v1_benches__bench_id__variant_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Variant"];
             };
         };
         responses: {

@@ -1,4 +1,5 @@
 import type { ComponentType } from "react";
+import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
 import { CardPanel } from "../panels/card/card-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
@@ -28,6 +29,7 @@ export interface PanelKind {
 export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
   lanes: { title: "Diagnosis", component: LanesPanel },
+  adaptation: { title: "Adaptation", component: AdaptationPanel },
   why: { title: "Why", component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
   faults: { title: "Faults", component: FaultsPanel },
