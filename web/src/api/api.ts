@@ -1,5 +1,5 @@
 import { client, data } from "./client";
-import type { BodeOf, Design, NewBench, SweptSine } from "./types";
+import type { AliasSource, BodeOf, Design, ExcitationSource, MapSource, NewBench, SweptSine } from "./types";
 
 const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
 
@@ -22,6 +22,17 @@ export const api = {
         params: { path: { bench_id, name }, query: { tick } },
       }),
     ),
+  aliases: (bench_id: string, name: string, body: Partial<AliasSource>) =>
+    data(
+      client.POST("/api/v1/benches/{bench_id}/diagnosers/{name}/aliases", {
+        params: { path: { bench_id, name } },
+        body: { within_um: 0, ...body },
+      }),
+    ),
+  positiveReal: (numerator: number[], denominator: number[]) =>
+    data(client.POST("/api/v1/theory/positive-real", { body: { numerator, denominator } })),
+  persistency: (body: ExcitationSource) => data(client.POST("/api/v1/theory/persistency", { body })),
+  instabilityMap: (body: MapSource) => data(client.POST("/api/v1/theory/instability-map", { body })),
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,

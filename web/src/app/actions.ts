@@ -35,6 +35,7 @@ export const actions = {
   keys: () => useView.setState({ dialog: "keys" }),
   newBench: () => useView.setState({ dialog: "bench" }),
   designer: () => setPage(useView.getState().page === "designer" ? "bench" : "designer"),
+  theory: () => setPage(useView.getState().page === "theory" ? "bench" : "theory"),
   fork: () => void fork(),
   forkBeforeTrip: () => void forkBeforeTrip(),
   keep: () => void keep(),

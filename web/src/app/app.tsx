@@ -6,6 +6,7 @@ import { Designer } from "../designer/designer";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
 import { stream } from "../stream/stream";
+import { Theory } from "../theory/theory";
 import { EmptyState } from "../ui/empty-state";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
@@ -60,6 +61,8 @@ export function App() {
         </EmptyState>
       ) : page === "designer" ? (
         <Designer />
+      ) : page === "theory" ? (
+        <Theory />
       ) : phone ? (
         <Phone />
       ) : (

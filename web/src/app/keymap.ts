@@ -26,6 +26,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "k", shown: "K", does: "keep this moment", group: "Bench", run: actions.keep },
   { key: "n", shown: "N", does: "new bench", group: "Bench", run: actions.newBench },
   { key: "g", shown: "G", does: "device designer, and back", group: "Bench", run: actions.designer },
+  { key: "t", shown: "T", does: "theory, and back", group: "Bench", run: actions.theory },
   { key: "l", shown: "L", does: "all panels live", group: "Look", run: actions.live },
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },

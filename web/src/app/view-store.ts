@@ -5,8 +5,8 @@ export type LayoutName = "lecture" | "lab" | "research";
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
 
-/** The bench, or the drawing board. */
-export type PageName = "bench" | "designer";
+/** The bench, the drawing board, or what can be said before anything is run. */
+export type PageName = "bench" | "designer" | "theory";
 
 interface ViewStore {
   page: PageName;
@@ -17,6 +17,8 @@ interface ViewStore {
   /** A hidden fault is to be found: the page keeps the truth to itself. */
   blind: boolean;
   dialog: "none" | "keys" | "bench";
+  /** On a phone: the panel shown beside those it always has. */
+  extra: string;
   /** Reading size: lectures are read from the last row. */
   large: boolean;
 }
@@ -32,12 +34,14 @@ export const useView = create<ViewStore>(() => ({
   sample: undefined,
   blind: false,
   dialog: "none",
+  extra: "",
   large: false,
 }));
 
 /** The page named in the address. */
 export function pageInAddress(): PageName {
-  return new URLSearchParams(window.location.search).get("page") === "designer" ? "designer" : "bench";
+  const named = new URLSearchParams(window.location.search).get("page");
+  return named === "designer" || named === "theory" ? named : "bench";
 }
 
 /** Go to a page; the address names it, and back works. */

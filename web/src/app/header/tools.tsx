@@ -7,6 +7,7 @@ import {
   IconGitFork,
   IconKeyboard,
   IconLayoutDashboard,
+  IconMathFunction,
   IconMoon,
   IconRulerMeasure,
   IconSun,
@@ -35,6 +36,7 @@ export function Tools() {
   ];
   const page: Tool[] = [
     { label: "Device designer (G)", icon: <IconRulerMeasure size={19} />, run: actions.designer },
+    { label: "Theory (T)", icon: <IconMathFunction size={19} />, run: actions.theory },
     {
       label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)",
       icon: scheme === "dark" ? <IconSun size={19} /> : <IconMoon size={19} />,

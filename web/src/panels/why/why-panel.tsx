@@ -1,7 +1,9 @@
 import { ActionIcon, Button, NativeSelect } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
+import { api } from "../../api/api";
 import type { Account } from "../../api/types";
+import { useAsked } from "../../api/use-asked";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
@@ -10,7 +12,6 @@ import { Formula } from "../../ui/formula";
 import { NumberField } from "../../ui/number-field";
 import { formatDeviceTime } from "../../ui/time-axis";
 import { ModelTable } from "./model-table";
-import { useExplanation } from "./use-explanation";
 import styles from "./why.module.css";
 import { densityLatex, floorLatex, isGaussian, posteriorLatex } from "./why-latex";
 
@@ -21,7 +22,13 @@ export function WhyPanel() {
   const bench = useBench((s) => s.bench?.id);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const sample = useView((s) => s.sample);
-  const { account, refusal, waiting } = useExplanation(bench, sample);
+  const {
+    answer: account,
+    refusal,
+    waiting,
+  } = useAsked(bench && sample && `${bench} ${sample.diagnoser} ${sample.tick}`, () =>
+    api.explanation(bench ?? "", sample?.diagnoser ?? "", sample?.tick ?? 0),
+  );
   const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length ? [id] : []));
   const pick = (diagnoser: string, tick: number) =>
     useView.setState({ sample: { diagnoser, tick: Math.max(0, tick) } });
@@ -80,7 +87,7 @@ export function WhyPanel() {
             <IconChevronRight size={16} />
           </ActionIcon>
         </span>
-        {account && <span className={styles.time}>{formatDeviceTime(account.time_ms)} s</span>}
+        {account && !refusal && <span className={styles.time}>{formatDeviceTime(account.time_ms)} s</span>}
         <Button size="compact-sm" variant="default" onClick={() => pick(sample.diagnoser, stream.client.head.tick - 1)}>
           Latest
         </Button>
@@ -90,7 +97,7 @@ export function WhyPanel() {
           {refusal.body.hint || "Choose another sample, or another diagnoser."}
         </EmptyState>
       )}
-      {account && <Explained account={account} waiting={waiting} />}
+      {account && !refusal && <Explained account={account} waiting={waiting} />}
     </section>
   );
 }
