@@ -67,6 +67,7 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "events", "events", { within: "lanes", inactive: true });
     add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    add(api, "twins", "twins", { within: "lanes", inactive: true });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
@@ -90,6 +91,7 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    add(api, "twins", "twins", { within: "lanes", inactive: true });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });

@@ -12,6 +12,7 @@ import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
 import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
+import { TwinsPanel } from "../panels/twins/twins-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
 import { WhyPanel } from "../panels/why/why-panel";
 
@@ -30,6 +31,7 @@ export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
   lanes: { title: "Diagnosis", component: LanesPanel },
   adaptation: { title: "Adaptation", component: AdaptationPanel },
+  twins: { title: "Twins", component: TwinsPanel },
   why: { title: "Why", component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
   faults: { title: "Faults", component: FaultsPanel },
