@@ -1,10 +1,13 @@
 import type { ComponentType } from "react";
 import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
+import { BlindPanel } from "../panels/blind/blind-panel";
 import { CardPanel } from "../panels/card/card-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
+import { HypothesesPanel } from "../panels/hypotheses/hypotheses-panel";
 import { IdentifyPanel } from "../panels/identify/identify-panel";
+import { LabsPanel } from "../panels/labs/labs-panel";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { PhasePanel } from "../panels/phase/phase-panel";
 import { SchematicPanel } from "../panels/schematic/schematic-panel";
@@ -31,6 +34,9 @@ export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
   lanes: { title: "Diagnosis", component: LanesPanel },
   adaptation: { title: "Adaptation", component: AdaptationPanel },
+  hypotheses: { title: "Hypotheses", component: HypothesesPanel },
+  labs: { title: "Noise and memory", component: LabsPanel },
+  blind: { title: "Blind diagnosis", component: BlindPanel },
   twins: { title: "Twins", component: TwinsPanel },
   why: { title: "Why", component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
