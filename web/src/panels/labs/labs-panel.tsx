@@ -1,14 +1,13 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
-import { actions } from "../../app/actions";
 import { send } from "../../app/send";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent } from "../../ui/format";
 import { Knob } from "../../ui/knob";
-import { type LabKnob, labsOf, memorySamples } from "./lab-knobs";
+import { type Lab, type LabKnob, labsOf, memorySamples } from "./lab-knobs";
 import styles from "./labs.module.css";
 
 /** Noise lab and lambda lab: make a diagnoser's assumptions wrong on purpose and watch what it costs. */
@@ -37,7 +36,12 @@ export function LabsPanel() {
           data={ids.map((name) => ({ value: name, label: name.replaceAll("_", " ") }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
-        <Button size="compact-sm" variant="default" onClick={actions.reset} title="Reset the bench; the values stay">
+        <Button
+          size="compact-sm"
+          variant="default"
+          title="Begin again at tick 0; what is set here stays"
+          onClick={() => void send({ kind: "reset", values: kept(labs) }, "Counting afresh")}
+        >
           Count afresh
         </Button>
       </div>
@@ -56,6 +60,10 @@ export function LabsPanel() {
     </section>
   );
 }
+
+/** The values of every knob, to be kept over a reset. */
+const kept = (labs: Lab[]): Record<string, number> =>
+  Object.fromEntries(labs.flatMap((lab) => lab.knobs.map(({ path, value }) => [path, value])));
 
 function Turn({ knob }: { knob: LabKnob }) {
   const { path, log, value, ...rest } = knob;
