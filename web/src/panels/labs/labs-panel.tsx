@@ -1,5 +1,5 @@
 import { Button, NativeSelect } from "@mantine/core";
-import { useState } from "react";
+import { useRef, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
 import { useView } from "../../app/view-store";
@@ -14,7 +14,9 @@ import styles from "./labs.module.css";
 export function LabsPanel() {
   const parameters = useBench((s) => s.bench?.parameters);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
+  const bench = useBench((s) => s.bench?.id);
   const { block } = useCatalog();
+  const began = useRef<{ bench: string | undefined; values: Record<string, number> }>({ bench, values: {} });
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const own = (parameters?.diagnosers ?? {}) as Record<string, unknown>;
   const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length && id in own ? [id] : []));
@@ -26,6 +28,8 @@ export function LabsPanel() {
       </EmptyState>
     );
   const labs = labsOf({ parameters }, id, block);
+  if (began.current.bench !== bench) began.current = { bench, values: {} };
+  for (const { path, value } of labs.flatMap((lab) => lab.knobs)) began.current.values[path] ??= value;
   return (
     <section className={styles.panel} aria-label="Labs">
       <div className={styles.bar}>
@@ -52,7 +56,7 @@ export function LabsPanel() {
             <h2>{lab.name}</h2>
             <p>{lab.advice}</p>
             {lab.knobs.map((knob) => (
-              <Turn key={knob.path} knob={knob} />
+              <Turn key={knob.path} knob={knob} original={began.current.values[knob.path]} />
             ))}
           </section>
         ))}
@@ -65,7 +69,7 @@ export function LabsPanel() {
 const kept = (labs: Lab[]): Record<string, number> =>
   Object.fromEntries(labs.flatMap((lab) => lab.knobs.map(({ path, value }) => [path, value])));
 
-function Turn({ knob }: { knob: LabKnob }) {
+function Turn({ knob, original }: { knob: LabKnob; original: number }) {
   const { path, log, value, ...rest } = knob;
   const memory = path.endsWith(".forgetting") ? memorySamples(value) : undefined;
   return (
@@ -74,6 +78,7 @@ function Turn({ knob }: { knob: LabKnob }) {
       log={log}
       step={0}
       value={value}
+      original={original}
       {...(memory === undefined
         ? {}
         : { note: Number.isFinite(memory) ? `remembers ${formatNumber(memory, 1)} samples` : "remembers everything" })}
