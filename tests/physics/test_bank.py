@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+
 import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter, MMAEFilterBank
