@@ -106,9 +106,9 @@ def test_fixed_bank_weighs_the_errors_of_the_difference_equations():
     _, trace = trace_of(300, 20, {"kind": "arx_bank"})
     h, z = regressors(trace)
     log = np.full(6, -np.log(6.0))
+    equations = [difference_equation(name, 0.05) for name in NAMES]
     for i in range(300):
-        for k, name in enumerate(NAMES):
-            own = difference_equation(name, 0.05)
+        for k, own in enumerate(equations):
             variance = 0.05**2 * (1 + own[2] ** 2 + own[3] ** 2)
             log[k] += -0.5 * (z[i] - h[i] @ own) ** 2 / variance - 0.5 * np.log(variance)
         weight = np.exp(log - np.logaddexp.reduce(log))
@@ -169,7 +169,7 @@ def test_a_long_single_sine_without_noise_winds_nothing_up(bank):
 @pytest.mark.parametrize("first", [1, HELD_OUT])
 def test_reading_a_is_slower_the_longer_its_memory(first):
     banks = {f"a{int(1000 * f)}": {**A, "forgetting": f} for f in (0.86, 0.9, 0.98, 0.995)}
-    found = seven_steps(range(first, first + 40), banks, sensor__noise_um=0.01, sample_rate_khz=20)
+    found = seven_steps(range(first, first + 25), banks, sensor__noise_um=0.01, sample_rate_khz=20)
     for name, delay in (("a860", 7.6), ("a900", 10.8), ("a980", 46.5), ("a995", 184.0)):
         assert found[name].later == pytest.approx(delay, rel=0.25), name
         assert found[name].false <= 0.1
@@ -197,7 +197,7 @@ def test_anchored_banks_have_the_order_of_the_text_and_its_thresholds_by_their_a
 
     factors = (0.86, 0.9, 0.98)
     banks = {f"r{rho}_{int(100 * f)}": bank(f, rho) for rho in (10, 100, 400, 1000) for f in factors}
-    found = seven_steps(range(first, first + 40), banks, sensor__noise_um=0.02, sample_rate_khz=20)
+    found = seven_steps(range(first, first + 25), banks, sensor__noise_um=0.02, sample_rate_khz=20)
     e86, e90, e98 = (found[f"r100_{int(100 * f)}"] for f in factors)
     assert 0.85 <= e86.correct <= 0.94 and 0.70 <= e90.correct <= 0.85 and e98.correct <= 0.35
     assert e86.right[1] - e90.right[1] >= 0.4  # distorted on the way from step 2 to 3
