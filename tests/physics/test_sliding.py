@@ -251,3 +251,14 @@ def test_who_holds_the_shuttle_past_the_fold(kind, holds):
         assert not np.any(past & (np.sign(trace["drive.voltage"][2000:]) == np.sign(x[2000:])))
     else:
         assert trace["plant.contact"].any()
+
+
+@pytest.mark.parametrize(("kind", "holds"), [("stvsc", True), ("pid", True), ("mrac", False)])
+@pytest.mark.parametrize("noise_um", [0.01, 0.03])
+def test_who_holds_it_under_noise(kind, holds, noise_um):
+    """A PID with poles at 1.3 w0 amplifies noise too much for the bias of 5 V; with 1.0 it holds at these."""
+    for seed in (2, 11):
+        values = {"controller.kind": kind, "controllers.pid.pole": 1.0, "sensor.noise_um": noise_um, "seed": seed}
+        trace = play(make(values, base=PULL_IN), 4000)
+        assert trace["plant.contact"].any() != holds
+        assert not holds or rms(tail(trace)) < 0.12
