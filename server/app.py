@@ -14,6 +14,7 @@ from server.api import (
     catalog,
     devices,
     experiments,
+    gallery,
     health,
     metrics,
     recordings,
@@ -47,6 +48,7 @@ ROUTERS = (
     trace,
     runs,
     sweeps,
+    gallery,
     theory,
     stream,
 )

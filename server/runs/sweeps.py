@@ -176,6 +176,7 @@ class Sweeps:
     async def _carry_out(self, sweep_id: str, sweep: Sweep) -> None:
         """Wait for the turn, then for the end."""
         state, error = "done", None
+        campaign: Campaign | None = None
         try:
             async with self._turn:
                 await self._update(sweep_id, state="running")
@@ -201,11 +202,12 @@ class Sweeps:
             self._tasks.pop(sweep_id, None)
             self._campaigns.pop(sweep_id, None)
         if not self._is_closing or state == "done":
-            await self._end(sweep_id, state, error)
+            done = {"done": campaign.done} if campaign is not None else {}
+            await self._end(sweep_id, state, error, **done)
 
-    async def _end(self, sweep_id: str, state: str, error: dict[str, Any] | None) -> None:
+    async def _end(self, sweep_id: str, state: str, error: dict[str, Any] | None, **values: Any) -> None:
         self._metrics.runs.labels(state).inc()
-        await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC))
+        await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC), **values)
 
     def _read(self, document: dict[str, Any], version: str) -> tuple[Sweep, dict[str, Outcome]]:
         if version != code_version():
@@ -217,8 +219,7 @@ class Sweeps:
     def _live(self, found: SweepRun) -> SweepRun:
         """Add how far it is."""
         campaign = self._campaigns.get(found.id)
-        done = campaign.done if campaign is not None else found.runs if found.state == "done" else 0
-        return found.model_copy(update={"done": done})
+        return found if campaign is None else found.model_copy(update={"done": campaign.done})
 
     async def _row(self, sweep_id: str) -> SweepRow | None:
         return await self._database.run(lambda session: session.get(SweepRow, sweep_id))
