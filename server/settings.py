@@ -41,7 +41,7 @@ class Settings(BaseSettings):
     max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
     max_clients_per_bench: int = Field(256, ge=1, description="Open streams of one bench.")
     max_snapshots: int = Field(32, ge=1, description="Snapshots kept per bench.")
-    max_queued_runs: int = Field(64, ge=1, description="Headless runs waiting or running.")
+    max_queued_runs: int = Field(256, ge=1, description="Headless runs waiting or running.")
     max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
     max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
