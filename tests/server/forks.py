@@ -87,12 +87,12 @@ def forks(log: Path) -> Iterator[Forks]:
 def main() -> None:
     """Fork a server for each line."""
     import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
-    from server import app  # noqa: F401
+    from server import app, service  # noqa: F401
     from server.serve import serve
-    from server.service import warm_up
     from server.settings import Settings
 
-    warm_up()
+    service.warm_up()
+    service.warm_up = lambda: None  # what is loaded stays so in every fork
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     while line := sys.stdin.readline():
         if os.fork():
