@@ -452,7 +452,8 @@ class Session:
 
     def _record(self, rows: Rows) -> None:
         """Hand copies to the recordings; one that has ended by itself is let go."""
-        samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
+        with np.errstate(over="ignore"):  # what is too large for a recording is infinite there
+            samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
         for key, recorder in list(self.recorders.items()):
             recorder.append(rows.first_tick, samples)
             if not recorder.is_open:
