@@ -15,6 +15,7 @@ from server.api import (
     devices,
     diagnosers,
     experiments,
+    gallery,
     health,
     metrics,
     recordings,
@@ -49,6 +50,7 @@ ROUTERS = (
     trace,
     runs,
     sweeps,
+    gallery,
     theory,
     stream,
 )

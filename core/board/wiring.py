@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from core import registry
-from core.block import RESERVED, Block, BlockParams, FloatArray, IntArray, Port
+from core.block import RESERVED, Block, BlockParams, BoolArray, FloatArray, IntArray, Port
 from core.board import program
 from core.board.effects import Effects
 from core.board.measurement import Measurement
@@ -71,6 +71,11 @@ class Wiring:
                 start = self.index[signal_name(instance, port.name)]
                 self.w[start : start + len(port.names(instance.params))] = 0.0
         return running
+
+    def idle(self, running: list[int]) -> BoolArray:
+        """Return which taps stay 0 while these rows run."""
+        keys = {self.instances[row].key for row in running}
+        return np.array([signal.block not in keys for signal in self.signals.taps], dtype=np.bool_)
 
 
 def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:

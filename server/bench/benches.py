@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from core.board.board import Board
 from core.board.condition import parse_condition
+from core.board.history import History
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -115,9 +116,7 @@ class Benches:
             scenario, board = await asyncio.to_thread(prepare, source, values, seed)
             if own_scale:
                 time_scale = usual_scale(board)
-            session = Session(
-                scenario, board, time_scale, self._settings.history_ticks, self._metrics, self._engine.clock
-            )
+            session = Session(scenario, board, time_scale, self._kept(board), self._metrics, self._engine.clock)
             await self._engine.call(self._open, session, not paused)
         finally:
             self._coming -= 1
@@ -164,8 +163,7 @@ class Benches:
             raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
         about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
         pace = min(max((about.get("time_scale") or DEFAULT_SCALE) * speed, MIN_SCALE), MAX_SCALE)
-        history = self._settings.history_ticks
-        session = Session(scenario, tape, pace, history, self._metrics, self._engine.clock)
+        session = Session(scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
         session.replay_of = recording.id
         for event in recording.events or []:
             session.events.add(
@@ -284,6 +282,11 @@ class Benches:
         states = Counter(session.status.state for session in self.all())
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
+
+    def _kept(self, board: Board | Tape) -> int:
+        """Return for how many ticks the signals of a board are kept."""
+        affordable = History.ticks_within(self._settings.history_mb, board.signals.outputs, len(board.signals.taps))
+        return min(self._settings.history_ticks, affordable)
 
     def _check_room(self) -> None:
         """Refuse one bench too many."""

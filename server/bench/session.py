@@ -103,9 +103,14 @@ class Session:
         self.loop: tuple[int, int] | None = None
         self._counted = (0, 0.0)
         self._status_due = 0.0
-        self.history = History(len(board.signals), history_ticks)
+        self.history = self._no_history()
         self._index = {signal.name: signal.index for signal in board.signals}
         self.status = self._look()
+
+    def _no_history(self) -> History:
+        """Return a history with nothing in it."""
+        signals = self.board.signals
+        return History(signals.outputs, len(signals.taps), self._history_ticks)
 
     # ---- what the engine asks
 
@@ -193,7 +198,7 @@ class Session:
             self.pacer = Pacer(board.dt_ms * 1e-3, self.pacer.scale)
         self.scenario, self.board, self._logged = scenario, board, 0
         self._ends_at = scenario.samples
-        self.history = History(len(names), self._history_ticks)
+        self.history = self._no_history()
         event = self._jumped(actor, "reset", "reset to tick 0")
         self._sync_log()
         return event
@@ -215,7 +220,7 @@ class Session:
         if self.history.first_tick <= kept.snapshot.tick <= self.history.end_tick:
             self.history.end_tick = kept.snapshot.tick
         else:
-            self.history = History(len(self._index), self._history_ticks)
+            self.history = self._no_history()
         samples = self.scenario.samples
         self._ends_at = samples if samples is not None and self.board.tick < samples else None
         return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
@@ -234,12 +239,7 @@ class Session:
         first = max(self.history.first_tick, board.tick - FORK_TICKS)
         if first < board.tick <= self.history.end_tick:
             past = self.history.read(list(range(len(self._index))), first, board.tick).T
-            outputs, taps = np.split(past, [self.board.signals.outputs], axis=1)
-            twin.history.append(
-                Rows(
-                    first, len(past), np.ascontiguousarray(outputs, np.float64), np.ascontiguousarray(taps, np.float64)
-                )
-            )
+            twin.history.append(Rows.of(first, past, self.board.signals.outputs))
         twin._note("api", "forked", f"forked from bench {self.id}")
         twin.status = twin._look()
         return twin
@@ -417,7 +417,7 @@ class Session:
         if self.history.first_tick <= tick <= self.history.end_tick:
             self.history.end_tick = tick
         else:
-            self.history = History(len(self._index), self._history_ticks)
+            self.history = self._no_history()
         if self._ends_at is None and isinstance(self.board, Tape):
             self._ends_at = self.board.end
         self.pacer.anchor(tick, self._clock())

@@ -65,6 +65,7 @@ class SweepRow(Base):
     document: Mapped[dict[str, Any]]
     version: Mapped[str] = mapped_column(String(16))
     runs: Mapped[int] = mapped_column(Integer)
+    done: Mapped[int] = mapped_column(Integer, default=0, server_default="0")
     created: Mapped[datetime] = mapped_column(default=now, index=True)
     finished: Mapped[datetime | None]
     error: Mapped[dict[str, Any] | None]

@@ -109,7 +109,8 @@ def test_augmented_form_is_the_loop_of_the_equations():
         u = min(max(theta @ w, -30), 30)
         ys.append(x[0])
         us.append(u)
-    board = make({"device.id": "ch4", "controller": {"kind": "self_sliding"}})
+    law = {"kind": "self_sliding", "adaptation_gain": g, "alpha_gain": 0.01}
+    board = make({"device.id": "ch4", "controller": law})
     inject(board, stiffness=k - 1)
     trace = play(board, 1500)
     # the sign of what is only rounding is nobody's: compare until the two take different sides of the surface

@@ -103,6 +103,23 @@ def test_estimator_finds_what_the_input_excites(tones):
         assert max(wrong) < 0.03
 
 
+def test_estimator_without_its_normaliser_runs_away():
+    """A sample multiplies the error along w by 1 - h g w'w, which with w'w = W sin^2 is h g W/4 in the geometric mean."""
+    largest = (10.0**2 + (KP * 10.0) ** 2) / (1 + W0**-2) ** 2  # 10 V at 1 krad/s through 1/(s + 1)^2, G = I
+    limit = 4.0 / (0.01 * W0 * largest)
+    assert 0.2 < limit < 0.3
+
+    def end(gain: float, **law: Any) -> float:
+        own = {"estimator_gain": gain, "output_weight": 1.0, **law}
+        board = make({"controllers": {"stvsc": own}})
+        inject(board, added_mass=0.05)
+        return abs(play(board, 10_000)["stvsc.prediction_error"][-700:]).max()
+
+    assert end(0.1, normalise=False) < 0.01
+    assert not end(1.2 * limit, normalise=False) < 1e6
+    assert end(1.2 * limit) < 0.01
+
+
 def test_estimator_lyapunov_function_falls_as_theory_says():
     board = make({"sample_rate_khz": 1000})
     inject(board, stiffness=0.5)
@@ -234,3 +251,14 @@ def test_who_holds_the_shuttle_past_the_fold(kind, holds):
         assert not np.any(past & (np.sign(trace["drive.voltage"][2000:]) == np.sign(x[2000:])))
     else:
         assert trace["plant.contact"].any()
+
+
+@pytest.mark.parametrize(("kind", "holds"), [("stvsc", True), ("pid", True), ("mrac", False)])
+@pytest.mark.parametrize("noise_um", [0.01, 0.03])
+def test_who_holds_it_under_noise(kind, holds, noise_um):
+    """A PID with poles at 1.3 w0 amplifies noise too much for the bias of 5 V; with 1.0 it holds at these."""
+    for seed in (2, 11):
+        values = {"controller.kind": kind, "controllers.pid.pole": 1.0, "sensor.noise_um": noise_um, "seed": seed}
+        trace = play(make(values, base=PULL_IN), 4000)
+        assert trace["plant.contact"].any() != holds
+        assert not holds or rms(tail(trace)) < 0.12

@@ -732,6 +732,66 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Report
+         * @description Download the report of a run, one HTML file that needs nothing else.
+         */
+        get: operations["get_run_report_api_v1_runs__run_id__report_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/thumbnail": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Thumbnail
+         * @description Return a small drawing of a run.
+         */
+        get: operations["get_run_thumbnail_api_v1_runs__run_id__thumbnail_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/script": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Script
+         * @description Download a Python script that repeats a run over REST and checks that it gives the same bits.
+         */
+        get: operations["get_run_script_api_v1_runs__run_id__script_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sweeps": {
         parameters: {
             query?: never;
@@ -834,6 +894,46 @@ export interface paths {
         get: operations["get_sweep_report_api_v1_sweeps__sweep_id__report_get"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/gallery": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Gallery
+         * @description Show every library scenario: claim, expectations, and what its run gave.
+         */
+        get: operations["get_gallery_api_v1_gallery_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/gallery/run": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Run Gallery
+         * @description Run the library, or a part of it; what has been run with this version is not run again.
+         */
+        post: operations["run_gallery_api_v1_gallery_run_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1332,6 +1432,18 @@ export interface components {
             blocks: components["schemas"]["BlockCard"][];
         };
         /**
+         * Chosen
+         * @description Which scenarios to run.
+         */
+        Chosen: {
+            /**
+             * Only
+             * @description Ids that match, such as ch5-*
+             * @default *
+             */
+            only?: string;
+        };
+        /**
          * CommandResult
          * @description A command that was carried out, and the tick at which it took effect.
          */
@@ -1675,6 +1787,29 @@ export interface components {
             filter_pole?: number;
         };
         /**
+         * Expected
+         * @description An expectation, and what was measured.
+         */
+        Expected: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Expected */
+            expected: string;
+            /** Verdict */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /** Note */
+            note: string;
+            /** Measured */
+            measured?: number | null;
+            /**
+             * Ok
+             * @description Null until it has been run
+             */
+            ok?: boolean | null;
+        };
+        /**
          * Extremes
          * @description Smallest and largest value of every column; null where there is no data.
          */
@@ -1737,6 +1872,60 @@ export interface components {
              * @description A snapshot of the bench; null: this moment
              */
             snapshot?: string | null;
+        };
+        /**
+         * Gallery
+         * @description All cards, by id.
+         */
+        Gallery: {
+            /** Cards */
+            cards: components["schemas"]["GalleryCard"][];
+        };
+        /**
+         * GalleryCard
+         * @description A scenario of the library and its run, if there has been one with this version of the code.
+         */
+        GalleryCard: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Summary */
+            summary: string;
+            /** Claim */
+            claim: string;
+            /** Verdict */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /**
+             * Study
+             * @description Kind of the study; null for a scenario that runs on a bench
+             */
+            study: string | null;
+            /**
+             * Run
+             * @description Its run: trace, report, thumbnail and script are at /runs/{id}/...
+             */
+            run: string | null;
+            /**
+             * State
+             * @description new until it has been asked for, then as that of a run
+             */
+            state: string;
+            /** Progress */
+            progress: number;
+            /** Elapsed S */
+            elapsed_s: number | null;
+            /** Digest */
+            digest: string;
+            /**
+             * Ok
+             * @description Whether all expectations hold; null until it has been run
+             */
+            ok: boolean | null;
+            /** Expectations */
+            expectations: components["schemas"]["Expected"][];
         };
         /**
          * Heal
@@ -5038,6 +5227,99 @@ export interface operations {
             };
         };
     };
+    get_run_report_api_v1_runs__run_id__report_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_run_thumbnail_api_v1_runs__run_id__thumbnail_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_run_script_api_v1_runs__run_id__script_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/x-python": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_sweeps_api_v1_sweeps_get: {
         parameters: {
             query?: never;
@@ -5253,6 +5535,68 @@ export interface operations {
                 };
                 content: {
                     "text/html": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_gallery_api_v1_gallery_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    run_gallery_api_v1_gallery_run_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Chosen"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Gallery"];
                 };
             };
             /** @description Refused or failed */
