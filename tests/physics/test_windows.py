@@ -161,6 +161,12 @@ def test_an_alias_is_isolated_as_what_it_stands_for_and_the_log_names_it():
     assert np.mean(trace["kalman.verdict"][300:] == AMBIGUOUS) > 0.95
     said = [entry.text for entry in board.log if entry.kind == "verdict"]
     assert any("ambiguous" in text and "m+5" in text and "k-3" in text for text in said)
+    alone = make({**BENCH, "diagnosers": {"kalman": {"kind": "consistency"}}})
+    play(alone, 400)
+    inject(alone, stiffness=ALIAS)
+    play(alone, 600)
+    said = [entry.text for entry in alone.log if entry.kind == "verdict"]
+    assert any("isolated: m+5 (the same here: stiffness x 0.9676)" in text for text in said), said
 
 
 @pytest.mark.slow
