@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_continuous_are
 
 from core.board.spec import with_values
 from tests.lab import QUIET, do, inject, make, play, rms
@@ -83,6 +84,19 @@ def test_sliding_law_is_the_loop_of_the_equations(kind):
         np.testing.assert_allclose(found, law.theta, atol=1e-8)
         true = [trace[f"stvsc.parameter_true.{name}"][-1] for name in ("gain", "a2", "a1")]
         np.testing.assert_allclose(true, [KP / 1.05, 1.8 / 1.05, A1 / 1.05], rtol=1e-9)
+
+
+@pytest.mark.parametrize("weight", [0.25, 1.0, 4.0])
+def test_the_surface_is_the_row_of_the_riccati_equation(weight):
+    """Along s = 0 the error obeys e' = v, whose cost Q e^2 + R v^2 is least for v = -B'P/R e: the row [B'P/R, 1]."""
+    row = solve_continuous_are(np.zeros((1, 1)), np.eye(1), weight * np.eye(1), np.eye(1)).item()
+    board = make({"controller": {"kind": "pid"}, "controllers": {"stvsc": {"surface_weight": weight}}})
+    inject(board, **AGED)
+    trace = play(board, 500)
+    e = trace["model.displacement"] - trace["plant.displacement"]
+    rate = trace["model.velocity"] - trace["plant.velocity"]
+    assert np.abs(e).max() > 0.01
+    np.testing.assert_allclose(trace["stvsc.surface"], row * e + rate / W0, atol=1e-9)
 
 
 # -- 10: the estimator
