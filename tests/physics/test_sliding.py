@@ -118,7 +118,7 @@ def test_estimator_finds_what_the_input_excites(tones):
 
 
 def test_estimator_without_its_normaliser_runs_away():
-    """A sample multiplies the error along w by 1 - h g w'w, which with w'w = W sin^2 is h g W/4 in the geometric mean."""
+    """A sample multiplies the error along w by 1 - h g w'w, with w'w = W sin^2 h g W/4 in the geometric mean."""
     largest = (10.0**2 + (KP * 10.0) ** 2) / (1 + W0**-2) ** 2  # 10 V at 1 krad/s through 1/(s + 1)^2, G = I
     limit = 4.0 / (0.01 * W0 * largest)
     assert 0.2 < limit < 0.3
