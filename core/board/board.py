@@ -164,7 +164,7 @@ class Board:
             stop = min([self.tick + n - done, *upcoming])
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
-            for finding in self._observer.look(self.tick, self._outputs[rows], self._taps[rows]):
+            for finding in self._observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
                 self._note("board", **finding)
             done += ran
             self.tick += ran

@@ -96,6 +96,14 @@ def alias_map(
     )
 
 
+def equivalents(
+    hypotheses: Sequence[Hypothesis], name: str, nominal: Oscillator, tones: Sequence[tuple[float, float]]
+) -> dict[str, float]:
+    """Return the factor on each single parameter of the device that has the response of a hypothesis at every tone."""
+    item = next(item for item in hypotheses if item.name == name)
+    return _equivalents(item, nominal, [f for f, _ in tones])
+
+
 def hidden_um(noise_um: float) -> float:
     r"""Return the distance below which a tone hardly tells two responses apart.
 

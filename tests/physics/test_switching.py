@@ -46,7 +46,18 @@ def test_nine_switches_among_controllers_that_ran_in_shadow():
     [
         ("self_sliding", *NINE),
         # each of the five after each of the others, in two stories that begin with the laggard
-        ("pid", "self_sliding", "indirect_mrac", "self_sliding", "stvsc", "mrac", "self_sliding", "pid", "stvsc", "pid"),
+        (
+            "pid",
+            "self_sliding",
+            "indirect_mrac",
+            "self_sliding",
+            "stvsc",
+            "mrac",
+            "self_sliding",
+            "pid",
+            "stvsc",
+            "pid",
+        ),
         ("stvsc", "indirect_mrac", "mrac", "pid", "self_sliding", "stvsc", "self_sliding", "mrac", "stvsc", "pid"),
     ],
 )
