@@ -104,6 +104,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Map Aliases
+         * @description Map the response of every hypothesis to the tones of the drive, and name what has the same.
+         */
+        get: operations["map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get"];
+        put?: never;
+        /**
+         * Get Aliases
+         * @description Say which hypotheses of a list the drive does not tell apart.
+         */
+        post: operations["get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/scenarios": {
         parameters: {
             query?: never;
@@ -312,6 +336,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/variant": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Vary Bench
+         * @description Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
+         */
+        post: operations["vary_bench_api_v1_benches__bench_id__variant_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/identification": {
         parameters: {
             query?: never;
@@ -364,6 +408,46 @@ export interface paths {
          * @description Measure what a tick costs with each plant.
          */
         get: operations["plants_api_v1_benches__bench_id__plants_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/flops": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Flops
+         * @description Count the operations of every diagnoser as it is now, and hold them against a board of some speed.
+         */
+        get: operations["flops_api_v1_benches__bench_id__flops_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/explain": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Explain Sample
+         * @description Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior.
+         */
+        get: operations["explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -672,6 +756,66 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Report
+         * @description Download the report of a run, one HTML file that needs nothing else.
+         */
+        get: operations["get_run_report_api_v1_runs__run_id__report_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/thumbnail": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Thumbnail
+         * @description Return a small drawing of a run.
+         */
+        get: operations["get_run_thumbnail_api_v1_runs__run_id__thumbnail_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/script": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Script
+         * @description Download a Python script that repeats a run over REST and checks that it gives the same bits.
+         */
+        get: operations["get_run_script_api_v1_runs__run_id__script_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sweeps": {
         parameters: {
             query?: never;
@@ -780,6 +924,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/gallery": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Gallery
+         * @description Show every library scenario: claim, expectations, and what its run gave.
+         */
+        get: operations["get_gallery_api_v1_gallery_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/gallery/run": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Run Gallery
+         * @description Run the library, or a part of it; what has been run with this version is not run again.
+         */
+        post: operations["run_gallery_api_v1_gallery_run_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/theory/positive-real": {
         parameters: {
             query?: never;
@@ -834,6 +1018,26 @@ export interface paths {
          * @description Judge an input in its steady state.
          */
         post: operations["judge_persistency_api_v1_theory_persistency_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/theory/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Map Aliases
+         * @description Map the responses of hypotheses to tones, and name what has the same.
+         */
+        post: operations["map_aliases_api_v1_theory_aliases_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -925,6 +1129,24 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
+         * Account
+         * @description What one sample did to all of them; the recorded probabilities stand beside those worked out here.
+         *
+         *     They part where the sample was no evidence, because the drive was off or nothing was measured.
+         */
+        Account: {
+            /** Kind */
+            kind: string;
+            /** Tick */
+            tick: number;
+            /** Time Ms */
+            time_ms: number;
+            /** Floor */
+            floor: number;
+            /** Models */
+            models: components["schemas"]["ModelAccount"][];
+        };
+        /**
          * ActiveFault
          * @description A fault on the device now.
          */
@@ -947,6 +1169,68 @@ export interface components {
             };
             /** Since Tick */
             since_tick: number;
+        };
+        /**
+         * AliasMap
+         * @description Responses of all hypotheses, distances between them, and what mass and stiffness are worth in one another.
+         */
+        AliasMap: {
+            /** Tones Hz */
+            tones_hz: number[];
+            /** Stiffness Per Mass */
+            stiffness_per_mass: number;
+            /** Responses */
+            responses: components["schemas"]["Response"][];
+            /** Pairs */
+            pairs: components["schemas"]["Pair"][];
+        };
+        /**
+         * AliasReport
+         * @description Where hypotheses lie apart and where they coincide, now and at other drive frequencies.
+         */
+        AliasReport: {
+            map: components["schemas"]["AliasMap"];
+            /** Sensor Noise Um */
+            sensor_noise_um: number;
+            /** F0 Hz */
+            f0_hz: number;
+            sweep: components["schemas"]["AliasSweep"];
+        };
+        /**
+         * AliasSource
+         * @description Which hypotheses under which drive; those of the diagnoser under the drive of the bench unless given.
+         */
+        AliasSource: {
+            /** Hypotheses */
+            hypotheses?: components["schemas"]["Hypothesis"][] | null;
+            /** Tones */
+            tones?: components["schemas"]["DriveTone"][] | null;
+            /**
+             * Within Um
+             * @description Distance below which two count as coincident
+             * @default 0
+             */
+            within_um?: number;
+        };
+        /**
+         * AliasSweep
+         * @description For a single tone of the first amplitude, the closest pair over frequency.
+         */
+        AliasSweep: {
+            /** Frequency Hz */
+            frequency_hz: number[];
+            /** Distance Um */
+            distance_um: number[];
+            /**
+             * Pair
+             * @description Index into pairs_named
+             */
+            pair: number[];
+            /** Pairs Named */
+            pairs_named: [
+                string,
+                string
+            ][];
         };
         /**
          * Bench
@@ -1196,6 +1480,20 @@ export interface components {
             seed?: number;
         };
         /**
+         * Budget
+         * @description What all diagnosers cost a board of some speed, in their order; those that come too late overrun.
+         */
+        Budget: {
+            /** Board Flops */
+            board_flops: number;
+            /** Function Flops */
+            function_flops: number;
+            /** Share */
+            share: number;
+            /** Loads */
+            loads: components["schemas"]["Load"][];
+        };
+        /**
          * Catalogue
          * @description Every block with its equations, parameters and ports.
          */
@@ -1204,6 +1502,18 @@ export interface components {
             version: string;
             /** Blocks */
             blocks: components["schemas"]["BlockCard"][];
+        };
+        /**
+         * Chosen
+         * @description Which scenarios to run.
+         */
+        Chosen: {
+            /**
+             * Only
+             * @description Ids that match, such as ch5-*
+             * @default *
+             */
+            only?: string;
         };
         /**
          * CommandResult
@@ -1397,6 +1707,16 @@ export interface components {
             digest: string;
         };
         /**
+         * DriveTone
+         * @description One tone of a drive.
+         */
+        DriveTone: {
+            /** Frequency Hz */
+            frequency_hz: number;
+            /** Amplitude V */
+            amplitude_v: number;
+        };
+        /**
          * EquationCard
          * @description An equation, with its erratum when the printed one is wrong.
          */
@@ -1549,6 +1869,29 @@ export interface components {
             filter_pole?: number;
         };
         /**
+         * Expected
+         * @description An expectation, and what was measured.
+         */
+        Expected: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Expected */
+            expected: string;
+            /** Verdict */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /** Note */
+            note: string;
+            /** Measured */
+            measured?: number | null;
+            /**
+             * Ok
+             * @description Null until it has been run
+             */
+            ok?: boolean | null;
+        };
+        /**
          * Extremes
          * @description Smallest and largest value of every column; null where there is no data.
          */
@@ -1613,6 +1956,60 @@ export interface components {
             snapshot?: string | null;
         };
         /**
+         * Gallery
+         * @description All cards, by id.
+         */
+        Gallery: {
+            /** Cards */
+            cards: components["schemas"]["GalleryCard"][];
+        };
+        /**
+         * GalleryCard
+         * @description A scenario of the library and its run, if there has been one with this version of the code.
+         */
+        GalleryCard: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Summary */
+            summary: string;
+            /** Claim */
+            claim: string;
+            /** Verdict */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /**
+             * Study
+             * @description Kind of the study; null for a scenario that runs on a bench
+             */
+            study: string | null;
+            /**
+             * Run
+             * @description Its run: trace, report, thumbnail and script are at /runs/{id}/...
+             */
+            run: string | null;
+            /**
+             * State
+             * @description new until it has been asked for, then as that of a run
+             */
+            state: string;
+            /** Progress */
+            progress: number;
+            /** Elapsed S */
+            elapsed_s: number | null;
+            /** Digest */
+            digest: string;
+            /**
+             * Ok
+             * @description Whether all expectations hold; null until it has been run
+             */
+            ok: boolean | null;
+            /** Expectations */
+            expectations: components["schemas"]["Expected"][];
+        };
+        /**
          * Heal
          * @description Take faults away.
          */
@@ -1655,6 +2052,71 @@ export interface components {
             checks: {
                 [key: string]: boolean;
             };
+        };
+        /**
+         * HypothesesSource
+         * @description A device, what may be wrong with it, and the tones that drive it.
+         */
+        HypothesesSource: {
+            /**
+             * Device
+             * @description Catalogue id, and values written over it
+             * @default {}
+             */
+            device?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Hypotheses
+             * @description Factors on the device
+             */
+            hypotheses: components["schemas"]["Hypothesis"][];
+            /**
+             * Tones
+             * @description V and Hz
+             */
+            tones: components["schemas"]["Line"][];
+            /**
+             * Noise Um
+             * @description Noise that could hide a difference
+             * @default 0
+             */
+            noise_um?: number;
+        };
+        /**
+         * Hypothesis
+         * @description One model of the bank, as factors on the nominal device.
+         */
+        Hypothesis: {
+            /**
+             * Name
+             * @description short name, without spaces or dots
+             */
+            name: string;
+            /**
+             * Mass
+             * @description mass over nominal
+             * @default 1
+             */
+            mass?: number;
+            /**
+             * Stiffness
+             * @description stiffness over nominal
+             * @default 1
+             */
+            stiffness?: number;
+            /**
+             * Damping
+             * @description damping over nominal
+             * @default 1
+             */
+            damping?: number;
+            /**
+             * Gain
+             * @description drive gain over nominal
+             * @default 1
+             */
+            gain?: number;
         };
         /**
          * Identification
@@ -1791,6 +2253,32 @@ export interface components {
             amplitude: number;
             /** Frequency */
             frequency: number;
+        };
+        /**
+         * Load
+         * @description What a diagnoser costs a board.
+         *
+         *     ``functions`` are exponentials, logarithms, roots, sines; each counts as ``function_flops``.
+         */
+        Load: {
+            /** Name */
+            name: string;
+            /** Models */
+            models: number;
+            /** Operations */
+            operations: number;
+            /** Functions */
+            functions: number;
+            /** Per Model */
+            per_model: number;
+            /** Flops Per Second */
+            flops_per_second: number;
+            /** Share */
+            share: number;
+            /** Overrun */
+            overrun: boolean;
+            /** Models That Fit */
+            models_that_fit: number;
         };
         /**
          * Loop
@@ -1932,6 +2420,26 @@ export interface components {
             phase_deg: number;
         };
         /**
+         * ModelAccount
+         * @description What one sample did to one hypothesis.
+         */
+        ModelAccount: {
+            /** Name */
+            name: string;
+            /** Residual Um */
+            residual_um: number;
+            /** Covariance Um2 */
+            covariance_um2: number | null;
+            /** Log Likelihood */
+            log_likelihood: number | null;
+            /** Prior */
+            prior: number;
+            /** Posterior */
+            posterior: number;
+            /** Recorded */
+            recorded: number;
+        };
+        /**
          * NewBench
          * @description What to make a bench from.
          */
@@ -2016,6 +2524,20 @@ export interface components {
             sweep: string | {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * Pair
+         * @description How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it.
+         */
+        Pair: {
+            /** First */
+            first: string;
+            /** Second */
+            second: string;
+            /** Distance Um */
+            distance_um: number;
+            /** Coincident */
+            coincident: boolean;
         };
         /**
          * ParameterCard
@@ -2389,6 +2911,22 @@ export interface components {
              * @constant
              */
             kind?: "reset_trip";
+        };
+        /**
+         * Response
+         * @description The motion of a hypothesis at the tones, and the changes of one parameter that have the same.
+         */
+        Response: {
+            /** Name */
+            name: string;
+            /** Amplitudes Um */
+            amplitudes_um: number[];
+            /** Phases Deg */
+            phases_deg: number[];
+            /** Equivalents */
+            equivalents: {
+                [key: string]: number;
+            };
         };
         /**
          * Roc
@@ -2948,6 +3486,20 @@ export interface components {
             /** Folds */
             folds: components["schemas"]["FoldPoint"][];
             boundary: components["schemas"]["SafeBoundary"] | null;
+        };
+        /**
+         * Variant
+         * @description How the second bench differs.
+         */
+        Variant: {
+            /**
+             * Set
+             * @description Values by dotted path; a whole table may be one
+             * @default {}
+             */
+            set?: {
+                [key: string]: unknown;
+            };
         };
         /**
          * Wanted
@@ -3541,6 +4093,78 @@ export interface operations {
             };
         };
     };
+    map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get: {
+        parameters: {
+            query?: {
+                /** @description One tone as large as the reference; those it has unless given */
+                frequency_hz?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasMap"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AliasSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_scenarios_api_v1_scenarios_get: {
         parameters: {
             query?: never;
@@ -3922,6 +4546,41 @@ export interface operations {
             };
         };
     };
+    vary_bench_api_v1_benches__bench_id__variant_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Variant"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     identification_api_v1_benches__bench_id__identification_post: {
         parameters: {
             query?: never;
@@ -4008,6 +4667,77 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["MeasuredPlants"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    flops_api_v1_benches__bench_id__flops_get: {
+        parameters: {
+            query?: {
+                /** @description What the board does per second */
+                board_mflops?: number;
+                /** @description What an exponential is worth */
+                function_flops?: number;
+            };
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Budget"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get: {
+        parameters: {
+            query?: {
+                /** @description The sample; the last one unless given */
+                tick?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Account"];
                 };
             };
             /** @description Refused or failed */
@@ -4665,6 +5395,99 @@ export interface operations {
             };
         };
     };
+    get_run_report_api_v1_runs__run_id__report_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_run_thumbnail_api_v1_runs__run_id__thumbnail_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_run_script_api_v1_runs__run_id__script_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/x-python": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_sweeps_api_v1_sweeps_get: {
         parameters: {
             query?: never;
@@ -4893,6 +5716,68 @@ export interface operations {
             };
         };
     };
+    get_gallery_api_v1_gallery_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    run_gallery_api_v1_gallery_run_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Chosen"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     judge_positive_real_api_v1_theory_positive_real_post: {
         parameters: {
             query?: never;
@@ -4979,6 +5864,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ExcitationReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    map_aliases_api_v1_theory_aliases_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HypothesesSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasMap"];
                 };
             };
             /** @description Refused or failed */

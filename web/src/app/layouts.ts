@@ -6,7 +6,7 @@ import { type LayoutName, useView } from "./view-store";
 
 let current: DockviewApi | undefined;
 
-const storageKey = (name: LayoutName) => `combbench.layout.3.${name}`;
+const storageKey = (name: LayoutName) => `combbench.layout.4.${name}`;
 
 /** The dock to lay out; called once it stands. */
 export function attachDock(api: DockviewApi): void {
@@ -47,8 +47,9 @@ export function focusNextGroup(): void {
   next?.element.querySelector<HTMLElement>("[role=tab][aria-selected=true], [role=tab], button")?.focus();
 }
 
-/** Bring the panel of a kind to the front, opening one if there is none. */
+/** Bring the panel of a kind to the front, opening one if there is none; without a dock it takes the place for one. */
 export function showPanel(kind: string): void {
+  useView.setState({ extra: kind });
   const panel = current?.panels.find((p) => p.view.contentComponent === kind);
   if (panel) panel.api.setActive();
   else addPanel(kind);

@@ -1,4 +1,5 @@
 import type { ComponentType } from "react";
+import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
 import { CardPanel } from "../panels/card/card-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
@@ -12,6 +13,7 @@ import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
 import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
+import { WhyPanel } from "../panels/why/why-panel";
 
 export interface PanelProps {
   params: { scope?: ScopeConfig };
@@ -27,6 +29,8 @@ export interface PanelKind {
 export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
   lanes: { title: "Diagnosis", component: LanesPanel },
+  adaptation: { title: "Adaptation", component: AdaptationPanel },
+  why: { title: "Why", component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
   faults: { title: "Faults", component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
