@@ -54,7 +54,7 @@ class Service:
         self.hub = Hub(settings, self.metrics, self._lateness)
         self.engine = Engine(self.metrics, self._after_round)
         self.database = Database(settings.database_url or settings.data / "combbench.sqlite3")
-        self.recordings = Recordings(self.database, settings.data / "recordings")
+        self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
         self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
         self.jobs = Jobs(self.database, settings, self.metrics)
         self.keeping = Keeping(self.database, settings)

@@ -164,7 +164,7 @@ class MracVelocity(Block):
         adaptation_gain: float = parameter(0.05, "adaptation gain g", equation="3.1.2.12", gt=0, le=1e6)
         form: Literal["relative_degree_one", "printed"] = parameter(
             "relative_degree_one",
-            "on displacement and velocity, or as printed on the displacement alone; the same for a plant of first order",
+            "on displacement and velocity, or as printed on displacement alone; the same for a plant of first order",
             equation="3.1.2.12",
             live=False,
         )

@@ -24,6 +24,7 @@ from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Se
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.recorder import CLOSED, Recorder
+from server.bench.replay import Replay
 from server.bench.session import Session
 from server.bench.tape import Tape
 from server.errors import ApiError, not_found
@@ -163,13 +164,7 @@ class Benches:
             raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
         about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
         pace = min(max((about.get("time_scale") or DEFAULT_SCALE) * speed, MIN_SCALE), MAX_SCALE)
-        session = Session(scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
-        session.replay_of = recording.id
-        for event in recording.events or []:
-            session.events.add(
-                *(event.get(name) for name in ("tick", "actor", "kind", "text", "command", "old", "new"))  # type: ignore[arg-type]
-            )
-        return session
+        return Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
 
     async def close_bench(self, session: Session) -> None:
         """Stop a bench for good; its recordings are made whole."""
@@ -222,7 +217,7 @@ class Benches:
         room_bytes : int
             How large the recording may become.
         """
-        if len(session.recorders) + len(session.armed) >= 2:
+        if len(session.recordings) >= 2:
             raise ApiError(409, "conflict", "two recordings of this bench are under way already")
         condition = parse_condition(wanted.when, session.column_of) if wanted.when is not None else None
         document = await self._engine.call(session.document)
@@ -253,13 +248,13 @@ class Benches:
         def ended(first: int, ticks: int, reason: str) -> None:
             close(first, ticks, reason)
             with contextlib.suppress(RuntimeError):  # the engine may have stopped
-                self._engine.submit(session.forget_recording, recording.id)
+                self._engine.submit(session.recordings.forget, recording.id)
 
         most = min(self._settings.max_recording_ticks, room_bytes // row_bytes)
         recorder = Recorder(recording.id, file, schema, session.dt_ms, most, ended)
         try:
             tick = await self._engine.call(
-                session.record, recorder, wanted.name, actor, wanted.past_ticks, wanted.ticks, condition
+                session.recordings.begin, recorder, wanted.name, actor, wanted.past_ticks, wanted.ticks, condition
             )
         except BaseException:
             recorder.stop(CLOSED)
@@ -273,7 +268,7 @@ class Benches:
 
     async def stop_recording(self, session: Session, recording_id: str) -> Recording:
         """End a recording and wait until its file is whole."""
-        recorder = await self._engine.call(session.stop_recording, recording_id)
+        recorder = await self._engine.call(session.recordings.stop, recording_id)
         await asyncio.to_thread(recorder.join)
         return await self._recordings.get(recording_id)
 

@@ -234,7 +234,7 @@ def test_augmented_error_identity_tells_wrong_laws_apart(mutant, microsecond_run
 
 
 def test_printed_auxiliary_error_takes_the_limit_for_a_fault_of_the_device():
-    """15 V of the 20 needed: the voltage that was not applied stands in the error it should explain, and gains drift."""
+    """15 V of the 20 needed: what was not applied stands in the error it should explain, and the gains drift."""
 
     def gain(auxiliary: str) -> float:
         law = {"kind": "mrac", "adaptation_gain": 1.0, "auxiliary": auxiliary}

@@ -71,8 +71,9 @@ def test_ideal_gains_of_the_law_with_velocity_match(faults):
 
 @pytest.mark.parametrize("fault", [{}, AGED, {"damping": 4.0}])
 def test_the_plain_law_on_the_displacement_alone_fails(fault):
-    """As printed, not positive real: lost from g = 0.01 on, the healthy device too; under a constant R, of the gain on r
-    alone, from a1/(kp R^2) = 0.007 on, by Routh. With the velocity ten and thirty times that does no harm."""
+    """As printed, not positive real: lost from g = 0.01 on, the healthy device too; under a constant R, with the gain
+    on r alone, from a1/(kp R^2) = 0.007 on, by Routh. With the velocity thirty times that does no harm.
+    """
 
     def left(form: str, gain: float) -> float:
         law = {"kind": "mrac_velocity", "form": form, "adaptation_gain": gain}

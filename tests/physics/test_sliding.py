@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_continuous_are
 
 from core.board.spec import with_values
 from tests.lab import QUIET, do, inject, make, play, rms
@@ -85,6 +86,19 @@ def test_sliding_law_is_the_loop_of_the_equations(kind):
         np.testing.assert_allclose(true, [KP / 1.05, 1.8 / 1.05, A1 / 1.05], rtol=1e-9)
 
 
+@pytest.mark.parametrize("weight", [0.25, 1.0, 4.0])
+def test_the_surface_is_the_row_of_the_riccati_equation(weight):
+    """Along s = 0 the error obeys e' = v, whose cost Q e^2 + R v^2 is least for v = -B'P/R e: the row [B'P/R, 1]."""
+    row = solve_continuous_are(np.zeros((1, 1)), np.eye(1), weight * np.eye(1), np.eye(1)).item()
+    board = make({"controller": {"kind": "pid"}, "controllers": {"stvsc": {"surface_weight": weight}}})
+    inject(board, **AGED)
+    trace = play(board, 500)
+    e = trace["model.displacement"] - trace["plant.displacement"]
+    rate = trace["model.velocity"] - trace["plant.velocity"]
+    assert np.abs(e).max() > 0.01
+    np.testing.assert_allclose(trace["stvsc.surface"], row * e + rate / W0, atol=1e-9)
+
+
 # -- 10: the estimator
 
 
@@ -104,7 +118,7 @@ def test_estimator_finds_what_the_input_excites(tones):
 
 
 def test_estimator_without_its_normaliser_runs_away():
-    """A sample multiplies the error along w by 1 - h g w'w, which with w'w = W sin^2 is h g W/4 in the geometric mean."""
+    """A sample multiplies the error along w by 1 - h g w'w, with w'w = W sin^2 h g W/4 in the geometric mean."""
     largest = (10.0**2 + (KP * 10.0) ** 2) / (1 + W0**-2) ** 2  # 10 V at 1 krad/s through 1/(s + 1)^2, G = I
     limit = 4.0 / (0.01 * W0 * largest)
     assert 0.2 < limit < 0.3

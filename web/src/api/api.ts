@@ -1,7 +1,9 @@
 import { client, data } from "./client";
-import type { BodeOf, Design, NewBench, SweptSine } from "./types";
+import type { BodeOf, Design, Document, NewBench, NewRun, SweptSine } from "./types";
 
 const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
+const run = (run_id: string) => ({ params: { path: { run_id } } });
+const sweep = (sweep_id: string) => ({ params: { path: { sweep_id } } });
 
 /** The REST calls of the page. */
 export const api = {
@@ -19,6 +21,17 @@ export const api = {
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
+  gallery: async () => (await data(client.GET("/api/v1/gallery"))).cards,
+  runs: async () => (await data(client.GET("/api/v1/runs"))).runs,
+  run: (id: string) => data(client.GET("/api/v1/runs/{run_id}", run(id))),
+  startRun: (body: NewRun) => data(client.POST("/api/v1/runs", { body })),
+  cancelRun: (id: string) => data(client.DELETE("/api/v1/runs/{run_id}", run(id))),
+  sweeps: async () => (await data(client.GET("/api/v1/sweeps"))).sweeps,
+  startSweep: (sweep: Document) => data(client.POST("/api/v1/sweeps", { body: { sweep } })),
+  cancelSweep: (id: string) => data(client.DELETE("/api/v1/sweeps/{sweep_id}", sweep(id))),
+  sweepPoints: (id: string) => data(client.GET("/api/v1/sweeps/{sweep_id}/points", sweep(id))),
+  scenario: (scenario_id: string) =>
+    data(client.GET("/api/v1/scenarios/{scenario_id}", { params: { path: { scenario_id } } })),
   benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),

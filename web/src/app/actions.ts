@@ -5,7 +5,7 @@ import { jump } from "../ui/jump";
 import { openBench } from "./open-bench";
 import { send, showError } from "./send";
 import { stepTimeScale } from "./time-scale";
-import { setPage, useView } from "./view-store";
+import { type PageName, setPage, useView } from "./view-store";
 
 const bench = () => useBench.getState().bench;
 
@@ -34,7 +34,8 @@ export const actions = {
   },
   keys: () => useView.setState({ dialog: "keys" }),
   newBench: () => useView.setState({ dialog: "bench" }),
-  designer: () => setPage(useView.getState().page === "designer" ? "bench" : "designer"),
+  /** To a page, and back to the bench from there. */
+  page: (name: PageName) => setPage(useView.getState().page === name ? "bench" : name),
   fork: () => void fork(),
   forkBeforeTrip: () => void forkBeforeTrip(),
   keep: () => void keep(),

@@ -5,8 +5,10 @@ export type LayoutName = "lecture" | "lab" | "research";
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
 
-/** The bench, or the drawing board. */
-export type PageName = "bench" | "designer";
+/** What the page shows: the live bench, or what is done around it. */
+const PAGE_NAMES = ["bench", "gallery", "runs", "designer"] as const;
+
+export type PageName = (typeof PAGE_NAMES)[number];
 
 interface ViewStore {
   page: PageName;
@@ -31,7 +33,8 @@ export const useView = create<ViewStore>(() => ({
 
 /** The page named in the address. */
 export function pageInAddress(): PageName {
-  return new URLSearchParams(window.location.search).get("page") === "designer" ? "designer" : "bench";
+  const asked = new URLSearchParams(window.location.search).get("page");
+  return PAGE_NAMES.find((name) => name === asked) ?? "bench";
 }
 
 /** Go to a page; the address names it, and back works. */

@@ -8,7 +8,6 @@ import {
   IconKeyboard,
   IconLayoutDashboard,
   IconMoon,
-  IconRulerMeasure,
   IconSun,
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
@@ -34,7 +33,6 @@ export function Tools() {
     { label: "Keep this moment, to fork from later (K)", icon: <IconBookmark size={19} />, run: actions.keep },
   ];
   const page: Tool[] = [
-    { label: "Device designer (G)", icon: <IconRulerMeasure size={19} />, run: actions.designer },
     {
       label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)",
       icon: scheme === "dark" ? <IconSun size={19} /> : <IconMoon size={19} />,
