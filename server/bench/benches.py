@@ -163,10 +163,11 @@ class Benches:
             text = f"this version cannot play it: {error}"
             raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
         about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
-        pace = min(max((about.get("time_scale") or DEFAULT_SCALE) * speed, MIN_SCALE), MAX_SCALE)
+        recorded = about.get("time_scale") or DEFAULT_SCALE
+        pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
         history = self._settings.history_ticks
         session = Session(scenario, tape, pace, history, self._metrics, self._engine.clock)
-        session.replay_of = recording.id
+        session.replay_of, session.recorded_scale = recording.id, recorded
         for event in recording.events or []:
             session.events.add(
                 *(event.get(name) for name in ("tick", "actor", "kind", "text", "command", "old", "new"))  # type: ignore[arg-type]

@@ -100,6 +100,7 @@ class Session:
         self._logged = 0
         self._ends_at = board.end if isinstance(board, Tape) else scenario.samples
         self.replay_of = ""
+        self.recorded_scale: float | None = None
         self.loop: tuple[int, int] | None = None
         self._counted = (0, 0.0)
         self._status_due = 0.0

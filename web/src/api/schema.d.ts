@@ -1192,6 +1192,11 @@ export interface components {
              * @description The recording it plays; such a bench takes no changes
              */
             replay_of?: string | null;
+            /**
+             * Recorded Scale
+             * @description Device seconds per wall second it was recorded at
+             */
+            recorded_scale?: number | null;
         };
         /**
          * BenchList
