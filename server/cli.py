@@ -7,6 +7,7 @@ import json
 import os
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, TypeVar
@@ -172,11 +173,14 @@ def sweep(
     address = load_settings().database_url
     again = f"; go on with: combbench sweep {file} --out {folder} --resume"
     try:
-        with typer.progressbar(length=len(campaign), label=campaign.head.id, file=sys.stderr) as bar:
+        with ExitStack() as stack:
+            bars: list[Any] = []  # none before the first run: what is refused is told in one line
 
             def show(done: int, total: int) -> None:
-                bar.length = total
-                bar.update(done - bar.pos)
+                if not bars:
+                    bar = typer.progressbar(length=total, label=campaign.head.id, file=sys.stderr)
+                    bars.append(stack.enter_context(bar))
+                bars[0].update(done - bars[0].pos)
 
             ended = carry_out(campaign, folder, address, resume, workers or os.cpu_count() or 1, scheduler or "", show)
     except Stopped as error:

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from core.block import BlockParams, FloatArray
+from core.block import BlockParams, BoolArray, FloatArray
 from core.board import changes, program, score
 from core.board.commands import Command, Heal, Inject, LogEntry, Set, Switch, Trip
 from core.board.condition import Condition, parse_condition
@@ -27,12 +28,19 @@ CHUNK = 512
 
 @dataclass(frozen=True)
 class Rows:
-    """Ticks that were run: views that hold until the next ``advance``."""
+    """Ticks that were run: views that hold until the next ``advance``; idle taps are 0 throughout."""
 
     first_tick: int
     count: int
     outputs: FloatArray
     taps: FloatArray
+    idle: BoolArray
+
+    @staticmethod
+    def of(first_tick: int, samples: NDArray[Any], outputs: int) -> Rows:
+        """Return rows from samples (ticks by signals, outputs first), none of them known to be idle."""
+        own, taps = (np.ascontiguousarray(part, np.float64) for part in np.split(samples, [outputs], axis=1))
+        return Rows(first_tick, len(samples), own, taps, np.zeros(taps.shape[1], dtype=np.bool_))
 
 
 @dataclass
@@ -146,15 +154,17 @@ class Board:
         """
         n = min(n, CHUNK)
         first, done = self.tick, 0
+        idle = self._idle
         while done < n:
             self._apply_due()
+            idle = idle & self._idle
             if self.trip is not None:
                 break
             upcoming = [entry.tick for entry in self.pending if entry.tick is not None]
             stop = min([self.tick + n - done, *upcoming])
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
-            for finding in self._observer.look(self.tick, self._outputs[rows], self._taps[rows]):
+            for finding in self._observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
                 self._note("board", **finding)
             done += ran
             self.tick += ran
@@ -163,7 +173,7 @@ class Board:
             if why == program.TRIPPED:
                 self._trip()
         self._sha.update(self._outputs[:done].data)
-        return Rows(first, done, self._outputs[:done], self._taps[:done])
+        return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
 
     def _meet(self) -> None:
         """Let every command whose condition holds after this tick take effect at the next."""
@@ -220,6 +230,7 @@ class Board:
         running = wiring.rest(self.spec)
         self._steps = [wiring.instances[row].block.step for row in running]
         self._table = wiring.table[running]
+        self._idle = wiring.idle(running)
         if self.compiled:
             self._table[:, program.ADDRESS] = [program.compiled(step).address for step in self._steps]
 

@@ -140,7 +140,7 @@ class Ensemble(Board):
             return rows
         todo = [entry for entry in self.log.after(self._mirrored) if _was_done(entry)]
         self._mirrored = self.log.last
-        outputs, taps = [rows.outputs], [rows.taps]
+        outputs, taps, idle = [rows.outputs], [rows.taps], [rows.idle]
         for (name, twin), (shown_outputs, shown_taps) in zip(self.twins.items(), self._columns, strict=True):
             for entry in todo:
                 self._mirror(name, twin, entry)
@@ -149,7 +149,9 @@ class Ensemble(Board):
             self._repeat(name, twin.log.after(seen))
             outputs.append(_filled(own.outputs[:, shown_outputs], rows.count))
             taps.append(_filled(own.taps[:, shown_taps], rows.count))
-        return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps))
+            # a twin that tripped in these rows has no numbers for the rest of them
+            idle.append(own.idle[shown_taps] & (own.count == rows.count))
+        return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps), np.concatenate(idle))
 
     def _mirror(self, name: str, twin: Board, entry: LogEntry) -> None:
         """Do to a twin at the same tick what was done to the board, but for what it has of its own."""

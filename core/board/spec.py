@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -113,6 +114,17 @@ class Spec:
 
     def context(self, every: int = 1) -> Context:
         """Return what a block that runs every so many ticks may know."""
+        found = self._contexts.get(every)
+        if found is None:
+            found = self._contexts[every] = self._context(every)
+        return found
+
+    @cached_property
+    def _contexts(self) -> dict[int, Context]:
+        """Contexts worked out so far: every block asks, and whenever a fault comes or goes they do again."""
+        return {}
+
+    def _context(self, every: int) -> Context:
         sensor = self.sensors[self.measuring]
         # the noise of a sample of the sensor, however often the block that asks runs
         noise = getattr(sensor.block, "noise_um", None)

@@ -23,9 +23,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 from core.diagnose.weights import weigh
 
@@ -67,9 +66,7 @@ def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
     evidence = seen and driven(p, s)
     best = -math.inf
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
         w[io[NIS_TAP] + i] = nis
         log = s[OWN + LOG * n + i]

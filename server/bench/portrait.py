@@ -54,8 +54,8 @@ def status_of(session: Session) -> BenchStatus:
         trip=board.trip,
         scores=board.scores(),
         last_event=session.events.last,
-        recording=list(session.recorders),
-        armed=list(session.armed),
+        recording=list(session.recordings.under_way),
+        armed=list(session.recordings.armed),
     )
 
 

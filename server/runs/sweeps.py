@@ -14,6 +14,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import select, update
+from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
 from scenarios.campaign import Campaign, Stopped
@@ -25,7 +26,7 @@ from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
 from server.runs.worker import NICE
 from server.settings import Settings
-from server.store.database import Database
+from server.store.database import Database, reason_of
 from server.store.models import SweepRow
 from server.store.results import Results
 
@@ -195,6 +196,9 @@ class Sweeps:
             state = "cancelled"
         except Stopped as stopped:
             state, error = "aborted", {"code": "aborted", "message": str(stopped)}
+        except DBAPIError as failure:
+            text = f"the database cannot be used: {reason_of(failure)}"
+            state, error = "failed", {"code": "storage", "message": text}
         except Exception as failure:
             log.exception("campaign %s failed", sweep_id)
             state, error = "failed", {"code": "internal", "message": str(failure)}
