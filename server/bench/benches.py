@@ -178,8 +178,11 @@ class Benches:
             text = f"this version cannot play it: {error}"
             raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
         about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
-        pace = min(max((about.get("time_scale") or DEFAULT_SCALE) * speed, MIN_SCALE), MAX_SCALE)
-        return Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
+        recorded = about.get("time_scale") or DEFAULT_SCALE
+        pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
+        session = Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
+        session.recorded_scale = recorded
+        return session
 
     async def close_bench(self, session: Session) -> None:
         """Stop a bench for good; its recordings are made whole."""

@@ -97,6 +97,7 @@ def bench_of(session: Session, around: dict[str, Any], view3d: str | None) -> Be
         parameters=document_now(session),
         view3d=view3d,
         replay_of=session.replay_of or None,
+        recorded_scale=session.recorded_scale,
     )
 
 

@@ -1376,6 +1376,11 @@ export interface components {
              * @description The recording it plays; such a bench takes no changes
              */
             replay_of?: string | null;
+            /**
+             * Recorded Scale
+             * @description Device seconds per wall second it was recorded at
+             */
+            recorded_scale?: number | null;
         };
         /**
          * BenchList
@@ -1957,7 +1962,7 @@ export interface components {
         };
         /**
          * Gallery
-         * @description All cards, by id.
+         * @description All cards, in the order of the text.
          */
         Gallery: {
             /** Cards */

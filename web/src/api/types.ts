@@ -13,6 +13,8 @@ export type Bench = Schemas["Bench"];
 export type BlockCard = Schemas["BlockCard"];
 export type BodeOf = Schemas["BodeOf"];
 export type Design = Schemas["Design"];
+export type CompareWith = Schemas["CompareWith"];
+export type Comparison = Schemas["Comparison"];
 export type Device = Schemas["DeviceCard"];
 export type DeviceCatalogue = Schemas["Devices"];
 export type Equation = Schemas["EquationCard"];
@@ -34,6 +36,7 @@ export type Parameter = Schemas["ParameterCard"];
 export type PointTally = Schemas["PointTally"];
 export type PositiveReal = Schemas["PositiveRealReport"];
 export type ProcessSpread = Schemas["ProcessSpread"];
+export type Recording = Schemas["Recording"];
 export type Run = Schemas["Run"];
 export type ScenarioSummary = Schemas["ScenarioCard"];
 export type Score = Schemas["Scores"];
@@ -41,6 +44,8 @@ export type Signal = Schemas["Signal"];
 export type SweepPoints = Schemas["SweepPoints"];
 export type SweepRun = Schemas["SweepRun"];
 export type SweptSine = Schemas["SweptSine"];
+export type Wanted = Schemas["Wanted"];
+export type Trace = Schemas["Trace"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
 
 /** A scenario document as plain values. */
@@ -57,4 +62,6 @@ export type Command =
   | Schemas["Heal"]
   | Schemas["Set"]
   | Schemas["Switch"]
-  | Schemas["ResetTrip"];
+  | Schemas["ResetTrip"]
+  | Schemas["Seek"]
+  | Schemas["Loop"];
