@@ -41,13 +41,20 @@ class AliasSource(Body):
     within_um: float = Field(0.0, ge=0, le=1e6, description="Distance below which two count as coincident")
 
 
+class NamedPair(BaseModel):
+    """Two hypotheses."""
+
+    first: str
+    second: str
+
+
 class AliasSweep(BaseModel):
     """For a single tone of the first amplitude, the closest pair over frequency."""
 
     frequency_hz: list[float]
     distance_um: list[float]
     pair: list[int] = Field(description="Index into pairs_named")
-    pairs_named: list[tuple[str, str]]
+    pairs_named: list[NamedPair]
 
 
 class AliasReport(BaseModel):
@@ -88,6 +95,6 @@ def _aliases(session: Session, name: str, body: AliasSource) -> AliasReport:
             frequency_hz=grid,
             distance_um=[pair.distance_um for pair in closest],
             pair=[named.index((pair.first, pair.second)) for pair in closest],
-            pairs_named=named,
+            pairs_named=[NamedPair(first=first, second=second) for first, second in named],
         ),
     )

@@ -5,7 +5,7 @@ test("gains run beside their ideal values, and the meter says whether the input 
   page,
   openBench,
 }) => {
-  await openBench("research");
+  await openBench("lab");
   await page.getByRole("tab", { name: "Adaptation" }).click();
   const panel = page.getByRole("region", { name: "Adaptation" });
   await panel.getByRole("combobox", { name: "What adapts" }).selectOption("mrac");

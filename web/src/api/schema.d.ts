@@ -1227,10 +1227,7 @@ export interface components {
              */
             pair: number[];
             /** Pairs Named */
-            pairs_named: [
-                string,
-                string
-            ][];
+            pairs_named: components["schemas"]["NamedPair"][];
         };
         /**
          * Bench
@@ -2443,6 +2440,16 @@ export interface components {
             posterior: number;
             /** Recorded */
             recorded: number;
+        };
+        /**
+         * NamedPair
+         * @description Two hypotheses.
+         */
+        NamedPair: {
+            /** First */
+            first: string;
+            /** Second */
+            second: string;
         };
         /**
          * NewBench

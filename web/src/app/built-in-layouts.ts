@@ -63,10 +63,14 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "environment", "environment", { within: "faults", inactive: true });
     add(api, "card", "card", { within: "faults", inactive: true });
     add(api, "why", "why", { within: "faults", inactive: true });
+    add(api, "labs", "labs", { within: "faults", inactive: true });
+    add(api, "blind", "blind", { within: "faults", inactive: true });
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "events", "events", { within: "lanes", inactive: true });
     add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    add(api, "twins", "twins", { within: "lanes", inactive: true });
+    add(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
@@ -88,9 +92,13 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "events", "events", { within: "card", inactive: true });
     add(api, "faults", "faults", { below: "schematic" });
     add(api, "environment", "environment", { within: "faults", inactive: true });
+    add(api, "labs", "labs", { within: "faults", inactive: true });
+    add(api, "blind", "blind", { within: "faults", inactive: true });
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    add(api, "twins", "twins", { within: "lanes", inactive: true });
+    add(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });

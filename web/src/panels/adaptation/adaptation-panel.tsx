@@ -11,7 +11,7 @@ import { LaneCanvas, type LanePainting } from "../lanes/lane-canvas";
 import { LaneTools } from "../lanes/lane-tools";
 import { useLaneTime } from "../lanes/use-lane-time";
 import styles from "./adaptation.module.css";
-import { adaptiveUnits } from "./adaptation-strips";
+import { adaptiveUnits, signalsOf } from "./adaptation-strips";
 import { ExcitationMeter } from "./excitation-meter";
 import { AXIS_PX, gutter, paintStrips, RIGHT_PX, STRIP_PX } from "./paint-strips";
 
@@ -35,7 +35,7 @@ export function AdaptationPanel() {
     units.find((u) => u.block === wanted) ??
     units.find((u) => u.block === controller) ??
     units.find((u) => u.strips[0]);
-  const names = useMemo(() => unit?.strips.flatMap((s) => (s.ideal ? [s.signal, s.ideal] : [s.signal])) ?? [], [unit]);
+  const names = useMemo(() => unit?.strips.flatMap(signalsOf) ?? [], [unit]);
   const paint = useMemo(() => {
     const columnOf = new Map(names.map((name, i) => [name, i]));
     return (ctx: CanvasRenderingContext2D, painting: LanePainting) =>

@@ -1,10 +1,20 @@
 import type { Signal } from "../../api/types";
 
+/** Another signal on the same axis, in a colour of its own. */
+export interface Rival {
+  signal: string;
+  /** Slot in `TRACE_COLOURS`. */
+  slot: number;
+}
+
 /** One field of the adaptation view: an inner signal, and what it should be. */
 export interface Strip {
   title: string;
   unit: string;
   signal: string;
+  /** Slot in `TRACE_COLOURS`, unless the usual one. */
+  slot?: number;
+  rivals?: Rival[];
   /** What it would be if everything were known. */
   ideal?: string;
   /** A sign that theory forbids is worth seeing. */
@@ -42,6 +52,13 @@ const SCALARS: Record<string, string> = {
   trace: "trace of the covariance",
   covariance_trace: "trace of the covariance",
 };
+
+/** Every signal a strip needs. */
+export const signalsOf = ({ signal, ideal, rivals = [] }: Strip): string[] => [
+  signal,
+  ...(ideal ? [ideal] : []),
+  ...rivals.map((r) => r.signal),
+];
 
 /** What makes a block one that adapts, as against one that merely has an error. */
 const ADAPTS = /^(gain|parameter|estimate)\.|^(gain|surface|lyapunov)$/;

@@ -24,6 +24,7 @@ export function paintStrips(
   columnOf: ReadonlyMap<string, number>,
   scheme: Scheme,
   fontSize: number,
+  each: number = STRIP_PX,
 ): void {
   const { frame, span, width, height, hover } = painting;
   const colours = CANVAS[scheme];
@@ -53,11 +54,13 @@ export function paintStrips(
   ctx.fillText(timeUnit(endMs - startMs).unit, left - 8, bottom + AXIS_PX / 2);
 
   strips.forEach((strip, i) => {
-    const top = i * STRIP_PX + 4;
-    const tall = STRIP_PX - 10;
+    const top = i * each + 4;
+    const tall = each - 10;
     const own = columnOf.get(strip.signal) ?? 0;
     const ideal = strip.ideal === undefined ? undefined : columnOf.get(strip.ideal);
-    const seen = [part(own, 0), part(own, 1), ...(ideal === undefined ? [] : [part(ideal, 0), part(ideal, 1)])];
+    const rivals = (strip.rivals ?? []).map(({ signal, slot }) => ({ at: columnOf.get(signal) ?? 0, slot }));
+    const shown = [own, ...(ideal === undefined ? [] : [ideal]), ...rivals.map((r) => r.at)];
+    const seen = shown.flatMap((signal) => [part(signal, 0), part(signal, 1)]);
     const edges = strip.layer ? [Float32Array.of(-strip.layer, strip.layer)] : [];
     const [low, high] = stripRange(joined([...seen, ...edges]));
     const y = (value: number) => top + tall - ((value - low) / (high - low)) * tall;
@@ -77,7 +80,10 @@ export function paintStrips(
       ctx.fillRect(left, y(strip.layer), right - left, y(-strip.layer) - y(strip.layer));
     }
     if (ideal !== undefined) dashes(ctx, part(ideal, 1), columnX, y, TRACE_COLOURS[scheme][0]);
-    envelope(ctx, seen[0], seen[1], columnX, y, TRACE_COLOURS[scheme][1], strip.negative ? colours.alarm : undefined);
+    for (const { at, slot } of [...rivals].reverse())
+      envelope(ctx, part(at, 0), part(at, 1), columnX, y, TRACE_COLOURS[scheme][slot], undefined);
+    const forbidden = strip.negative ? colours.alarm : undefined;
+    envelope(ctx, part(own, 0), part(own, 1), columnX, y, TRACE_COLOURS[scheme][strip.slot ?? 1], forbidden);
     if (hover !== undefined) {
       ctx.fillStyle = colours.accent;
       ctx.fillRect(Math.round(x(hover)), top, 1, tall);
@@ -97,6 +103,7 @@ export function paintStrips(
     ctx.fillText(strip.title, 4, middle - fontSize * 0.75, left - 12);
     ctx.font = fontFor(fontSize, 1, 450);
     ctx.fillStyle = colours.muted;
+    if (rivals.length > 0) return;
     const now = inWords(reading(own), strip.unit);
     ctx.fillText(
       ideal === undefined ? now : `${now} · ideal ${inWords(reading(ideal), strip.unit)}`,

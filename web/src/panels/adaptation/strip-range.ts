@@ -12,7 +12,7 @@ export function stripRange(values: Iterable<number>): [number, number] {
   if (low > high) return [-1, 1];
   const middle = 0.5 * (low + high);
   const half = Math.max(0.5 * (high - low), Math.abs(middle) * 1e-3, 1e-30) * 1.15;
-  const ticks = linearTicks(middle - 2 * half, middle + 2 * half, 8);
+  const ticks = linearTicks(middle - 2 * half, middle + 2 * half, 16);
   return [
     ticks.filter((t) => t <= middle - half).at(-1) ?? middle - half,
     ticks.find((t) => t >= middle + half) ?? middle + half,

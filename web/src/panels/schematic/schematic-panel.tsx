@@ -50,6 +50,7 @@ export function SchematicPanel() {
     identifier: identifier && `identifiers.${identifier}`,
   };
   const kind = (box: LoopBox) => {
+    if (box.id === "model") return String((parameters.model as { kind?: string } | undefined)?.kind ?? "copy");
     const instance = list.find((i) => i.id === cards[box.id]);
     return instance ? (block(instance.family, instance.name)?.title ?? instance.name.replaceAll("_", " ")) : "none";
   };
