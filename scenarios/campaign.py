@@ -94,7 +94,7 @@ class Campaign:
         niceness: int = 0,
         on_progress: Callable[[int, int], None] = lambda _done, _all: None,
     ) -> None:
-        self.sweep, self.total = sweep, len(sweep)
+        self.sweep, self.total = sweep, 0
         self._table, self._on_progress = table, on_progress
         self._workers, self._scheduler, self._niceness = workers, scheduler, niceness
         self._cost = BATCH_S
@@ -123,9 +123,9 @@ class Campaign:
             When nothing computes any more: no worker, or no scheduler.
         """
         tasks = {key: (key, point.document, seed) for key, point, seed in self.sweep.runs()}
-        self.total = len(tasks)  # two points may be the same run
         have = self._table.have(list(tasks))
         self._left = {key: task for key, task in tasks.items() if key not in have}
+        self.total = len(tasks)  # two points may be the same run
         self._on_progress(self.done, self.total)
         losses = 0
         while self._left and not self._is_cancelled:

@@ -2,56 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from datetime import UTC, datetime
+from collections.abc import Sequence
 from html import escape
 from typing import Any
 
 import pyarrow as pa
 
-from scenarios.key import code_version
+from scenarios.html import as_toml, page, say, table
 from scenarios.outcome import Outcome
 from scenarios.svg import Series, chart
 from scenarios.sweep import Sweep
 from scenarios.tally import DiagnosisTally, PointTally
 
-STYLE = """
-:root { color-scheme: light dark }
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 70rem; padding: 0 1rem }
-table { border-collapse: collapse; margin: .5rem 0 1.5rem; font-variant-numeric: tabular-nums }
-th, td { padding: .15rem .6rem; text-align: right; border-bottom: 1px solid #8884 }
-th:first-child, td:first-child { text-align: left }
-.wide { overflow-x: auto } .side { display: flex; flex-wrap: wrap; gap: 1.5rem; align-items: start }
-svg text { font: 11px system-ui, sans-serif; fill: currentColor } svg .title { font-weight: 600 }
-svg .x { text-anchor: middle } svg .y { text-anchor: end } svg .grid { stroke: #8884; fill: none }
-.keys { font-size: 13px } .key { margin-right: 1rem; white-space: nowrap } pre { overflow-x: auto }
-.miss { color: #c33 } footer { opacity: .7; margin-top: 3rem }
-"""
 USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
 MOST_CURVES = 16
-
-
-def page(title: str, body: str) -> str:
-    """Wrap a body into an HTML document that loads nothing."""
-    now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width"><style>{STYLE}</style></head>'
-        f"<body><h1>{escape(title)}</h1>"
-        f"{body}<footer>CombBench, code {code_version()}, written {now}</footer></body></html>\n"
-    )
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Write a table; numbers with six digits."""
-    titles = "".join(f"<th>{escape(name)}</th>" for name in head)
-    body = "".join("<tr>" + "".join(f"<td>{escape(say(cell))}</td>" for cell in row) + "</tr>" for row in rows)
-    return f'<div class="wide"><table><thead><tr>{titles}</tr></thead><tbody>{body}</tbody></table></div>'
-
-
-def say(value: Any) -> str:
-    """Say a cell."""
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def name_of(labels: dict[str, str | float]) -> str:
@@ -103,7 +67,7 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
     body.append(_trends(points, axes, shown))
     for diagnoser in dict.fromkeys(name for point in points for name in point.diagnosis):
         body.append(_diagnoser(diagnoser, points))
-    body.append(f"<h2>Campaign</h2><pre>{escape(_toml(sweep.document))}</pre>")
+    body.append(f"<h2>Campaign</h2><pre>{escape(as_toml(sweep.document))}</pre>")
     return page(sweep.head.title or sweep.head.id, "".join(body))
 
 
@@ -181,12 +145,6 @@ def _delay_curve(label: str, entry: DiagnosisTally) -> Series:
         x.append(float(delay))
         y.append(sofar / total)
     return Series(label, x, y, is_stepped=True)
-
-
-def _toml(document: dict[str, Any]) -> str:
-    import tomlkit
-
-    return tomlkit.dumps(document)
 
 
 def results_table(sweep: Sweep, outcomes: dict[str, Outcome]) -> pa.Table:

@@ -9,8 +9,9 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from core.board.commands import Command, Timed, parse_command
+from core.board.document import Document
 from core.board.ensemble import twin_documents
-from core.board.spec import FIELDS, Document, parse
+from core.board.spec import FIELDS, parse
 from core.errors import InputError, from_validation, unknown_field
 from scenarios.studies import parse_study
 
@@ -95,9 +96,14 @@ class Expectation(BaseModel):
         """Say whether a measured value is as expected."""
         if measured is None:
             return False
-        low = self.min if self.value is None else self.value - (self.tolerance or 0.0)
-        high = self.max if self.value is None else self.value + (self.tolerance or 0.0)
+        low, high = self.bounds()
         return (low is None or measured >= low) and (high is None or measured <= high)
+
+    def bounds(self) -> tuple[float | None, float | None]:
+        """Return the smallest and the largest value that are as expected."""
+        if self.value is None:
+            return self.min, self.max
+        return self.value - (self.tolerance or 0.0), self.value + (self.tolerance or 0.0)
 
     def text(self) -> str:
         """Say what is expected."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -26,23 +27,28 @@ def parse_seeds(text: str) -> range:
     return range(int(first), int(last) + 1)
 
 
-def run_seeds(scenario: Scenario, seeds: range) -> dict[str, Any]:
-    """Run a scenario once for each seed and return one summary with means and standard deviations.
+def run_seeds(scenario: Scenario, seeds: Sequence[int]) -> dict[str, Any]:
+    """Run a scenario once for each seed and return one summary with means and standard deviations."""
+    return together(scenario, [run(scenario, seed).summary() for seed in seeds])
+
+
+def together(scenario: Scenario, summaries: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Join the summaries of several seeds: means, standard deviations of a sample, expectations of the means.
 
     The digest is the SHA-256 over the digests of the runs. A figure that some runs do not have is the mean over
     those that do.
     """
-    summaries = [run(scenario, seed).summary() for seed in seeds]
     names = sorted({name for summary in summaries for name in summary["metrics"]})
     values = {name: [s["metrics"][name] for s in summaries if name in s["metrics"]] for name in names}
     means = {name: float(np.mean(found)) for name, found in values.items()}
     expectations = judge(scenario, means)
-    digest = hashlib.sha256("".join(summary["digest"] for summary in summaries).encode()).hexdigest()
+    digests = [summary["digest"] for summary in summaries]
     return {
         **summaries[0],
-        "seeds": [seeds[0], seeds[-1]],
+        "seeds": [summaries[0]["seed"], summaries[-1]["seed"]],
         "elapsed_s": sum(summary["elapsed_s"] for summary in summaries),
-        "digest": digest,
+        "digest": hashlib.sha256("".join(digests).encode()).hexdigest(),
+        "digests": digests,
         "tripped_runs": sum(summary["trip"] is not None for summary in summaries),
         "metrics": means,
         "metrics_std": {

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
 import numpy as np
+
+from core.block import FloatArray
 
 WIDTH, HEIGHT = 460, 300
 LEFT, RIGHT, TOP, BOTTOM = 62, 12, 26, 44
@@ -26,6 +29,34 @@ class Series:
     is_stepped: bool = False
 
 
+@dataclass(frozen=True)
+class Mark:
+    """A moment on the x axis, and what happened there."""
+
+    x: float
+    text: str
+
+
+def thin(x: FloatArray, y: FloatArray, columns: int = 400) -> tuple[list[float], list[float]]:
+    """Return the smallest and the largest value of each of so many columns, in the order they came.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+        A trace; what is short enough stays as it is.
+    columns : int
+        Pixels it is meant for.
+    """
+    if len(y) <= 2 * columns:
+        return x.tolist(), y.tolist()
+    edges = np.linspace(0, len(y), columns + 1).astype(np.int64)
+    kept: list[int] = []
+    for first, end in itertools.pairwise(edges):
+        piece = y[first:end]
+        kept += sorted({first + int(np.argmin(piece)), first + int(np.argmax(piece))})
+    return x[kept].tolist(), y[kept].tolist()
+
+
 def ticks(low: float, high: float, most: int = 6) -> list[float]:
     """Return round values over a range: steps of 1, 2 or 5 times a power of ten."""
     raw = (high - low) / most
@@ -42,6 +73,7 @@ def chart(
     series: Sequence[Series],
     x_range: tuple[float, float] | None = None,
     y_range: tuple[float, float] | None = None,
+    marks: Sequence[Mark] = (),
 ) -> str:
     """Draw lines over two axes with titles; values that are not finite are left out.
 
@@ -53,6 +85,8 @@ def chart(
         The lines.
     x_range, y_range : (float, float), optional
         Instead of what the lines span.
+    marks : sequence of Mark
+        Moments drawn as upright lines.
     """
     x_low, x_high = x_range or _range([value for one in series for value in one.x])
     y_low, y_high = y_range or _range(_heights(series))
@@ -75,6 +109,11 @@ def chart(
         parts.append(
             f'<path d="M{x} {y}H{right}" class="grid"/><text x="{x - 5}" y="{y + 4}" class="y">{value:.6g}</text>'
         )
+    for mark in marks:
+        if x_low <= mark.x <= x_high:
+            x, _ = place(mark.x, y_low)
+            line = f'<path d="M{x} {TOP}V{HEIGHT - BOTTOM}" class="mark"/>'
+            parts.append(f"<g>{line}<title>{escape(mark.text)}</title></g>")
     for number, one in enumerate(series):
         look = _look(number)
         spreads = one.spread or [0.0] * len(one.x)

@@ -10,11 +10,13 @@ from fastapi import FastAPI
 
 from server import errors, openapi
 from server.api import (
+    aliases,
     benches,
     catalog,
     devices,
-    diagnosis,
+    diagnosers,
     experiments,
+    gallery,
     health,
     metrics,
     recordings,
@@ -40,15 +42,17 @@ API = "/api/v1"
 ROUTERS = (
     catalog,
     devices,
-    diagnosis,
+    aliases,
     scenarios,
     benches,
     experiments,
+    diagnosers,
     snapshots,
     recordings,
     trace,
     runs,
     sweeps,
+    gallery,
     theory,
     stream,
 )

@@ -7,6 +7,7 @@ import json
 import os
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, TypeVar
@@ -17,11 +18,11 @@ import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.errors import InputError
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
+from scenarios.keeping import keep
 from scenarios.library import get, library
 from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds
-from scenarios.traces import write_result
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 
@@ -97,7 +98,7 @@ def run(
     seed: Annotated[int | None, typer.Option(min=0, help="Instead of the scenario's own.")] = None,
     seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
     as_json: JsonOption = False,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace and summary here.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace, report and script here.")] = None,
 ) -> None:
     """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
@@ -112,7 +113,7 @@ def run(
         summary = result.summary()
         if out is not None:
             try:
-                write_result(result, out)
+                keep(result, summary, [result.seed], out / f"{chosen.id}-seed{result.seed}")
             except OSError as error:
                 raise InputError(f"cannot write to {out}: {error.strerror}", "--out") from None
     if as_json:
@@ -172,11 +173,14 @@ def sweep(
     address = load_settings().database_url
     again = f"; go on with: combbench sweep {file} --out {folder} --resume"
     try:
-        with typer.progressbar(length=len(campaign), label=campaign.head.id, file=sys.stderr) as bar:
+        with ExitStack() as stack:
+            bars: list[Any] = []  # none before the first run: what is refused is told in one line
 
             def show(done: int, total: int) -> None:
-                bar.length = total
-                bar.update(done - bar.pos)
+                if not bars:
+                    bar = typer.progressbar(length=total, label=campaign.head.id, file=sys.stderr)
+                    bars.append(stack.enter_context(bar))
+                bars[0].update(done - bars[0].pos)
 
             ended = carry_out(campaign, folder, address, resume, workers or os.cpu_count() or 1, scheduler or "", show)
     except Stopped as error:

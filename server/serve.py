@@ -147,6 +147,10 @@ def serve(settings: Settings) -> None:
         from server.app import create_app  # loads everything; a wrong setting is told before that
 
         app = create_app(settings)
+        app.state.service.database.migrate()
+    except InputError:
+        listener.close()
+        raise
     except OSError as error:
         listener.close()
         raise InputError(f"the data folder {settings.data} cannot be used: {error.strerror}", "data") from None

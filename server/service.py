@@ -54,7 +54,7 @@ class Service:
         self.hub = Hub(settings, self.metrics, self._lateness)
         self.engine = Engine(self.metrics, self._after_round)
         self.database = Database(settings.database_url or settings.data / "combbench.sqlite3")
-        self.recordings = Recordings(self.database, settings.data / "recordings")
+        self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
         self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
         self.jobs = Jobs(self.database, settings, self.metrics)
         self.keeping = Keeping(self.database, settings)
@@ -128,7 +128,7 @@ def warm_up() -> None:
     """Load the compiled kernels (or compile them) and compute one tick with them, before anyone waits."""
     for scenario in library():
         board = build(scenario)
-        history = History(len(board.signals), 1)
+        history = History(board.signals.outputs, len(board.signals.taps), 1)
         history.append(board.advance(1))
         history.columns([0], 0, 1, 1)
 

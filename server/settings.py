@@ -41,15 +41,19 @@ class Settings(BaseSettings):
     max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
     max_clients_per_bench: int = Field(256, ge=1, description="Open streams of one bench.")
     max_snapshots: int = Field(32, ge=1, description="Snapshots kept per bench.")
-    max_queued_runs: int = Field(64, ge=1, description="Headless runs waiting or running.")
+    max_queued_runs: int = Field(256, ge=1, description="Headless runs waiting or running.")
     max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
     max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
     quota_bytes: int = Field(50_000_000_000, ge=0, description="Bytes of recordings and runs; beyond, no new ones.")
+    disk_reserve_bytes: int = Field(
+        100_000_000, ge=0, description="Free space that is never used: recordings end, runs are refused."
+    )
     retention_days: float = Field(0.0, ge=0, description="Days recordings and runs are kept; 0 keeps them for ever.")
     max_trace_ticks: int = Field(200_000, ge=1, description="Ticks of one full-rate trace download.")
-    history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for.")
+    history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for, at most.")
+    history_mb: int = Field(72, ge=1, le=10_000, description="Memory the history of one bench may take.")
 
     body_limit_bytes: int = Field(1 << 20, ge=1024, description="Largest request body.")
     message_limit_bytes: int = Field(64 << 10, ge=1024, description="Largest WebSocket message of a client.")

@@ -11,15 +11,16 @@ from typing import Any
 
 import pyarrow.csv
 import pyarrow.parquet as pq
+from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
-from scenarios.campaign import Campaign
+from scenarios.campaign import Campaign, Stopped
 from scenarios.outcome import Outcome
 from scenarios.report import campaign_report, results_table
 from scenarios.sweep import Sweep
 from scenarios.tally import tally
 from scenarios.traces import write_json
-from server.store.database import Database
+from server.store.database import Database, reason_of
 from server.store.results import Results
 
 TABLE, REPORT, POINTS, RUNS_PARQUET, RUNS_CSV = (
@@ -83,7 +84,7 @@ def carry_out(
     InputError
         When the folder holds a campaign and it is not to be gone on with, or cannot be written.
     Stopped
-        When nothing computes any more; what is done is written first.
+        When nothing computes any more, or nothing can be written; what is done is in the table.
     """
     place = folder / TABLE
     if (place.exists() or (folder / REPORT).exists()) and not resume:
@@ -96,14 +97,20 @@ def carry_out(
     except OSError as error:
         raise InputError(f"cannot write to {folder}: {error.strerror}", "--out") from None
     database = Database(database_url or place)
+    results = Results(database)
+    campaign = Campaign(sweep, results, workers=workers, scheduler=scheduler, on_progress=on_progress)
     try:
         database.migrate()
-        results = Results(database)
-        campaign = Campaign(sweep, results, workers=workers, scheduler=scheduler, on_progress=on_progress)
         try:
             campaign.run()
         finally:
             failed = write(sweep, results, folder)
+    except DBAPIError as error:
+        text = f"the database cannot be used: {reason_of(error)}"
+        raise Stopped(f"{text}; {campaign.done} of {campaign.total} runs are done") from None
+    except OSError as error:
+        text = f"cannot write to {folder}: {error.strerror}"
+        raise Stopped(f"{text}; {campaign.done} of {campaign.total} runs are done") from None
     finally:
         database.close()
     return Ended(campaign.done, campaign.total, failed, folder)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Response
+from fastapi import APIRouter, Body, Query, Response
 from pydantic import BaseModel, Field
 
 from scenarios.schema import Scenario
@@ -113,9 +113,13 @@ async def command(
 
 
 @router.get("/{bench_id}/events")
-async def list_events(session: SessionDep, after: int = 0, limit: int | None = None) -> EventList:
+async def list_events(
+    session: SessionDep,
+    after: Annotated[int, Query(ge=0, le=2**53)] = 0,
+    limit: Annotated[int | None, Query(ge=1, le=100_000)] = None,
+) -> EventList:
     """List what happened after an event."""
-    lost, events = session.events.after(max(0, after), max(1, limit) if limit is not None else None)
+    lost, events = session.events.after(after, limit)
     return EventList(events=events, last=session.events.last, lost=lost)
 
 

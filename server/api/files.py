@@ -22,6 +22,7 @@ FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 
 PIECE = 1 << 16
+HTML = "text/html"
 
 
 def file_name(name: str, kind: str) -> str:
@@ -77,3 +78,12 @@ async def stored_trace(service: Service, path: Path, name: str, kind: Format, cu
         return FileResponse(path, media_type=MEDIA_TYPES[kind], filename=file_name(name, kind))
     table = await asyncio.to_thread(read_cut, path, cut, service.settings.max_trace_ticks)
     return await table_response(service, table, name, kind)
+
+
+def report_response(text: str, name: str) -> Response:
+    """Send a report: shown under a policy that allows its own style and nothing else."""
+    headers = {
+        "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'self'",
+        "Content-Disposition": f'inline; filename="{file_name(name, "html")}"',
+    }
+    return Response(text, media_type=HTML, headers=headers)

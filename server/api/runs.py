@@ -6,17 +6,20 @@ import asyncio
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Response
+from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
 from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
+from server.api.files import FORMAT_RESPONSES, HTML, CutDep, file_name, report_response, stored_trace
 from server.bench.benches import prepare
 from server.runs.jobs import Run
 from server.store.traces import Format
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=StrictRoute)
+
+SVG, PYTHON = "image/svg+xml", "text/x-python"
 
 
 class NewRun(Body):
@@ -84,6 +87,26 @@ async def get_run_trace(
     run_id: str, service: ServiceDep, cut: CutDep, kind: Annotated[Format, Query(alias="format")] = "parquet"
 ) -> Response:
     """Download the trace of a run (of its first seed)."""
-    run = await service.jobs.get(run_id)
-    path = service.jobs.trace_path(run.id)
+    run, path = await service.jobs.file(run_id, ".parquet")
     return await stored_trace(service, path, run.scenario_id, kind, cut)
+
+
+@router.get("/{run_id}/report", response_class=Response, responses={200: {"content": {HTML: {}}}})
+async def get_run_report(run_id: str, service: ServiceDep) -> Response:
+    """Download the report of a run, one HTML file that needs nothing else."""
+    run, path = await service.jobs.file(run_id, ".html")
+    return report_response(await asyncio.to_thread(path.read_text, "utf-8"), run.scenario_id)
+
+
+@router.get("/{run_id}/thumbnail", response_class=Response, responses={200: {"content": {SVG: {}}}})
+async def get_run_thumbnail(run_id: str, service: ServiceDep) -> Response:
+    """Return a small drawing of a run."""
+    _, path = await service.jobs.file(run_id, ".svg")
+    return FileResponse(path, media_type=SVG, headers={"Cache-Control": "private, max-age=3600"})
+
+
+@router.get("/{run_id}/script", response_class=Response, responses={200: {"content": {PYTHON: {}}}})
+async def get_run_script(run_id: str, service: ServiceDep) -> Response:
+    """Download a Python script that repeats a run over REST and checks that it gives the same bits."""
+    run, path = await service.jobs.file(run_id, ".py")
+    return FileResponse(path, media_type=PYTHON, filename=file_name(run.scenario_id, "py"))

@@ -13,14 +13,12 @@ from scenarios.sweep import Sweep
 from scenarios.tally import PointTally, tally
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.api.files import file_name, table_response
+from server.api.files import HTML, report_response, table_response
 from server.errors import ApiError
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=StrictRoute)
-
-HTML = "text/html"
 
 
 class NewSweep(Body):
@@ -83,7 +81,11 @@ async def get_sweep_points(sweep_id: str, service: ServiceDep) -> SweepPoints:
     return SweepPoints(sweep=await service.sweeps.get(sweep_id), points=await service.sweeps.points(sweep_id))
 
 
-@router.get("/{sweep_id}/runs", response_class=Response, responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}})
+@router.get(
+    "/{sweep_id}/runs",
+    response_class=Response,
+    responses={200: {"content": {MEDIA_TYPES[kind]: {} for kind in ("csv", "parquet")}}},
+)
 async def get_sweep_runs(
     sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"
 ) -> Response:
@@ -101,12 +103,3 @@ async def get_sweep_report(sweep_id: str, service: ServiceDep) -> Response:
     sweep, outcomes = await service.sweeps.outcomes(sweep_id)
     text = await asyncio.to_thread(lambda: campaign_report(sweep, tally(sweep, outcomes)))
     return report_response(text, sweep.head.id)
-
-
-def report_response(text: str, name: str) -> Response:
-    """Send a report: shown under a policy that allows its own style and nothing else."""
-    headers = {
-        "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'self'",
-        "Content-Disposition": f'inline; filename="{file_name(name, "html")}"',
-    }
-    return Response(text, media_type=HTML, headers=headers)

@@ -54,8 +54,8 @@ def status_of(session: Session) -> BenchStatus:
         trip=board.trip,
         scores=board.scores(),
         last_event=session.events.last,
-        recording=list(session.recorders),
-        armed=list(session.armed),
+        recording=list(session.recordings.under_way),
+        armed=list(session.recordings.armed),
     )
 
 
@@ -97,6 +97,7 @@ def bench_of(session: Session, around: dict[str, Any], view3d: str | None) -> Be
         parameters=document_now(session),
         view3d=view3d,
         replay_of=session.replay_of or None,
+        recorded_scale=session.recorded_scale,
     )
 
 

@@ -28,7 +28,7 @@ from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
-from server.runs.worker import CANCEL, NICE, PROGRESS, TRACE, Cancelled, work
+from server.runs.worker import CANCEL, NICE, PROGRESS, STEM, Cancelled, work
 from server.settings import Settings
 from server.store.database import Database
 from server.store.models import RunRow, now
@@ -57,6 +57,12 @@ class Run(BaseModel):
     progress: float
     summary: dict[str, Any] | None
     error: dict[str, Any] | None
+
+
+def identify(scenario: Scenario, seeds: list[int]) -> tuple[dict[str, Any], str]:
+    """Return the document of a run as it is kept, and its key."""
+    document = json.loads(json.dumps(scenario.document, default=str))
+    return document, run_key(content_hash(document), *seeds)
 
 
 class Jobs:
@@ -96,8 +102,7 @@ class Jobs:
         if ticks > settings.max_run_ticks:
             text = f"this run has {ticks} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
             raise ApiError(422, "too_long", text, "scenario")
-        document = json.loads(json.dumps(scenario.document, default=str))
-        key = run_key(content_hash(document), *seeds)
+        document, key = identify(scenario, seeds)
         row = RunRow(
             id=key[:32],
             key=key,
@@ -141,6 +146,12 @@ class Jobs:
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         return [self._live(Run.model_validate(row)) for row in rows]
 
+    async def some(self, run_ids: list[str]) -> dict[str, Run]:
+        """Return those of some runs that are known."""
+        query = select(RunRow).where(RunRow.id.in_(run_ids))
+        rows = await self._database.run(lambda session: list(session.scalars(query)))
+        return {row.id: self._live(Run.model_validate(row)) for row in rows}
+
     async def get(self, run_id: str) -> Run:
         """Return one run, or refuse with 404."""
         row = await self._database.run(lambda session: session.get(RunRow, run_id))
@@ -163,12 +174,13 @@ class Jobs:
         await asyncio.wait([task], timeout=CANCEL_S)
         return await self.get(run_id)
 
-    def trace_path(self, run_id: str) -> Path:
-        """Return the trace of a run that is done."""
-        path = self._folder / run_id / TRACE
-        if not path.is_file():
-            raise not_found("trace of run", run_id, "a run has a trace once it is done")
-        return path
+    async def file(self, run_id: str, ending: str) -> tuple[Run, Path]:
+        """Return a run that is done, and one of its files."""
+        run = await self.get(run_id)
+        path = (self._folder / run.id / STEM).with_suffix(ending)
+        if run.state != "done" or not path.is_file():
+            raise not_found(f"{ending[1:]} file of run", run_id, "a run has its files once it is done")
+        return run, path
 
     async def recover(self) -> None:
         """Begin again what the end of the server interrupted; give up what has been begun too often."""

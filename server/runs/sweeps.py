@@ -14,6 +14,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import select, update
+from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
 from scenarios.campaign import Campaign, Stopped
@@ -25,7 +26,7 @@ from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
 from server.runs.worker import NICE
 from server.settings import Settings
-from server.store.database import Database
+from server.store.database import Database, reason_of
 from server.store.models import SweepRow
 from server.store.results import Results
 
@@ -176,6 +177,7 @@ class Sweeps:
     async def _carry_out(self, sweep_id: str, sweep: Sweep) -> None:
         """Wait for the turn, then for the end."""
         state, error = "done", None
+        campaign: Campaign | None = None
         try:
             async with self._turn:
                 await self._update(sweep_id, state="running")
@@ -194,6 +196,9 @@ class Sweeps:
             state = "cancelled"
         except Stopped as stopped:
             state, error = "aborted", {"code": "aborted", "message": str(stopped)}
+        except DBAPIError as failure:
+            text = f"the database cannot be used: {reason_of(failure)}"
+            state, error = "failed", {"code": "storage", "message": text}
         except Exception as failure:
             log.exception("campaign %s failed", sweep_id)
             state, error = "failed", {"code": "internal", "message": str(failure)}
@@ -201,11 +206,12 @@ class Sweeps:
             self._tasks.pop(sweep_id, None)
             self._campaigns.pop(sweep_id, None)
         if not self._is_closing or state == "done":
-            await self._end(sweep_id, state, error)
+            done = {"done": campaign.done} if campaign is not None else {}
+            await self._end(sweep_id, state, error, **done)
 
-    async def _end(self, sweep_id: str, state: str, error: dict[str, Any] | None) -> None:
+    async def _end(self, sweep_id: str, state: str, error: dict[str, Any] | None, **values: Any) -> None:
         self._metrics.runs.labels(state).inc()
-        await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC))
+        await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC), **values)
 
     def _read(self, document: dict[str, Any], version: str) -> tuple[Sweep, dict[str, Outcome]]:
         if version != code_version():
@@ -217,8 +223,7 @@ class Sweeps:
     def _live(self, found: SweepRun) -> SweepRun:
         """Add how far it is."""
         campaign = self._campaigns.get(found.id)
-        done = campaign.done if campaign is not None else found.runs if found.state == "done" else 0
-        return found.model_copy(update={"done": done})
+        return found if campaign is None else found.model_copy(update={"done": campaign.done})
 
     async def _row(self, sweep_id: str) -> SweepRow | None:
         return await self._database.run(lambda session: session.get(SweepRow, sweep_id))

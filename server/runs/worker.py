@@ -1,4 +1,4 @@
-"""What a worker process does: run a scenario for its seeds and write trace and summary."""
+"""What a worker process does: run a scenario for its seeds and keep what came out."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ import json
 import time
 from collections.abc import Callable
 from pathlib import Path
-from statistics import fmean, pstdev
 from typing import Any
 
 NICE = 10
 LOOK_S = 0.1
-SUMMARY, TRACE, PROGRESS, CANCEL = "summary.json", "trace.parquet", "progress", "cancel"
+STEM, PROGRESS, CANCEL = "run", "progress", "cancel"
 
 
 class Cancelled(Exception):
@@ -47,7 +46,7 @@ class Watch:
 
 
 def work(document: dict[str, Any], seeds: list[int], folder: str) -> dict[str, Any]:
-    """Run a scenario once per seed; the trace of the first is kept.
+    """Run a scenario once per seed; trace, report and drawing are of the first.
 
     Parameters
     ----------
@@ -68,11 +67,10 @@ def work(document: dict[str, Any], seeds: list[int], folder: str) -> dict[str, A
     Cancelled
         When a file ``cancel`` has appeared in the folder.
     """
-    import numpy as np
-
-    from scenarios.run import DEFAULT_SAMPLES, run
+    from scenarios.keeping import keep
+    from scenarios.run import DEFAULT_SAMPLES, Result, run
     from scenarios.schema import Scenario
-    from scenarios.traces import write_json, write_parquet
+    from scenarios.seeds import together
 
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
@@ -80,37 +78,14 @@ def work(document: dict[str, Any], seeds: list[int], folder: str) -> dict[str, A
     summaries: list[dict[str, Any]] = []
     samples = scenario.samples or DEFAULT_SAMPLES
     watch = Watch(place, samples * len(seeds))
+    kept: Result | None = None
     for number, seed in enumerate(seeds):
         watch.at(number * samples)(0)
         result = run(scenario, seed, taps=number == 0, on_tick=watch.at(number * samples))
         summaries.append(result.summary())
-        if number == 0:
-            signals = {signal.name: result.signal(signal.name) for signal in result.board.signals}
-            ticks = np.arange(result.board.tick)
-            columns = {"tick": ticks, "time_ms": ticks * result.board.dt_ms, **signals}
-            write_parquet(place / TRACE, columns, {"scenario": document, "seed": seed})
+        kept = kept or result
+    assert kept is not None
     summary = summaries[0] if len(summaries) == 1 else together(scenario, summaries)
-    summary = json.loads(json.dumps(summary, default=str))
-    write_json(place / SUMMARY, summary)
-    return dict(summary)
-
-
-def together(scenario: Any, summaries: list[dict[str, Any]]) -> dict[str, Any]:
-    """Join the summaries of several seeds: means, standard deviations, expectations of the means."""
-    from scenarios.run import judge
-
-    names = summaries[0]["metrics"]
-    values = {name: [one["metrics"][name] for one in summaries if name in one["metrics"]] for name in names}
-    means = {name: fmean(found) for name, found in values.items()}
-    expectations = judge(scenario, means)
-    return {
-        **summaries[0],
-        "seeds": [one["seed"] for one in summaries],
-        "elapsed_s": sum(one["elapsed_s"] for one in summaries),
-        "digest": "",
-        "digests": [one["digest"] for one in summaries],
-        "metrics": means,
-        "metrics_std": {name: pstdev(found) for name, found in values.items()},
-        "expectations": expectations,
-        "ok": all(entry["ok"] for entry in expectations),
-    }
+    summary = dict(json.loads(json.dumps(summary, default=str)))
+    keep(kept, summary, seeds, place / STEM)
+    return summary

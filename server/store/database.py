@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sqlalchemy import Engine, create_engine, event, inspect, make_url, text
-from sqlalchemy.exc import ArgumentError
+from sqlalchemy.exc import ArgumentError, DBAPIError
 from sqlalchemy.orm import Session, sessionmaker
 
 from core.errors import InputError
@@ -41,9 +41,20 @@ class Database:
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="combbench-db")
 
     def migrate(self) -> None:
-        """Bring the tables to this version; the tools for it are loaded only when there is something to do."""
-        if self._revision() == newest_revision():
-            return
+        """Bring the tables to this version; the tools for it are loaded only when there is something to do.
+
+        Raises
+        ------
+        InputError
+            When the database cannot be used.
+        """
+        try:
+            if self._revision() != newest_revision():
+                self._upgrade()
+        except DBAPIError as error:
+            raise InputError(f"the database cannot be used: {reason_of(error)}", "database_url") from None
+
+    def _upgrade(self) -> None:
         from alembic import command
 
         level = logging.getLogger("alembic").level
@@ -88,6 +99,11 @@ class Database:
         """Finish what is under way and close the file."""
         self._thread.shutdown(wait=True)
         self._engine.dispose()
+
+
+def reason_of(error: DBAPIError) -> str:
+    """Say in one line why the database refused."""
+    return " ".join(str(error.orig).split())[:300]
 
 
 def full_url(address: str) -> str:

@@ -14,6 +14,7 @@ from server.errors import ApiError
 from server.settings import Settings
 from server.store.database import Database
 from server.store.models import RecordingRow, RunRow
+from server.store.recording import free_bytes
 
 log = logging.getLogger(__name__)
 
@@ -41,8 +42,12 @@ class Keeping:
         Raises
         ------
         ApiError
-            When the quota is used up.
+            When the quota is used up, or the disk is full but for its reserve.
         """
+        free = await asyncio.to_thread(free_bytes, self._settings.data)
+        if free <= self._settings.disk_reserve_bytes:
+            text = f"{free} bytes of the disk are free, which is its reserve (disk_reserve_bytes)"
+            raise ApiError(507, "no_space", text, hint="delete recordings, or make room on the disk")
         used = await asyncio.to_thread(self._used)
         left = self._settings.quota_bytes - used
         if left <= 0:

@@ -7,8 +7,10 @@ end it is rewritten as Parquet. What a crash left behind is recovered at the nex
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,7 +18,11 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from scenarios.traces import packing
+
 PART, EVENTS = ".arrows", ".events"
+GROUP_TICKS = 1 << 15
+"""Ticks in a piece of the Parquet file: small ones cost more in description than in data."""
 
 
 class RecordingFile:
@@ -28,16 +34,27 @@ class RecordingFile:
         The Parquet file it will become.
     schema : pa.Schema
         Columns.
+    reserve_bytes : int
+        Free space that is left alone.
     """
 
-    def __init__(self, path: Path, schema: pa.Schema) -> None:
+    def __init__(self, path: Path, schema: pa.Schema, reserve_bytes: int = 0) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._path = path
+        self._path, self._reserve_bytes = path, reserve_bytes
         self._sink = path.with_suffix(PART).open("wb")
         self._stream = pa.ipc.new_stream(self._sink, schema)
 
     def append(self, table: pa.Table) -> None:
-        """Write a batch; it survives from here on."""
+        """Write a batch; it survives from here on.
+
+        Raises
+        ------
+        OSError
+            When the disk is full, or will be once the Parquet file stands beside this one.
+        """
+        free = free_bytes(self._path.parent)
+        if free < self._reserve_bytes + self._sink.tell():
+            raise OSError(errno.ENOSPC, f"only {free / 1e6:.0f} MB are free")
         self._stream.write_table(table)
         self._sink.flush()
 
@@ -60,6 +77,13 @@ class RecordingFile:
             return convert(self._path)
         except (OSError, pa.ArrowException):
             return 0
+
+
+def free_bytes(folder: Path) -> int:
+    """Return the free space of the disk a folder is on; of the one it would be made on."""
+    while not folder.exists():
+        folder = folder.parent
+    return shutil.disk_usage(folder).free
 
 
 def rescue(path: Path) -> int:
@@ -93,10 +117,16 @@ def convert(path: Path) -> int:
     ticks = 0
     with source.open("rb") as file:
         reader = pa.ipc.open_stream(file)
-        with pq.ParquetWriter(part, reader.schema, compression="zstd") as writer:
+        with pq.ParquetWriter(part, reader.schema, **packing(reader.schema)) as writer:
+            held: list[pa.RecordBatch] = []
             for batch in _whole_batches(reader):
-                writer.write_batch(batch)
+                held.append(batch)
                 ticks += batch.num_rows
+                if sum(one.num_rows for one in held) >= GROUP_TICKS:
+                    writer.write_table(pa.Table.from_batches(held))
+                    held = []
+            if held:
+                writer.write_table(pa.Table.from_batches(held))
     with part.open("rb") as file:
         os.fsync(file.fileno())
     part.rename(path)

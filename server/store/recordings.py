@@ -15,10 +15,11 @@ from typing import Any
 import pyarrow as pa
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import delete, select, update
+from sqlalchemy.exc import DBAPIError
 
 from scenarios.key import code_version
 from server.errors import ApiError, not_found
-from server.store.database import Database
+from server.store.database import Database, reason_of
 from server.store.models import RecordingRow
 from server.store.recording import EVENTS, PART, RecordingFile, events_of, first_tick, rescue
 from server.version import VERSION
@@ -82,10 +83,13 @@ class Recordings:
         Where the rows are.
     folder : Path
         Where the files are.
+    reserve_bytes : int
+        Free space that is left alone.
     """
 
-    def __init__(self, database: Database, folder: Path) -> None:
-        self._database, self._folder = database, folder
+    def __init__(self, database: Database, folder: Path, reserve_bytes: int) -> None:
+        self._database, self._folder, self._reserve_bytes = database, folder, reserve_bytes
+        self._unclosed: dict[str, dict[str, Any]] = {}
 
     def path(self, recording_id: str) -> Path:
         """Return the file of a recording; the id is ours, never a caller's text."""
@@ -112,7 +116,7 @@ class Recordings:
             condition=about.condition,
         )
         try:
-            file = await asyncio.to_thread(RecordingFile, self.path(row.id), schema)
+            file = await asyncio.to_thread(RecordingFile, self.path(row.id), schema, self._reserve_bytes)
         except OSError as error:
             text = f"the recording cannot be opened: {error.strerror or error}"
             raise ApiError(507, "no_space", text) from None
@@ -138,30 +142,42 @@ class Recordings:
     def _close(self, recording_id: str, values: dict[str, Any]) -> None:
         """Close a row; the events move into it from the file beside the trace."""
         path = self.path(recording_id)
-        values |= {"finished": datetime.now(UTC), "events": events_of(path)}
+        values = {"finished": datetime.now(UTC), "events": events_of(path), **values}
         values["bytes"] = path.stat().st_size if path.exists() else 0
         statement = update(RecordingRow).where(RecordingRow.id == recording_id).values(**values)
         try:
             self._database.transact(lambda session: session.execute(statement))
-        except Exception:
-            log.exception("recording %s could not be closed in the database", recording_id)
+        except DBAPIError as error:  # a full disk; it is tried again when somebody asks
+            log.error("recording %s is not closed in the database: %s", recording_id, reason_of(error))
+            self._unclosed[recording_id] = values
         else:
+            self._unclosed.pop(recording_id, None)
             path.with_suffix(EVENTS).unlink(missing_ok=True)
+
+    async def _settle(self) -> None:
+        """Close what could not be closed while the disk was full, and make its file whole."""
+        for recording_id, values in list(self._unclosed.items()):
+            if not values["ticks"]:
+                values["ticks"] = await asyncio.to_thread(rescue, self.path(recording_id))
+                values["state"] = "done" if values["ticks"] else values["state"]
+            await asyncio.to_thread(self._close, recording_id, values)
 
     async def all(self, bench_id: str | None = None) -> list[Recording]:
         """List recordings, newest first."""
+        await self._settle()
         query = select(RecordingRow).order_by(RecordingRow.created.desc())
         if bench_id is not None:
             query = query.where(RecordingRow.bench_id == bench_id)
         rows = await self._database.run(lambda session: list(session.scalars(query)))
-        return [Recording.model_validate(row) for row in rows]
+        return [Recording.model_validate(row).model_copy(update=self._unclosed.get(row.id)) for row in rows]
 
     async def get(self, recording_id: str) -> RecordingDetail:
         """Return one recording, or refuse with 404."""
+        await self._settle()
         row = await self._database.run(lambda session: session.get(RecordingRow, recording_id))
         if row is None:
             raise not_found("recording", recording_id)
-        return RecordingDetail.model_validate(row)
+        return RecordingDetail.model_validate(row).model_copy(update=self._unclosed.get(row.id))
 
     async def finished(self, recording_id: str) -> tuple[RecordingDetail, Path]:
         """Return a recording that has ended, and its file."""

@@ -15,6 +15,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from core.errors import InputError, unknown
+from scenarios.traces import packing
 
 LARGEST = 2**62
 Format = Literal["csv", "parquet", "npz", "mat"]
@@ -114,7 +115,7 @@ def read_cut(path: Path, cut: Cut, most: int) -> pa.Table:
 def write(table: pa.Table, file: BinaryIO, kind: Format) -> None:
     """Write a table into an open file."""
     if kind == "parquet":
-        pq.write_table(table, file, compression="zstd")
+        pq.write_table(table, file, **packing(table.schema))
         return
     if kind == "csv":
         pyarrow.csv.write_csv(table, file)

@@ -93,7 +93,9 @@ def test_seeds_give_means(call):
 def test_out_writes_trace_and_summary(call, tmp_path):
     result = call("run", "ch5-seven-step", "--set", "samples=600", "--out", tmp_path / "a" / "b")
     assert result.exit_code in (0, 1)
-    trace, summary = sorted((tmp_path / "a" / "b").iterdir(), key=lambda path: path.suffix, reverse=True)
+    files = {path.suffix: path for path in (tmp_path / "a" / "b").iterdir()}
+    assert set(files) == {".parquet", ".json", ".html", ".svg", ".py"}
+    trace, summary = files[".parquet"], files[".json"]
     table = pq.read_table(trace)
     assert table.num_rows == 600 and {"tick", "time_ms", "plant.displacement", "kalman.nis.m+5"} <= set(
         table.column_names

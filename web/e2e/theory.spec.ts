@@ -6,7 +6,7 @@ test("a typed transfer function is judged, an input is weighed, and the MIT rule
   openBench,
 }) => {
   await openBench();
-  await page.getByRole("button", { name: "Theory (T)" }).click();
+  await page.keyboard.press("t");
   const real = page.getByRole("region", { name: "Positive real" });
   const typed = real.getByRole("textbox", { name: "G(s)" });
   await expect(real.getByText("Strictly positive real", { exact: true })).toBeVisible();

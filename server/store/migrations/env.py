@@ -20,5 +20,7 @@ given = context.config.attributes.get("connection")
 if given is not None:
     migrate(given)
 else:
-    with make_engine(context.config.get_main_option("sqlalchemy.url") or "").connect() as opened:
+    engine = make_engine(context.config.get_main_option("sqlalchemy.url") or "")
+    with engine.connect() as opened:
         migrate(opened)
+    engine.dispose()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import statistics
 import time
 from typing import Any
 
@@ -13,6 +14,7 @@ import pytest
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
+from scenarios.seeds import run_seeds
 from server.store.models import RunRow
 
 
@@ -52,8 +54,10 @@ def test_several_seeds_give_means_and_deviations(live: Any) -> None:
     values = [metrics[name] for metrics in single]
     assert found["seeds"] == [1, 2, 3]
     assert found["summary"]["metrics"][name] == pytest.approx(sum(values) / 3, rel=1e-12)
-    assert found["summary"]["metrics_std"][name] >= 0
+    assert found["summary"]["metrics_std"][name] == pytest.approx(statistics.stdev(values))
     assert len(set(found["summary"]["digests"])) == 3
+    # one digest and one spread, whoever is asked
+    assert found["summary"]["digest"] == run_seeds(get("ch5-seven-step"), [1, 2, 3])["digest"]
 
 
 @pytest.mark.parametrize(

@@ -104,26 +104,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/benches/{bench_id}/diagnosers/{name}/explanation": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Get Explanation
-         * @description Explain what one sample did to the probabilities; of the history as far as it is kept.
-         */
-        get: operations["get_explanation_api_v1_benches__bench_id__diagnosers__name__explanation_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
         parameters: {
             query?: never;
@@ -131,7 +111,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        get?: never;
+        /**
+         * Map Aliases
+         * @description Map the response of every hypothesis to the tones of the drive, and name what has the same.
+         */
+        get: operations["map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get"];
         put?: never;
         /**
          * Get Aliases
@@ -424,6 +408,46 @@ export interface paths {
          * @description Measure what a tick costs with each plant.
          */
         get: operations["plants_api_v1_benches__bench_id__plants_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/flops": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Flops
+         * @description Count the operations of every diagnoser as it is now, and hold them against a board of some speed.
+         */
+        get: operations["flops_api_v1_benches__bench_id__flops_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/explain": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Explain Sample
+         * @description Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior.
+         */
+        get: operations["explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -732,6 +756,66 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Report
+         * @description Download the report of a run, one HTML file that needs nothing else.
+         */
+        get: operations["get_run_report_api_v1_runs__run_id__report_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/thumbnail": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Thumbnail
+         * @description Return a small drawing of a run.
+         */
+        get: operations["get_run_thumbnail_api_v1_runs__run_id__thumbnail_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/script": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Script
+         * @description Download a Python script that repeats a run over REST and checks that it gives the same bits.
+         */
+        get: operations["get_run_script_api_v1_runs__run_id__script_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sweeps": {
         parameters: {
             query?: never;
@@ -840,6 +924,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/gallery": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Gallery
+         * @description Show every library scenario: claim, expectations, and what its run gave.
+         */
+        get: operations["get_gallery_api_v1_gallery_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/gallery/run": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Run Gallery
+         * @description Run the library, or a part of it; what has been run with this version is not run again.
+         */
+        post: operations["run_gallery_api_v1_gallery_run_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/theory/positive-real": {
         parameters: {
             query?: never;
@@ -894,6 +1018,26 @@ export interface paths {
          * @description Judge an input in its steady state.
          */
         post: operations["judge_persistency_api_v1_theory_persistency_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/theory/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Map Aliases
+         * @description Map the responses of hypotheses to tones, and name what has the same.
+         */
+        post: operations["map_aliases_api_v1_theory_aliases_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -987,10 +1131,10 @@ export interface components {
         /**
          * Account
          * @description What one sample did to all of them; the recorded probabilities stand beside those worked out here.
+         *
+         *     They part where the sample was no evidence, because the drive was off or nothing was measured.
          */
         Account: {
-            /** Diagnoser */
-            diagnoser: string;
             /** Kind */
             kind: string;
             /** Tick */
@@ -1229,6 +1373,11 @@ export interface components {
              * @description The recording it plays; such a bench takes no changes
              */
             replay_of?: string | null;
+            /**
+             * Recorded Scale
+             * @description Device seconds per wall second it was recorded at
+             */
+            recorded_scale?: number | null;
         };
         /**
          * BenchList
@@ -1333,6 +1482,20 @@ export interface components {
             seed?: number;
         };
         /**
+         * Budget
+         * @description What all diagnosers cost a board of some speed, in their order; those that come too late overrun.
+         */
+        Budget: {
+            /** Board Flops */
+            board_flops: number;
+            /** Function Flops */
+            function_flops: number;
+            /** Share */
+            share: number;
+            /** Loads */
+            loads: components["schemas"]["Load"][];
+        };
+        /**
          * Catalogue
          * @description Every block with its equations, parameters and ports.
          */
@@ -1341,6 +1504,18 @@ export interface components {
             version: string;
             /** Blocks */
             blocks: components["schemas"]["BlockCard"][];
+        };
+        /**
+         * Chosen
+         * @description Which scenarios to run.
+         */
+        Chosen: {
+            /**
+             * Only
+             * @description Ids that match, such as ch5-*
+             * @default *
+             */
+            only?: string;
         };
         /**
          * CommandResult
@@ -1696,6 +1871,29 @@ export interface components {
             filter_pole?: number;
         };
         /**
+         * Expected
+         * @description An expectation, and what was measured.
+         */
+        Expected: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Expected */
+            expected: string;
+            /** Verdict */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /** Note */
+            note: string;
+            /** Measured */
+            measured?: number | null;
+            /**
+             * Ok
+             * @description Null until it has been run
+             */
+            ok?: boolean | null;
+        };
+        /**
          * Extremes
          * @description Smallest and largest value of every column; null where there is no data.
          */
@@ -1760,6 +1958,60 @@ export interface components {
             snapshot?: string | null;
         };
         /**
+         * Gallery
+         * @description All cards, in the order of the text.
+         */
+        Gallery: {
+            /** Cards */
+            cards: components["schemas"]["GalleryCard"][];
+        };
+        /**
+         * GalleryCard
+         * @description A scenario of the library and its run, if there has been one with this version of the code.
+         */
+        GalleryCard: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Summary */
+            summary: string;
+            /** Claim */
+            claim: string;
+            /** Verdict */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /**
+             * Study
+             * @description Kind of the study; null for a scenario that runs on a bench
+             */
+            study: string | null;
+            /**
+             * Run
+             * @description Its run: trace, report, thumbnail and script are at /runs/{id}/...
+             */
+            run: string | null;
+            /**
+             * State
+             * @description new until it has been asked for, then as that of a run
+             */
+            state: string;
+            /** Progress */
+            progress: number;
+            /** Elapsed S */
+            elapsed_s: number | null;
+            /** Digest */
+            digest: string;
+            /**
+             * Ok
+             * @description Whether all expectations hold; null until it has been run
+             */
+            ok: boolean | null;
+            /** Expectations */
+            expectations: components["schemas"]["Expected"][];
+        };
+        /**
          * Heal
          * @description Take faults away.
          */
@@ -1802,6 +2054,36 @@ export interface components {
             checks: {
                 [key: string]: boolean;
             };
+        };
+        /**
+         * HypothesesSource
+         * @description A device, what may be wrong with it, and the tones that drive it.
+         */
+        HypothesesSource: {
+            /**
+             * Device
+             * @description Catalogue id, and values written over it
+             * @default {}
+             */
+            device?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Hypotheses
+             * @description Factors on the device
+             */
+            hypotheses: components["schemas"]["Hypothesis"][];
+            /**
+             * Tones
+             * @description V and Hz
+             */
+            tones: components["schemas"]["Line"][];
+            /**
+             * Noise Um
+             * @description Noise that could hide a difference
+             * @default 0
+             */
+            noise_um?: number;
         };
         /**
          * Hypothesis
@@ -1973,6 +2255,32 @@ export interface components {
             amplitude: number;
             /** Frequency */
             frequency: number;
+        };
+        /**
+         * Load
+         * @description What a diagnoser costs a board.
+         *
+         *     ``functions`` are exponentials, logarithms, roots, sines; each counts as ``function_flops``.
+         */
+        Load: {
+            /** Name */
+            name: string;
+            /** Models */
+            models: number;
+            /** Operations */
+            operations: number;
+            /** Functions */
+            functions: number;
+            /** Per Model */
+            per_model: number;
+            /** Flops Per Second */
+            flops_per_second: number;
+            /** Share */
+            share: number;
+            /** Overrun */
+            overrun: boolean;
+            /** Models That Fit */
+            models_that_fit: number;
         };
         /**
          * Loop
@@ -3797,14 +4105,14 @@ export interface operations {
             };
         };
     };
-    get_explanation_api_v1_benches__bench_id__diagnosers__name__explanation_get: {
+    map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get: {
         parameters: {
-            query: {
-                tick: number;
+            query?: {
+                /** @description One tone as large as the reference; those it has unless given */
+                frequency_hz?: number | null;
             };
             header?: never;
             path: {
-                /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
                 name: string;
                 bench_id: string;
             };
@@ -3818,7 +4126,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Account"];
+                    "application/json": components["schemas"]["AliasMap"];
                 };
             };
             /** @description Refused or failed */
@@ -4371,6 +4679,77 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["MeasuredPlants"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    flops_api_v1_benches__bench_id__flops_get: {
+        parameters: {
+            query?: {
+                /** @description What the board does per second */
+                board_mflops?: number;
+                /** @description What an exponential is worth */
+                function_flops?: number;
+            };
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Budget"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get: {
+        parameters: {
+            query?: {
+                /** @description The sample; the last one unless given */
+                tick?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Account"];
                 };
             };
             /** @description Refused or failed */
@@ -5028,6 +5407,99 @@ export interface operations {
             };
         };
     };
+    get_run_report_api_v1_runs__run_id__report_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_run_thumbnail_api_v1_runs__run_id__thumbnail_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_run_script_api_v1_runs__run_id__script_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/x-python": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_sweeps_api_v1_sweeps_get: {
         parameters: {
             query?: never;
@@ -5256,6 +5728,68 @@ export interface operations {
             };
         };
     };
+    get_gallery_api_v1_gallery_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    run_gallery_api_v1_gallery_run_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Chosen"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     judge_positive_real_api_v1_theory_positive_real_post: {
         parameters: {
             query?: never;
@@ -5342,6 +5876,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ExcitationReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    map_aliases_api_v1_theory_aliases_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HypothesesSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasMap"];
                 };
             };
             /** @description Refused or failed */

@@ -74,6 +74,7 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
+    add(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.26, h: 0.34 },
       motion: { h: 0.36 },
@@ -101,6 +102,7 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
+    add(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.225, h: 0.32 },
       view3d: { w: 0.25, h: 0.4 },

@@ -1,4 +1,5 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
+import type { Document } from "../api/types";
 import { scopeConfig } from "../panels/scope/scope-config";
 import { BUILT_IN } from "./built-in-layouts";
 import { PANELS } from "./panels";
@@ -26,6 +27,14 @@ export function setLayout(name: LayoutName): void {
   url.searchParams.set("layout", name);
   window.history.replaceState(null, "", url);
   arrange(name, undefined);
+}
+
+/** How the panels stand now, to be kept with a recording. */
+export const layoutNow = () => current?.toJSON() as Document | undefined;
+
+/** Put the panels as they stood when a recording was made. */
+export function restoreLayout(layout: Document): void {
+  arrange(useView.getState().layout, layout as unknown as SerializedDockview);
 }
 
 /** Open another panel of a kind beside the active one. */

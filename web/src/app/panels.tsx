@@ -10,6 +10,7 @@ import { IdentifyPanel } from "../panels/identify/identify-panel";
 import { LabsPanel } from "../panels/labs/labs-panel";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { PhasePanel } from "../panels/phase/phase-panel";
+import { RecordingsPanel } from "../panels/recordings/recordings-panel";
 import { SchematicPanel } from "../panels/schematic/schematic-panel";
 import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
@@ -26,6 +27,8 @@ export interface PanelProps {
 
 export interface PanelKind {
   title: string;
+  /** It does something to the bench, which a recording that is played does not allow. */
+  changes?: boolean;
   component: ComponentType<PanelProps>;
 }
 
@@ -40,12 +43,13 @@ export const PANELS: Record<string, PanelKind> = {
   twins: { title: "Twins", component: TwinsPanel },
   why: { title: "Why", component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
-  faults: { title: "Faults", component: FaultsPanel },
+  faults: { title: "Faults", changes: true, component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
-  environment: { title: "Environment", component: EnvironmentPanel },
+  environment: { title: "Environment", changes: true, component: EnvironmentPanel },
   phase: { title: "Phase plane", component: PhasePanel },
   spectrum: { title: "Spectrum", component: SpectrumPanel },
-  identify: { title: "Swept sine", component: IdentifyPanel },
+  identify: { title: "Swept sine", changes: true, component: IdentifyPanel },
+  recordings: { title: "Recordings", component: RecordingsPanel },
   events: { title: "Events", component: EventsPanel },
   scores: { title: "Scoreboard", component: ScoreboardPanel },
   view3d: { title: "3D", component: View3dPanel },

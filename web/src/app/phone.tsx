@@ -1,5 +1,5 @@
 import { Button, NativeSelect } from "@mantine/core";
-import { IconMathFunction, IconPlayerPauseFilled, IconPlayerPlayFilled, IconRulerMeasure } from "@tabler/icons-react";
+import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { useEffect, useRef, useState } from "react";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { scopeConfig } from "../panels/scope/scope-config";
@@ -25,49 +25,45 @@ export function Phone() {
   const page = usePageVisible();
   return (
     <PanelVisible value={page}>
-      <header className={styles.status}>
-        <div>
-          <h1>{title ?? "CombBench"}</h1>
-          <StateBadge />
-        </div>
-        <DeviceClock />
-      </header>
-      <main className={styles.panels}>
-        <div className={styles.scope}>
-          <ErrorFence name="Scope">
-            <ScopePanel config={scope} onChange={setScope} />
-          </ErrorFence>
-        </div>
-        <div className={styles.lanes}>
-          <ErrorFence name="Diagnosis">
-            <LanesPanel />
-          </ErrorFence>
-        </div>
-        <div className={styles.view}>
-          <ErrorFence name="3D">
-            <View3dPanel />
-          </ErrorFence>
-        </div>
-        <Extra />
-      </main>
-      <footer className={styles.stop}>
-        <Button size="lg" variant="default" aria-label="Device designer" onClick={actions.designer}>
-          <IconRulerMeasure size={20} />
-        </Button>
-        <Button size="lg" variant="default" aria-label="Theory" onClick={actions.theory}>
-          <IconMathFunction size={20} />
-        </Button>
-        <Button
-          fullWidth
-          size="lg"
-          disabled={tripped}
-          color={running ? "alarm" : "accent"}
-          leftSection={running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
-          onClick={actions.toggle}
-        >
-          {running ? "Stop" : "Run"}
-        </Button>
-      </footer>
+      <div className={styles.phone}>
+        <header className={styles.status}>
+          <div>
+            <h1>{title ?? "CombBench"}</h1>
+            <StateBadge />
+          </div>
+          <DeviceClock />
+        </header>
+        <main className={styles.panels}>
+          <div className={styles.scope}>
+            <ErrorFence name="Scope">
+              <ScopePanel config={scope} onChange={setScope} />
+            </ErrorFence>
+          </div>
+          <div className={styles.lanes}>
+            <ErrorFence name="Diagnosis">
+              <LanesPanel />
+            </ErrorFence>
+          </div>
+          <div className={styles.view}>
+            <ErrorFence name="3D">
+              <View3dPanel />
+            </ErrorFence>
+          </div>
+          <Extra />
+        </main>
+        <footer className={styles.stop}>
+          <Button
+            fullWidth
+            size="lg"
+            disabled={tripped}
+            color={running ? "alarm" : "accent"}
+            leftSection={running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
+            onClick={actions.toggle}
+          >
+            {running ? "Stop" : "Run"}
+          </Button>
+        </footer>
+      </div>
     </PanelVisible>
   );
 }

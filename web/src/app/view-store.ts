@@ -5,8 +5,10 @@ export type LayoutName = "lecture" | "lab" | "research";
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
 
-/** The bench, the drawing board, or what can be said before anything is run. */
-export type PageName = "bench" | "designer" | "theory";
+/** What the page shows: the live bench, or what is done around it. */
+const PAGE_NAMES = ["bench", "gallery", "runs", "designer", "theory"] as const;
+
+export type PageName = (typeof PAGE_NAMES)[number];
 
 interface ViewStore {
   page: PageName;
@@ -40,8 +42,8 @@ export const useView = create<ViewStore>(() => ({
 
 /** The page named in the address. */
 export function pageInAddress(): PageName {
-  const named = new URLSearchParams(window.location.search).get("page");
-  return named === "designer" || named === "theory" ? named : "bench";
+  const asked = new URLSearchParams(window.location.search).get("page");
+  return PAGE_NAMES.find((name) => name === asked) ?? "bench";
 }
 
 /** Go to a page; the address names it, and back works. */

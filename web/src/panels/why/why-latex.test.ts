@@ -12,7 +12,6 @@ const model = (name: string, residual: number, prior: number, posterior: number)
   recorded: posterior,
 });
 const account: Account = {
-  diagnoser: "kalman",
   kind: "mmae",
   tick: 7,
   time_ms: 0.07,

@@ -1,0 +1,113 @@
+"""Serves by forking, one server for each line read: all is loaded once, so that a test can start and kill many.
+
+A line is a JSON object: settings of the server, and ``largest_file`` in bytes if the disk is to refuse more. Each
+server prints its process id, then what every server prints.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+ROOT = Path(__file__).resolve().parents[2]
+TOKEN = "a-token-for-the-tests-only"
+
+
+class Forks:
+    """The other end: starts servers and kills them."""
+
+    def __init__(self, program: subprocess.Popen[str]) -> None:
+        self._program = program
+
+    @contextmanager
+    def serve(self, data: Path, **more: Any) -> Iterator[Served]:
+        """Start a server; it is killed at the end, unless it was before."""
+        assert self._program.stdin is not None and self._program.stdout is not None
+        self._program.stdin.write(json.dumps({"data": str(data), **more}) + "\n")
+        self._program.stdin.flush()
+        pid = int(self._program.stdout.readline())
+        address = self._program.stdout.readline().removeprefix("CombBench is at ").partition("/?")[0]
+        assert address.startswith("http"), "the server did not start; its log says why"
+        served = Served(pid, address)
+        try:
+            yield served
+        finally:
+            served.kill()
+            served.http.close()
+
+
+class Served:
+    """One server."""
+
+    def __init__(self, pid: int, address: str) -> None:
+        self.pid, self.address = pid, address
+        headers = {"Authorization": f"Bearer {TOKEN}"}
+        self.http = httpx.Client(base_url=address, headers=headers, timeout=30, trust_env=False)
+
+    def kill(self) -> None:
+        """Kill it as a power cut would."""
+        try:
+            os.kill(self.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            return
+        while Path(f"/proc/{self.pid}").exists():
+            os.sched_yield()
+
+
+@contextmanager
+def forks(log: Path) -> Iterator[Forks]:
+    """Load everything once."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with log.open("wb") as errors:
+        program = subprocess.Popen(
+            [sys.executable, __file__],
+            cwd=ROOT,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            text=True,
+        )
+        try:
+            yield Forks(program)
+        finally:
+            program.communicate(timeout=20)
+
+
+def main() -> None:
+    """Fork a server for each line."""
+    import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
+    from server import app, service  # noqa: F401
+    from server.serve import serve
+    from server.settings import Settings
+
+    service.warm_up()
+    service.warm_up = lambda: None  # what is loaded stays so in every fork
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    while line := sys.stdin.readline():
+        if os.fork():
+            continue
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        sys.stdin.close()
+        os.setsid()
+        print(os.getpid(), flush=True)
+        given = json.loads(line)
+        largest = given.pop("largest_file", None)
+        if largest is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
+        serve(Settings(port=0, token=TOKEN, **given))
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

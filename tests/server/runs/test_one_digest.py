@@ -1,0 +1,47 @@
+"""The same scenario and seed give the same bits, whoever computes them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from typer.testing import CliRunner
+
+from scenarios.campaign import Campaign
+from scenarios.sweep import Sweep
+from server.cli import app
+from tests.scenarios.cluster import Cluster
+from tests.scenarios.test_campaign import Memory
+from tests.server.runs.test_runs import wait
+
+NAME, SEED = "ch5-seven-step", 23
+VALUES = {"samples": 5000, "events.5.set": {"reference.amplitude_v": 9.0}}
+
+
+def test_one_digest_from_command_line_rest_live_pool_and_cluster(live: Any, tmp_path: Path) -> None:
+    found: dict[str, str] = {}
+    changes = ["--set", "samples=5000", "--set", 'events.5.set={"reference.amplitude_v"=9.0}']
+    told = CliRunner().invoke(app, ["run", NAME, "--seed", str(SEED), *changes, "--json"])
+    found["command line"] = json.loads(told.stdout)["digest"]
+
+    body = {"scenario": NAME, "set": VALUES, "seed": SEED}
+    found["REST"] = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])["summary"]["digest"]
+
+    bench = live.bench(NAME, set=VALUES, seed=SEED, paused=True)
+    for ticks in (1, 998, 1, 4000):
+        assert live.command(bench["id"], "step", ticks=ticks).status_code == 200
+    seen = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
+    assert seen["tick"] == 5000
+    found["live"] = seen["digest"]
+
+    sweep = Sweep({"schema": 1, "scenario": NAME, "set": VALUES, "seeds": {"first": SEED, "count": 1}})
+    pool = Memory()
+    assert Campaign(sweep, pool, workers=1).run()
+    found["pool"] = next(iter(pool.found.values())).digest
+    cluster = Memory()
+    with Cluster(tmp_path) as dask:
+        dask.start_worker()
+        assert Campaign(sweep, cluster, scheduler=dask.address).run()
+    found["cluster"] = next(iter(cluster.found.values())).digest
+    assert len(set(found.values())) == 1 and all(len(one) == 64 for one in found.values()), found

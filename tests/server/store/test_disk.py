@@ -1,0 +1,113 @@
+"""A full disk: the bench and its streams go on, the recording ends with an alarm and can be read."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+from sqlalchemy.exc import OperationalError
+
+from tests.server.forks import forks
+from tests.server.store.test_taking import recordings, until
+
+
+def broken_off(live: Any, bench: dict[str, Any], recording_id: str) -> dict[str, Any]:
+    """The recording once it has broken off, after the alarm was seen on the stream and the bench went on."""
+    with live.stream(bench["id"]) as stream:
+        stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
+        event = stream.until(
+            lambda m: isinstance(m, dict) and m["type"] == "event" and m["event"]["kind"] == "recording_failed", 30
+        )
+        assert "the disk failed" in event["event"]["text"]
+        tick = live.get(bench["id"])["tick"]
+        stream.frames.clear()
+        stream.until_frame(1)
+        until(lambda: live.get(bench["id"])["tick"] > tick)
+    assert live.get(bench["id"])["recording"] == []
+    return dict(until(lambda: (one := said(live, recording_id))["state"] != "recording" and one))
+
+
+def said(live: Any, recording_id: str) -> dict[str, Any]:
+    return dict(live.http.get(f"/api/v1/recordings/{recording_id}").json())
+
+
+def is_whole(live: Any, found: dict[str, Any]) -> None:
+    trace = live.http.get(f"/api/v1/recordings/{found['id']}/trace")
+    ticks = pq.read_table(io.BytesIO(trace.content))["tick"].to_pylist()
+    assert len(ticks) == found["ticks"] > 0
+    assert ticks == list(range(found["start_tick"], found["start_tick"] + found["ticks"]))
+
+
+def test_a_recording_ends_while_there_is_room_to_make_it_whole(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [1e9]
+    monkeypatch.setattr("server.store.recording.free_bytes", lambda _folder: now[0])
+    monkeypatch.setattr("server.store.keeping.free_bytes", lambda _folder: now[0])
+    with serve(disk_reserve_bytes=200_000_000) as live:
+        bench = live.bench("first-look", time_scale=0.02)
+        started = live.http.post(recordings(bench)).json()
+        until(lambda: live.service.recordings.path(started["id"]).with_suffix(".arrows").stat().st_size > 100_000)
+        now[0] = 1.5e8
+        found = broken_off(live, bench, started["id"])
+        assert found["state"] == "done" and "150 MB are free" in found["reason"]
+        is_whole(live, found)
+        for path, body in ((recordings(bench), {}), ("/api/v1/runs", {"scenario": "first-look"})):
+            refused = live.http.post(path, json=body)
+            assert refused.status_code == 507 and refused.json()["error"]["code"] == "no_space"
+            assert "disk_reserve_bytes" in refused.text
+        now[0] = 1e9
+        assert live.http.post(recordings(bench)).status_code == 201
+
+
+def test_what_a_full_disk_could_not_take_is_closed_later(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    with serve() as live:
+        bench = live.bench("first-look", time_scale=0.02)
+        started = live.http.post(recordings(bench)).json()
+        until(lambda: live.get(bench["id"])["tick"] > 1000)
+        database, transact = live.service.database, live.service.database.transact
+        is_full = True
+
+        def refuse(work: Any) -> Any:
+            if is_full and work.__qualname__.startswith("Recordings._close"):
+                raise OperationalError("UPDATE", {}, Exception("database or disk is full"))
+            return transact(work)
+
+        monkeypatch.setattr(database, "transact", refuse)
+        answer = live.http.post(f"{recordings(bench)}/{started['id']}/stop")
+        assert answer.status_code == 200 and answer.json()["state"] == "done"  # so it is told, though not yet kept
+        before = said(live, started["id"])
+        is_full = False
+        after = said(live, started["id"])
+        assert after == before and after["ticks"] > 0
+        from server.store.models import RecordingRow
+
+        row = database.transact(lambda session: session.get(RecordingRow, started["id"]))
+        assert (row.state, row.ticks, row.reason) == ("done", after["ticks"], "stopped")
+        is_whole(live, after)
+
+
+def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
+    """A real limit of the kernel: no file of the server may grow beyond 3 MB."""
+    from tests.server.conftest import Live
+
+    log = tmp_path / "log"
+    with forks(log) as loaded, loaded.serve(tmp_path / "data", largest_file=3_000_000) as served:
+
+        class Far(Live):
+            def __init__(self) -> None:
+                self.http, self.address = served.http, served.address
+
+        live = Far()
+        bench = live.bench("first-look", time_scale=0.02)
+        started = live.http.post(recordings(bench)).json()
+        found = broken_off(live, bench, started["id"])
+        assert found["state"] == "done" and "File too large" in found["reason"]
+        is_whole(live, found)
+        run = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", "set": {"samples": 9000}}).json()
+        ended = until(lambda: (one := live.http.get(f"/api/v1/runs/{run['id']}").json())["finished"] and one, 60)
+        assert ended["state"] == "failed" and ended["error"]["code"] == "no_space", ended
+        assert live.get(bench["id"])["state"] == "running"
+        again = live.http.post(recordings(bench), json={"past_ticks": 100, "ticks": 0}).json()
+        assert (again["state"], again["ticks"]) == ("done", 100)

@@ -1,0 +1,102 @@
+"""A server killed at any moment of a recording: the database is whole, a second at most is lost, files can be read."""
+
+from __future__ import annotations
+
+import io
+import random
+import sqlite3
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import run
+from tests.server.forks import Served, forks
+
+PACE = 0.02
+PER_SECOND = 2000
+"""Ticks of a wall second at that pace and 100 kHz."""
+SIGNAL = "sensor.displacement"
+
+
+def truth(ticks: int) -> Any:
+    """What the bench does, run headless; noise included."""
+    return run(with_values(get("first-look"), {"samples": ticks})).signal(SIGNAL).astype(np.float32)
+
+
+def record_and_kill(served: Served, moments: random.Random) -> tuple[str, int, float]:
+    """Record for a while, sometimes stop, and kill; return the recording, a tick seen just before, and the time."""
+    bench = served.http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": PACE}).json()
+    path = f"/api/v1/benches/{bench['id']}/recordings"
+    began = time.monotonic()
+    recording = served.http.post(path, json={"name": "to be killed"}).json()
+    time.sleep(moments.uniform(0.0, 1.2))
+    if moments.random() < 0.3:  # while its file is made whole
+
+        def stop() -> None:
+            try:
+                served.http.post(f"{path}/{recording['id']}/stop")
+            except httpx.HTTPError:
+                pass
+
+        thread = threading.Thread(target=stop)
+        tick = served.http.get(f"/api/v1/benches/{bench['id']}").json()["tick"]
+        thread.start()
+        time.sleep(moments.uniform(0.0, 0.2))
+        served.kill()
+        thread.join()
+    else:
+        tick = served.http.get(f"/api/v1/benches/{bench['id']}").json()["tick"]
+        served.kill()
+    return recording["id"], tick, time.monotonic() - began
+
+
+def check(served: Served, recording_id: str, tick: int, seconds: float, expected: Any) -> int:
+    """What is left of a recording: no more than a second is missing, every tick is right. Returns what is missing."""
+    found = served.http.get(f"/api/v1/recordings/{recording_id}").json()
+    assert found["state"] in ("aborted", "done") and found["finished"], found
+    last = found["start_tick"] + found["ticks"]
+    lost = max(0, tick - last)
+    assert lost <= PER_SECOND, f"{lost} ticks of {tick} are lost"
+    trace = served.http.get(f"/api/v1/recordings/{recording_id}/trace")
+    if not found["ticks"]:
+        assert seconds < 1.5 and trace.status_code == 404
+        return lost
+    table = pq.read_table(io.BytesIO(trace.content))
+    assert table["tick"].to_pylist() == list(range(found["start_tick"], last))
+    length = min(last, len(expected))
+    np.testing.assert_array_equal(
+        table[SIGNAL].to_numpy()[: length - found["start_tick"]], expected[found["start_tick"] : length]
+    )
+    return lost
+
+
+@pytest.mark.parametrize("times", [4, pytest.param(50, marks=[pytest.mark.slow, pytest.mark.timeout(600)])])
+def test_a_server_killed_while_it_records_loses_a_second_at_most(tmp_path: Path, times: int) -> None:
+    data, moments, expected = tmp_path / "data", random.Random(times), truth(6000)
+    lost: list[int] = []
+    last: tuple[str, int, float] | None = None
+    with forks(tmp_path / "log") as loaded:
+        for _ in range(times):
+            with loaded.serve(data) as served:
+                if last is not None:
+                    lost.append(check(served, *last, expected))
+                last = record_and_kill(served, moments)
+            with sqlite3.connect(data / "combbench.sqlite3") as connection:
+                assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+            connection.close()
+        with loaded.serve(data) as served:
+            assert last is not None
+            lost.append(check(served, *last, expected))
+            rows = served.http.get("/api/v1/recordings").json()["recordings"]
+    assert len(rows) == times == len(lost)
+    left = {path.suffix for path in (data / "recordings").iterdir()}
+    assert left <= {".parquet"}, "nothing half made is left behind"
+    print(f"{times} kills, ticks lost at most {max(lost)} of {PER_SECOND} a second")
