@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -17,11 +18,13 @@ from core.board import program
 from core.board.board import CHUNK, Board
 from core.device.oscillator import transition
 from core.device.response import held_response
+from scenarios.campaign_speed import scaling
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
 
 REPEATS = 7
+CAMPAIGN_RUNS = 400
 SECOND = 100_000
 """Samples of 1 s at 100 kHz."""
 SAMPLE_NS = 10_000.0
@@ -303,6 +306,10 @@ def speed() -> dict[str, Any]:
                 least=700.0,
             )
         )
+    if (os.cpu_count() or 1) > 1:
+        share, most = scaling(CAMPAIGN_RUNS)
+        figures.append(_figure("campaign of seven-step runs: two processes over twice one", share, "x", least=0.9))
+        figures.append(_figure("campaign of seven-step runs, two processes", most, "/s"))
     return {
         "figures": figures,
         "ns": {name: round(value, 1) for name, value in ns.items()},
