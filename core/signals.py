@@ -50,6 +50,11 @@ class SignalTable(Sequence[Signal]):
         """Names in trace order."""
         return [signal.name for signal in self._signals]
 
+    @property
+    def taps(self) -> Sequence[Signal]:
+        """What follows the outputs."""
+        return self._signals[self.outputs :]
+
     def index(self, name: str) -> int:  # type: ignore[override]
         """Return the trace column of ``name``.
 

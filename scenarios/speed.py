@@ -87,11 +87,12 @@ ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive
 """Blocks that keep every signal moving: with frozen inputs a block is not doing its usual work."""
 
 
-def block_costs(board: Board) -> dict[str, float]:
+def block_costs(board: Board, only: str | None = None) -> dict[str, float]:
     """Return the cost of each block of a board, ns per tick, the dispatch included: a tick with it run once more."""
     candidates = {"": partial(loop_cost, board, [*ALIVE], 50_000)}
     for instance in board.wiring.instances:
-        candidates[instance.key] = partial(loop_cost, board, [*ALIVE, instance.key], 50_000)
+        if only in (None, instance.key):
+            candidates[instance.key] = partial(loop_cost, board, [*ALIVE, instance.key], 50_000)
     ns = interleaved(candidates)
     return {key: round(value - ns[""], 1) for key, value in ns.items() if key}
 
@@ -213,6 +214,15 @@ ADAPTIVE = {
 }
 """Direct MRAC at 1 krad/s."""
 
+GAIN = {
+    "device": {"id": "second-order-gain"},
+    "reference": {"kind": "sine", "amplitude_v": 1.0, "frequency_hz": 0.05},
+    "controller": {"kind": "gain_adaptation"},
+    "sensor": {"kind": "ideal"},
+    "sample_rate_khz": 1,
+}
+"""The plant of appendix B, which has a controller of its own."""
+
 PLANAR = {
     "device": {"id": "lcr-350"},
     "plant": {"model": "planar", "step_us": 0.25},
@@ -229,6 +239,8 @@ def speed() -> dict[str, Any]:
     identifiers = {f"identifiers.{name}.kind": name for name in registry.blocks("identify")}
     bench = _board({"plant.drive_noise_v": 0.01})
     estimating = _board({"plant.drive_noise_v": 0.01, **identifiers})
+    gain = Board(GAIN)
+    gain.advance(CHUNK)
     plane = Board(PLANAR)
     plane.advance(CHUNK)
     device = bench.spec.context().device
@@ -313,7 +325,7 @@ def speed() -> dict[str, Any]:
     return {
         "figures": figures,
         "ns": {name: round(value, 1) for name, value in ns.items()},
-        "blocks_ns": block_costs(estimating),
+        "blocks_ns": block_costs(estimating) | block_costs(gain, "gain_adaptation"),
         "missing": "; ".join(missing),
         "ok": all(figure["ok"] for figure in figures),
     }

@@ -10,9 +10,11 @@ from fastapi import FastAPI
 
 from server import errors, openapi
 from server.api import (
+    aliases,
     benches,
     catalog,
     devices,
+    diagnosers,
     experiments,
     gallery,
     health,
@@ -40,9 +42,11 @@ API = "/api/v1"
 ROUTERS = (
     catalog,
     devices,
+    aliases,
     scenarios,
     benches,
     experiments,
+    diagnosers,
     snapshots,
     recordings,
     trace,

@@ -128,7 +128,7 @@ def warm_up() -> None:
     """Load the compiled kernels (or compile them) and compute one tick with them, before anyone waits."""
     for scenario in library():
         board = build(scenario)
-        history = History(len(board.signals), 1)
+        history = History(board.signals.outputs, len(board.signals.taps), 1)
         history.append(board.advance(1))
         history.columns([0], 0, 1, 1)
 

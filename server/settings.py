@@ -52,7 +52,8 @@ class Settings(BaseSettings):
     )
     retention_days: float = Field(0.0, ge=0, description="Days recordings and runs are kept; 0 keeps them for ever.")
     max_trace_ticks: int = Field(200_000, ge=1, description="Ticks of one full-rate trace download.")
-    history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for.")
+    history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for, at most.")
+    history_mb: int = Field(72, ge=1, le=10_000, description="Memory the history of one bench may take.")
 
     body_limit_bytes: int = Field(1 << 20, ge=1024, description="Largest request body.")
     message_limit_bytes: int = Field(64 << 10, ge=1024, description="Largest WebSocket message of a client.")

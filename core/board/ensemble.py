@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from core.block import FloatArray
-from core.board.board import Board, Checkpoint, Rows
+from core.board.board import Board, Checkpoint
 from core.board.commands import LogEntry, parse_command
+from core.board.document import IDENTIFIER, Document, with_values
+from core.board.rows import Rows
 from core.board.score import Scores
-from core.board.spec import IDENTIFIER, Document, Section, with_values
+from core.board.spec import Section
 from core.errors import InputError, short, unknown
 from core.signals import Signal, SignalTable
 
@@ -140,7 +142,7 @@ class Ensemble(Board):
             return rows
         todo = [entry for entry in self.log.after(self._mirrored) if _was_done(entry)]
         self._mirrored = self.log.last
-        outputs, taps = [rows.outputs], [rows.taps]
+        outputs, taps, idle = [rows.outputs], [rows.taps], [rows.idle]
         for (name, twin), (shown_outputs, shown_taps) in zip(self.twins.items(), self._columns, strict=True):
             for entry in todo:
                 self._mirror(name, twin, entry)
@@ -149,7 +151,9 @@ class Ensemble(Board):
             self._repeat(name, twin.log.after(seen))
             outputs.append(_filled(own.outputs[:, shown_outputs], rows.count))
             taps.append(_filled(own.taps[:, shown_taps], rows.count))
-        return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps))
+            # a twin that tripped in these rows has no numbers for the rest of them
+            idle.append(own.idle[shown_taps] & (own.count == rows.count))
+        return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps), np.concatenate(idle))
 
     def _mirror(self, name: str, twin: Board, entry: LogEntry) -> None:
         """Do to a twin at the same tick what was done to the board, but for what it has of its own."""

@@ -8,9 +8,9 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from core.board.spec import Spec
+from core.board.spec import Section, Spec
 from core.board.wiring import scored
-from core.errors import InputError, unknown
+from core.errors import InputError
 
 SMALLEST = 1e-30
 """Square of a residual below which the covariance cannot be read from it."""
@@ -29,9 +29,11 @@ class ModelAccount(BaseModel):
 
 
 class Account(BaseModel):
-    """What one sample did to all of them; the recorded probabilities stand beside those worked out here."""
+    """What one sample did to all of them; the recorded probabilities stand beside those worked out here.
 
-    diagnoser: str
+    They part where the sample was no evidence, because the drive was off or nothing was measured.
+    """
+
     kind: str
     tick: int
     time_ms: float
@@ -39,48 +41,46 @@ class Account(BaseModel):
     models: list[ModelAccount]
 
 
-def signals_of(spec: Spec, name: str) -> list[str]:
-    """Return the signals whose values at two samples explain a verdict.
+def signals_of(section: Section) -> list[str]:
+    """Return the signals of a diagnoser, below its name, whose values at two samples explain a verdict.
 
     Raises
     ------
     InputError
-        When there is no such diagnoser, or its probabilities do not come from prior and likelihood.
+        When its probabilities do not come from prior and likelihood.
     """
-    if name not in spec.diagnosers:
-        raise unknown("diagnoser", name, spec.diagnosers, "diagnoser")
-    section = spec.diagnosers[name]
-    if not scored(section.block) or not getattr(section.block, "sample_by_sample", False):
-        raise InputError(f"{section.block.name} does not weigh sample by sample", "diagnoser")
+    block = section.block
+    if not scored(block) or not getattr(block, "sample_by_sample", False):
+        raise InputError(f"{block.name} does not weigh sample by sample", "name", "look at its signals instead")
     ports = ["probability", "residual", "nis"]
-    if any(port.name == "tone" for port in section.block.taps):
+    if any(port.name == "tone" for port in block.taps):
         ports.append("tone")
-    labels = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
-    return [f"{name}.{port}.{label}" for port in ports for label in labels]
+    return [f"{port}.{item.name}" for port in ports for item in section.params.hypotheses]  # type: ignore[attr-defined]
 
 
-def explain(spec: Spec, name: str, tick: int, before: Mapping[str, float] | None, now: Mapping[str, float]) -> Account:
+def explain(
+    spec: Spec, section: Section, tick: int, before: Mapping[str, float] | None, now: Mapping[str, float]
+) -> Account:
     """Work out the posterior of every hypothesis at a sample.
 
     Parameters
     ----------
     spec : Spec
         The bench.
-    name : str
+    section : Section
         The diagnoser.
     tick : int
         The sample.
     before, now : mapping
         Values of ``signals_of`` at the sample before and at this one; nothing before the first.
     """
-    section = spec.diagnosers[name]
     block: Any = section.block
     params: Any = section.params
     context = spec.context(section.every)
     labels = [item.name for item in params.hypotheses]
 
     def read(values: Mapping[str, float], port: str, label: str) -> float:
-        return float(values.get(f"{name}.{port}.{label}", 0.0))
+        return float(values.get(f"{port}.{label}", 0.0))
 
     last = [1.0 / len(labels)] * len(labels) if before is None else [read(before, "probability", x) for x in labels]
     priors = block.prior(params, last)
@@ -99,7 +99,6 @@ def explain(spec: Spec, name: str, tick: int, before: Mapping[str, float] | None
     floor = float(getattr(params, "probability_floor", 0.0))
     posteriors = _posteriors(priors, [row[2] for row in rows], floor)
     return Account(
-        diagnoser=name,
         kind=block.name,
         tick=tick,
         time_ms=tick * spec.dt_ms,

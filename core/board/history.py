@@ -8,65 +8,95 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.block import FloatArray, IntArray, kernel
-from core.board.board import Rows
+from core.block import FloatArray, IntArray, inlined, kernel
+from core.board.rows import Rows
 
 Float32Array = NDArray[np.float32]
 FACTOR = 16
 """Ticks under a bucket of the first level, and buckets under a bucket of the next."""
 LEVELS = 3
-TILE = 64
-"""Ticks written at a time."""
 WIDEST = 4096
 """Ticks under a bucket of the last level, FACTOR ** LEVELS."""
+LANES = 32
+"""Signals side by side in memory: a tick of them is written, and two of them compared, by a few vector instructions."""
+
+
+@inlined
+def _copy(source: Any, target: Any) -> None:
+    """Copy doubles to single precision."""
+    for k in range(source.shape[0]):
+        target[k] = np.float32(source[k])
+
+
+@inlined
+def _least(a: Any, b: Any, out: Any) -> None:
+    """Take the smaller of two arrays, place by place."""
+    for k in range(out.shape[0]):
+        out[k] = a[k] if a[k] < b[k] else b[k]
+
+
+@inlined
+def _most(a: Any, b: Any, out: Any) -> None:
+    """Take the larger of two arrays, place by place."""
+    for k in range(out.shape[0]):
+        out[k] = a[k] if a[k] > b[k] else b[k]
 
 
 @kernel
-def _write(ring: Any, signal: int, place: int, rows: FloatArray, c: int, start: int, stop: int) -> None:
-    """Write a column of the rows into the ring of a signal."""
-    capacity = ring.shape[1]
-    first = min(stop - start, capacity - place)
-    for i in range(first):
-        ring[signal, place + i] = np.float32(rows[start + i, c])
-    for i in range(first, stop - start):
-        ring[signal, place + i - capacity] = np.float32(rows[start + i, c])
+def _write(ring: Any, place: int, rows: FloatArray, first: int) -> None:
+    """Write columns of the rows, from ``first`` on, into the ring of a group."""
+    places = ring.shape[0] // LANES
+    width = min(LANES, rows.shape[1] - first)
+    for i in range(rows.shape[0]):
+        _copy(rows[i, first : first + width], ring[place * LANES : place * LANES + width])
+        place = place + 1 if place + 1 < places else 0
 
 
 @kernel
-def _fold(
-    ring: Any, low: Any, high: Any, offsets: IntArray, sizes: IntArray, signal: int, first: int, end: int
-) -> None:
-    """Fold the ticks of a span into the pyramid.
-
-    Every touched bucket is folded again from its start; the capacity is a multiple of the widest bucket.
-    """
-    capacity = ring.shape[1]
+def _fold_ticks(ring: Any, low: Any, high: Any, buckets: int, first: int, end: int) -> None:
+    """Fold ticks into the buckets of the first level; every touched bucket is folded again from its start."""
+    places = ring.shape[0] // LANES
+    half = FACTOR * LANES // 2
+    least, most = np.empty(half, dtype=np.float32), np.empty(half, dtype=np.float32)
     for bucket in range(first // FACTOR, (end - 1) // FACTOR + 1):
-        begin = bucket * FACTOR % capacity
-        inner = min(FACTOR, end - bucket * FACTOR)
-        # two at a time: each comparison waits for the one before
-        least = most = ring[signal, begin]
-        least_too = most_too = ring[signal, begin + inner - 1]
-        for place in range(begin + 1, begin + inner - 1, 2):
-            value, other = ring[signal, place], ring[signal, place + 1]
-            least = value if value < least else least
-            most = value if value > most else most
-            least_too = other if other < least_too else least_too
-            most_too = other if other > most_too else most_too
-        low[signal, bucket % sizes[0]] = min(least, least_too)
-        high[signal, bucket % sizes[0]] = max(most, most_too)
+        begin = bucket * FACTOR % places * LANES
+        at = bucket % buckets * LANES
+        lowest, highest = low[at : at + LANES], high[at : at + LANES]
+        if end >= (bucket + 1) * FACTOR:
+            size = half
+            earlier, later = ring[begin : begin + size], ring[begin + size : begin + 2 * size]
+            _least(earlier, later, least)
+            _most(earlier, later, most)
+            while size > 2 * LANES:
+                size //= 2
+                _least(least[:size], least[size : 2 * size], least[:size])
+                _most(most[:size], most[size : 2 * size], most[:size])
+            _least(least[:LANES], least[LANES : 2 * LANES], lowest)
+            _most(most[:LANES], most[LANES : 2 * LANES], highest)
+        else:
+            lowest[:] = ring[begin : begin + LANES]
+            highest[:] = lowest
+            for place in range(begin + LANES, begin + (end - bucket * FACTOR) * LANES, LANES):
+                tick = ring[place : place + LANES]
+                _least(lowest, tick, lowest)
+                _most(highest, tick, highest)
+
+
+@kernel
+def _fold_buckets(low: Any, high: Any, offsets: IntArray, sizes: IntArray, first: int, end: int) -> None:
+    """Fold the buckets of each level into those of the next."""
     span = FACTOR
     for level in range(1, LEVELS):
         for bucket in range(first // (span * FACTOR), (end - 1) // (span * FACTOR) + 1):
-            begin = offsets[level - 1] + bucket * FACTOR % sizes[level - 1]
-            least = low[signal, begin]
-            most = high[signal, begin]
+            begin = (offsets[level - 1] + bucket * FACTOR % sizes[level - 1]) * LANES
+            at = (offsets[level] + bucket % sizes[level]) * LANES
             inner = min(FACTOR, (end - 1) // span - bucket * FACTOR + 1)
-            for place in range(begin + 1, begin + inner):
-                least = min(least, low[signal, place])
-                most = max(most, high[signal, place])
-            low[signal, offsets[level] + bucket % sizes[level]] = least
-            high[signal, offsets[level] + bucket % sizes[level]] = most
+            lowest, highest = low[at : at + LANES], high[at : at + LANES]
+            lowest[:] = low[begin : begin + LANES]
+            highest[:] = high[begin : begin + LANES]
+            for place in range(begin + LANES, begin + inner * LANES, LANES):
+                _least(lowest, low[place : place + LANES], lowest)
+                _most(highest, high[place : place + LANES], highest)
         span *= FACTOR
 
 
@@ -78,39 +108,28 @@ def _append(
     offsets: IntArray,
     sizes: IntArray,
     steady: IntArray,
-    last: Any,
     first: int,
     rows: FloatArray,
-    at: int,
+    idle: Any,
+    group: int,
 ) -> None:
-    """Write rows (ticks by signals) into the rings of some signals and fold them into the pyramid.
+    """Write rows (ticks by signals) into the rings, from a group on, and fold them into the pyramid.
 
-    Signals are columns of the rows and rows of the ring, so tiles that fit a near cache are written at a time. What
-    has not changed for as long as the ring is long stands there already: memory nobody wrote to costs nothing, and
-    most faults stay at zero.
+    A group that has been idle for as long as the ring is long stands there as zeros already: memory nobody wrote to
+    costs nothing.
     """
-    capacity = ring.shape[1]
     count, signals = rows.shape
-    moved = np.zeros(signals, dtype=np.bool_)
-    changed = np.zeros(signals, dtype=np.bool_)
-    for start in range(0, count, TILE):
-        stop = min(start + TILE, count)
-        place = (first + start) % capacity
-        changed[:] = False
-        for i in range(start, stop):
-            for c in range(signals):
-                changed[c] |= rows[i, c] != last[at + c]
-        for c in range(signals):
-            signal = at + c
-            if not changed[c] and steady[signal] >= capacity:
-                continue
-            steady[signal] = 0 if changed[c] else steady[signal] + stop - start
-            last[signal] = rows[stop - 1, c]
-            moved[c] = True
-            _write(ring, signal, place, rows, c, start, stop)
-    for c in range(signals):
-        if moved[c]:
-            _fold(ring, low, high, offsets, sizes, at + c, first, first + count)
+    places = ring.shape[1] // LANES
+    for start in range(0, signals, LANES):
+        rests = True
+        for c in range(start, min(start + LANES, signals)):
+            rests &= idle[c]
+        if not rests or steady[group] < places:
+            steady[group] = steady[group] + count if rests else 0
+            _write(ring[group], first % places, rows, start)
+            _fold_ticks(ring[group], low[group], high[group], sizes[0], first, first + count)
+            _fold_buckets(low[group], high[group], offsets, sizes, first, first + count)
+        group += 1
 
 
 @kernel
@@ -120,7 +139,8 @@ def _columns(
     high: Any,
     offsets: IntArray,
     sizes: IntArray,
-    signals: IntArray,
+    groups: IntArray,
+    lanes: IntArray,
     first: int,
     end: int,
     start: int,
@@ -129,12 +149,12 @@ def _columns(
 ) -> None:
     """Fill minima and maxima of each column from the widest buckets that fit."""
     columns = out.shape[2]
-    capacity = ring.shape[1]
+    places = ring.shape[1] // LANES
     for c in range(columns):
         a = max(start + (stop - start) * c // columns, first)
         b = min(max(start + (stop - start) * (c + 1) // columns, start + (stop - start) * c // columns + 1), end)
-        for k in range(signals.shape[0]):
-            signal = signals[k]
+        for k in range(groups.shape[0]):
+            group, lane = groups[k], lanes[k]
             least = np.float32(np.inf)
             most = np.float32(-np.inf)
             tick = a
@@ -147,13 +167,13 @@ def _columns(
                     span = wider
                     wider *= FACTOR
                 if level < 0:
-                    value = ring[signal, tick % capacity]
+                    value = ring[group, tick % places * LANES + lane]
                     least = min(least, value)
                     most = max(most, value)
                 else:
-                    bucket = offsets[level] + (tick // span) % sizes[level]
-                    least = min(least, low[signal, bucket])
-                    most = max(most, high[signal, bucket])
+                    bucket = (offsets[level] + (tick // span) % sizes[level]) * LANES + lane
+                    least = min(least, low[group, bucket])
+                    most = max(most, high[group, bucket])
                 tick += span
             if least > most:
                 least = np.float32(np.nan)
@@ -163,13 +183,15 @@ def _columns(
 
 
 @kernel
-def _crossing(ring: Any, signal: int, sign: float, level: float, hysteresis: float, start: int, stop: int) -> int:
+def _crossing(
+    ring: Any, group: int, lane: int, sign: float, level: float, hysteresis: float, start: int, stop: int
+) -> int:
     """Return the last tick at which the signal crosses the level, having been beyond the hysteresis; -1 for none."""
-    capacity = ring.shape[1]
+    places = ring.shape[1] // LANES
     armed = False
     found = -1
     for tick in range(start, stop):
-        value = sign * (ring[signal, tick % capacity] - level)
+        value = sign * (ring[group, tick % places * LANES + lane] - level)
         if value < -hysteresis or (hysteresis == 0.0 and value < 0.0):
             armed = True
         elif value >= 0.0 and armed:
@@ -191,25 +213,37 @@ class History:
 
     Parameters
     ----------
-    signals : int
-        Number of signals.
+    outputs, taps : int
+        Number of signals of each kind.
     capacity : int
         Ticks kept at least; one of the widest buckets more is held, because it is overwritten whole.
     """
 
-    def __init__(self, signals: int, capacity: int = 200_000) -> None:
+    def __init__(self, outputs: int, taps: int, capacity: int = 200_000) -> None:
         self.capacity = (-(-capacity // WIDEST) + 1) * WIDEST
         self._sizes = np.array([self.capacity // FACTOR ** (level + 1) for level in range(LEVELS)], dtype=np.int64)
         self._offsets = np.concatenate([[0], np.cumsum(self._sizes)[:-1]]).astype(np.int64)
-        self._ring = _untouched(signals, self.capacity)
-        self._low = _untouched(signals, int(self._sizes.sum()))
-        self._high = _untouched(signals, int(self._sizes.sum()))
-        # ticks in a row each signal has been at its last value; memory starts as zeros throughout
-        self._steady = np.full(signals, self.capacity, dtype=np.int64)
-        self._last = np.zeros(signals)
+        self._taps_at = -(-outputs // LANES)
+        groups = self._taps_at + -(-taps // LANES)
+        places = [(signal // LANES, signal % LANES) for signal in range(outputs)]
+        places += [(self._taps_at + signal // LANES, signal % LANES) for signal in range(taps)]
+        self._places = np.array(places, dtype=np.int64).reshape(-1, 2)
+        self._ring = _untouched(groups, self.capacity * LANES)
+        self._low = _untouched(groups, int(self._sizes.sum()) * LANES)
+        self._high = _untouched(groups, int(self._sizes.sum()) * LANES)
+        # ticks in a row each group has been idle; memory starts as zeros throughout
+        self._steady = np.full(groups, self.capacity, dtype=np.int64)
+        self._never = np.zeros(outputs, dtype=np.bool_)
         self._written = 0
         self._begin = 0
         self.end_tick = 0
+
+    @staticmethod
+    def ticks_within(megabytes: float, outputs: int, taps: int) -> int:
+        """Return how many ticks of so many signals fit into so much memory."""
+        lanes = (-(-outputs // LANES) + -(-taps // LANES)) * LANES
+        pyramid = 2.0 * sum(FACTOR ** -(level + 1) for level in range(LEVELS))
+        return max(WIDEST, int(megabytes * 1e6 / (4.0 * lanes * (1.0 + pyramid))) - WIDEST)
 
     @property
     def first_tick(self) -> int:
@@ -227,19 +261,9 @@ class History:
             self._begin = self.end_tick = rows.first_tick
         if rows.first_tick != self._written:  # a jump: only what fills the ring is known to be steady
             self._steady[self._steady < self.capacity] = 0
-        outputs = rows.outputs.shape[1]
-        args = (
-            self._ring,
-            self._low,
-            self._high,
-            self._offsets,
-            self._sizes,
-            self._steady,
-            self._last,
-            rows.first_tick,
-        )
-        _append(*args, rows.outputs, 0)
-        _append(*args, rows.taps, outputs)
+        args = (self._ring, self._low, self._high, self._offsets, self._sizes, self._steady, rows.first_tick)
+        _append(*args, rows.outputs, self._never, 0)
+        _append(*args, rows.taps, rows.idle, self._taps_at)
         self.end_tick = self._written = rows.first_tick + rows.count
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:
@@ -251,7 +275,7 @@ class History:
             self._high,
             self._offsets,
             self._sizes,
-            np.array(signals, dtype=np.int64),
+            *self._at(signals),
             self.first_tick,
             self.end_tick,
             start,
@@ -264,10 +288,18 @@ class History:
         """Return full-rate values, shape (signals, ticks); the span is cut to what is kept."""
         start, stop = max(start, self.first_tick), min(stop, self.end_tick)
         ticks = np.arange(start, max(stop, start)) % self.capacity
-        return self._ring[np.array(signals, dtype=np.int64)[:, None], ticks]
+        groups, lanes = self._at(signals)
+        found: Float32Array = self._ring[groups[:, None], ticks * LANES + lanes[:, None]]
+        return found
+
+    def _at(self, signals: list[int]) -> tuple[IntArray, IntArray]:
+        """Return group and lane of signals."""
+        places = self._places[signals]
+        return np.ascontiguousarray(places[:, 0]), np.ascontiguousarray(places[:, 1])
 
     def crossing(self, signal: int, edge: str, level: float, hysteresis: float, start: int, stop: int) -> int | None:
         """Return the last tick in the span at which the signal crosses ``level`` on the rising or falling edge."""
         start, stop = max(start, self.first_tick), min(stop, self.end_tick)
-        found = _crossing(self._ring, signal, 1.0 if edge == "rising" else -1.0, level, hysteresis, start, stop)
+        group, lane = self._places[signal]
+        found = _crossing(self._ring, group, lane, 1.0 if edge == "rising" else -1.0, level, hysteresis, start, stop)
         return int(found) if found >= 0 else None

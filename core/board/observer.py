@@ -10,6 +10,7 @@ import numpy as np
 from core.block import FloatArray
 from core.board.spec import Spec
 from core.board.wiring import Wiring, scored
+from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
 from core.diagnose.regions import REGIONS
 
@@ -48,8 +49,8 @@ class Observer:
         ]
         self._warned = [0.0] * len(self._warnings)
 
-    def look(self, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
-        """Return what happened in some rows, as the fields of log entries."""
+    def look(self, spec: Spec, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
+        """Return what happened in some rows of a bench as it is now, as the fields of log entries."""
         found: list[Finding] = []
         if not len(outputs):
             return found
@@ -74,7 +75,7 @@ class Observer:
             values = column(at)
             changes = self._changes(at, values)
             for i in changes if changes is not None else ():
-                text = self._text(name, port, int(values[i]), int(i), column)
+                text = self._text(spec, name, port, int(values[i]), int(i), column)
                 found.append({"kind": port, "text": f"{name}: {text}", "tick": first_tick + int(i), "new": text})
         return sorted(found, key=lambda finding: int(finding["tick"]))
 
@@ -103,7 +104,7 @@ class Observer:
                 found.append({"kind": "recognised", "text": text, "tick": tick, "old": samples, "new": label})
         return found
 
-    def _text(self, name: str, port: str, value: int, row: int, column: Callable[[int], FloatArray]) -> str:
+    def _text(self, spec: Spec, name: str, port: str, value: int, row: int, column: Callable[[int], FloatArray]) -> str:
         if port == "region":
             return REGIONS[value]
         if port == "alarm":
@@ -114,4 +115,15 @@ class Observer:
             return VERDICTS[value]
         labels, columns = self._names[name], self._consistent[name]
         left = [label for label, at in zip(labels, columns, strict=True) if column(at)[row] != 0.0]
-        return f"{VERDICTS[value]}: {', '.join(left)}"
+        aliases = _aliases(spec, name, left[0]) if value == ISOLATED else ""
+        return f"{VERDICTS[value]}: {', '.join(left)}{aliases}"
+
+
+def _aliases(spec: Spec, name: str, label: str) -> str:
+    """Name the changes that have the same response at the tones of the drive as a hypothesis."""
+    waveform: Any = spec.reference.block
+    hypotheses: Any = getattr(spec.diagnosers[name].params, "hypotheses")  # noqa: B009
+    context = spec.context()
+    tones = waveform.tones(spec.reference.params, context)
+    found = [f"{part} x {factor:.4g}" for part, factor in equivalents(hypotheses, label, context.device, tones).items()]
+    return f" (the same here: {', '.join(found)})" if found else ""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from core import registry
-from core.block import RESERVED, Block, BlockParams, FloatArray, IntArray, Port
+from core.block import RESERVED, Block, BlockParams, BoolArray, FloatArray, IntArray, Port
 from core.board import program
 from core.board.effects import Effects
 from core.board.measurement import Measurement
@@ -47,6 +47,7 @@ class Wiring:
     io: IntArray
     output_index: IntArray
     tap_index: IntArray
+    resting: set[int] = field(default_factory=set)
 
     def row(self, key: str) -> int:
         """Return the table row of an instance."""
@@ -62,15 +63,25 @@ class Wiring:
     def rest(self, spec: Spec) -> list[int]:
         """Return the rows that run; make those that rest as new, and their signals 0."""
         running = []
+        read = needed(spec)
         for row, instance in enumerate(self.instances):
-            if not rests(spec, instance):
+            if not rests(spec, instance, read):
                 running.append(row)
+                self.resting.discard(row)
                 continue
+            if row in self.resting:
+                continue
+            self.resting.add(row)
             self.state_of(instance.key)[:] = instance.block.state(instance.params, spec.context(instance.every))
             for port in (*instance.block.outputs, *instance.block.taps):
                 start = self.index[signal_name(instance, port.name)]
                 self.w[start : start + len(port.names(instance.params))] = 0.0
         return running
+
+    def idle(self, running: list[int]) -> BoolArray:
+        """Return which taps stay 0 while these rows run."""
+        keys = {self.instances[row].key for row in running}
+        return np.array([signal.block not in keys for signal in self.signals.taps], dtype=np.bool_)
 
 
 def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
@@ -135,7 +146,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
                     size += 1
                     if not port.hidden:
                         shown.append((name, port, instance, kind))
-    for name in (*spec.controllers, *spec.sensors):
+    for name in spec.controllers:
         index[f"{name}.engaged"] = size
         size += 1
     index[NOTHING] = size
@@ -179,18 +190,17 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     )
 
 
-def rests(spec: Spec, instance: Instance) -> bool:
-    """Say whether a block need not run: a fault that is not there, a sensor that nobody reads."""
+def rests(spec: Spec, instance: Instance, read: set[str]) -> bool:
+    """Say whether a block need not run: a fault that is not there, a sensor that is not among those read."""
     if isinstance(instance.params, FaultParams):
         return instance.params.severity == 0.0
-    return instance.key in spec.sensors and issubclass(instance.block, Sensor) and instance.key not in needed(spec)
+    return instance.key in spec.sensors and issubclass(instance.block, Sensor) and instance.key not in read
 
 
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
-    """Tell every controller whether it drives, and every sensor whether it is needed; the others may rest."""
-    running = {spec.active, *needed(spec)}
-    for name in (*spec.controllers, *spec.sensors):
-        w[index[f"{name}.engaged"]] = 1.0 if name in running else 0.0
+    """Tell every controller whether it drives."""
+    for name in spec.controllers:
+        w[index[f"{name}.engaged"]] = 1.0 if name == spec.active else 0.0
 
 
 def needed(spec: Spec) -> set[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -26,11 +26,12 @@ from core.control.controller import (
 
 H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
 MODEL_GAIN, MODEL_A1, MODEL_A2, PLANT_A1, PLANT_A2, PLANT_GAIN, SIGN, FILTER_DECAY, FILTER_GAIN = range(10, 19)
-BIAS, MODEL_FILTER = 19, 20
+BIAS, ASKED_FOR, MODEL_FILTER = 19, 20, 21
 R, FILTERED_INPUT, FILTERED_OUTPUT, Y, CONSTANT, N = range(6)
 """The regressors; the constant takes part only if it is not 0."""
 THETA, ALPHA, W1, W2, LAST = 0, N, N + 1, N + 2, N + 3  # LAST: the regressor of the sample before
-FILTERED, APPLIED_FILTER, START, STATES = LAST + N, LAST + 3 * N, LAST + 3 * N + 2, LAST + 3 * N + 3
+FILTERED, APPLIED_FILTER = LAST + N, LAST + 3 * N
+START, OWN, STATES = APPLIED_FILTER + 2, APPLIED_FILTER + 3, APPLIED_FILTER + 4
 FIRST_TRUTH = len(INPUTS)
 DRIVE_OFFSET = FIRST_TRUTH + len(TRUTH)
 OWN_VOLTAGE = DRIVE_OFFSET + 1
@@ -52,7 +53,7 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
     if s[START] != 0.0:
         for i in range(n):
             advance_model(p, MODEL_FILTER, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
-        advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u)  # G_m[u]
+        advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u if p[ASKED_FOR] == 0.0 else s[OWN])  # G_m[u]
         s[W1] = settled(p[FILTER_DECAY] * s[W1] + p[FILTER_GAIN] * u)  # w1' = -lam w1 + u
         s[W2] = settled(p[FILTER_DECAY] * s[W2] + p[FILTER_GAIN] * s[LAST + Y])  # w2' = -lam w2 + y
     s[START] = 1.0
@@ -84,6 +85,7 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
         voltage += theta * s[LAST + i]
     if p[ADAPT_ALPHA] != 0.0:
         s[ALPHA] -= rate * eps * eta
+    s[OWN] = voltage
     w[io[OWN_VOLTAGE]] = voltage
 
     a1, a2, gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
@@ -186,6 +188,12 @@ class Mrac(Block):
         augment: bool = parameter(
             True, "adapt on the augmented error; off adapts on the plain one", equation="3.1.2.14"
         )
+        auxiliary: Literal["applied", "printed"] = parameter(
+            "applied",
+            "voltage the auxiliary error is taken from: the one applied, or as printed the one asked for, which is "
+            "another at the limit and while another controller drives",
+            equation="3.1.2.14",
+        )
         adapt_alpha: bool = parameter(True, "adapt alpha as well")
         bias_v: float = parameter(0.0, "constant regressor against a constant load, 0 for none", "V", ge=0, le=100)
 
@@ -224,6 +232,7 @@ class Mrac(Block):
                 decay,
                 (1.0 - decay) / pole,
                 params.bias_v,
+                float(params.auxiliary == "printed"),
                 *model_filter(context),
             ]
         )

@@ -20,6 +20,7 @@ from core.control.controller import (
     VELOCITY_INPUTS,
     advance_model,
     coefficients,
+    matching,
     model_filter,
     true_plant,
     unsuited_order,
@@ -27,8 +28,8 @@ from core.control.controller import (
 from core.control.velocity import STATES, Source, pack_velocity, velocity, velocity_source
 
 H, RATE, SIGN, GAIN, WEIGHT_OUTPUT, LEAKAGE, BOUND, REACH, FILTERS, POLE = range(10)
-LEAD, DECAY, FILL, RATIO = range(10, 14)
-MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(14, 21)
+LEAD, DECAY, FILL, RATIO, FIRST_ORDER = range(10, 15)
+MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(15, 22)
 MOVING = MODEL_FILTER + MODEL_FILTER_SIZE
 THETA, W1, W2, LAST, OWN, AUXILIARY, MOTION, SIZE = 0, 4, 5, 6, 7, 8, 10, 10 + STATES
 VELOCITY, MODEL_VELOCITY = len(INPUTS), len(INPUTS) + 1
@@ -40,7 +41,15 @@ LABELS = ("r", "w1", "w2", "y")
 
 @kernel
 def matching_lead(
-    a1: float, a2: float, gain: float, m1: float, m2: float, model_gain: float, pole: float, lead: float
+    a1: float,
+    a2: float,
+    gain: float,
+    m1: float,
+    m2: float,
+    model_gain: float,
+    pole: float,
+    lead: float,
+    first_order: bool,
 ) -> tuple[float, float, float, float]:
     r"""Return the gains on r, w1, w2 and :math:`y_c=y+\dot y/c` that make the loop equal the model.
 
@@ -48,10 +57,12 @@ def matching_lead(
 
     .. math:: \theta_1=\frac{(c-\lambda)[(a_{p1}-a_{m1})-(a_{p2}-a_{m2})/c]}{c-a_{p1}+a_{p2}/c}
 
-    Without lead the plant is of first order and needs no filters.
+    A plant of first order needs neither lead nor filters.
     """
-    if lead == 0.0:
+    if first_order:
         return model_gain / gain, 0.0, 0.0, (a2 - m2) / gain
+    if lead == 0.0:
+        return matching(a1, a2, gain, m1, m2, model_gain, pole)
     c = 1.0 / lead
     first = (c - pole) * ((a1 - m1) - (a2 - m2) * lead) / (c - a1 + a2 * lead)
     through = (a1 - m1 - first) / (gain * lead)
@@ -75,13 +86,13 @@ def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
     own = settled(e + p[RATIO] * (s[AUXILIARY] + p[LEAD] * s[AUXILIARY + 1]))
 
     a1, a2, gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
-    if p[LEAD] == 0.0:  # damping is what moves there
+    if p[FIRST_ORDER] != 0.0:  # damping is what moves there
         a1, a2, gain = 0.0, a2 * w[io[FIRST_TRUTH]], gain * w[io[FIRST_TRUTH]]
         a2 /= w[io[FIRST_TRUTH + 2]]
         gain /= w[io[FIRST_TRUTH + 2]]
     t, ideal = io[TAPS], io[TAPS + 1]
     w[ideal], w[ideal + 1], w[ideal + 2], w[ideal + 3] = matching_lead(
-        a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE], p[LEAD]
+        a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE], p[LEAD], p[FIRST_ORDER] != 0.0
     )
     weight = p[WEIGHT_OUTPUT]
     # the step of an implicit method: a sample changes the error by REACH times the change of voltage
@@ -107,7 +118,7 @@ def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
     w[io[TAPS + 2]] = e
     w[io[TAPS + 3]] = own
     w[io[TAPS + 4]] = 0.5 * own * own + 0.5 * abs(gain) * lyapunov / p[GAIN]
-    w[io[TAPS + 5]] = -p[MODEL_A2] * own * own if p[LEAD] == 0.0 else 0.0
+    w[io[TAPS + 5]] = -p[MODEL_A2] * own * own if p[FIRST_ORDER] != 0.0 else 0.0
 
 
 class MracVelocity(Block):
@@ -151,6 +162,12 @@ class MracVelocity(Block):
         """Parameters of the law, in um, V and 1/w0."""
 
         adaptation_gain: float = parameter(0.05, "adaptation gain g", equation="3.1.2.12", gt=0, le=1e6)
+        form: Literal["relative_degree_one", "printed"] = parameter(
+            "relative_degree_one",
+            "on displacement and velocity, or as printed on displacement alone; the same for a plant of first order",
+            equation="3.1.2.12",
+            live=False,
+        )
         zero: float = parameter(
             0.9, "zero c over the damping a1 of the model; below 1 is positive real", gt=0, le=10, live=False
         )
@@ -176,8 +193,8 @@ class MracVelocity(Block):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        plant, model, lead, pole = cls.shape(params, context)
-        rate = context.device.natural_frequency
+        plant, model, lead = cls.shape(params, context)
+        rate, pole, first_order = context.device.natural_frequency, params.filter_pole, context.device.mass == 0.0
         h = context.dt_ms * rate
         decay = math.exp(-pole * h)
         copy = model_filter(context)
@@ -191,12 +208,13 @@ class MracVelocity(Block):
                 params.leakage,
                 params.gain_bound,
                 abs(plant[2] / model[2] * (copy[4] + lead * copy[5])),
-                float(lead > 0.0 if params.filters is None else params.filters),
+                float(not first_order if params.filters is None else params.filters),
                 pole,
                 lead,
                 decay,
                 (1.0 - decay) / pole,
                 plant[2] / model[2],
+                float(first_order),
                 *model,
                 *plant,
                 *copy,
@@ -207,19 +225,20 @@ class MracVelocity(Block):
     @classmethod
     def shape(
         cls, params: Any, context: Context
-    ) -> tuple[tuple[float, float, float], tuple[float, float, float], float, float]:
-        """Return coefficients of plant and model, weight of the velocity in 1/w0, and the pole of the filters."""
+    ) -> tuple[tuple[float, float, float], tuple[float, float, float], float]:
+        """Return coefficients of plant and model, and the weight of the velocity in 1/w0."""
         plant, model = coefficients(context)
-        second = context.device.mass > 0.0
-        return plant, model, 1.0 / (params.zero * (model[0] or 1.0)) if second else 0.0, params.filter_pole
+        needs_lead = context.device.mass > 0.0 and params.form != "printed"
+        return plant, model, 1.0 / (params.zero * (model[0] or 1.0)) if needs_lead else 0.0
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """Gains that match the nominal device, everything else at rest."""
-        plant, model, lead, pole = cls.shape(params, context)
+        plant, model, lead = cls.shape(params, context)
         start = np.zeros(SIZE)
+        first_order = context.device.mass == 0.0
         if params.start == "nominal":
-            start[THETA : THETA + 4] = matching_lead(*plant, *model, pole, lead)
+            start[THETA : THETA + 4] = matching_lead(*plant, *model, params.filter_pole, lead, first_order)
         return start
 
     step = mrac_velocity_step

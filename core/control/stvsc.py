@@ -30,7 +30,9 @@ from core.control.velocity import STATES, VELOCITY_SIZE, pack_velocity, velocity
 from core.estimation import FILTER_SIZE, advance_filter, state_filter
 
 MOVING, FILTER = SLIDING_SIZE, SLIDING_SIZE + VELOCITY_SIZE
-ESTIMATOR_GAIN, OUTPUT_WEIGHT, POLE, FLOOR, ON_ESTIMATE = range(FILTER + FILTER_SIZE, FILTER + FILTER_SIZE + 5)
+ESTIMATOR_GAIN, OUTPUT_WEIGHT, POLE, FLOOR, ON_ESTIMATE, NORMALISE = range(
+    FILTER + FILTER_SIZE, FILTER + FILTER_SIZE + 6
+)
 PEAK, MOTION, THETA, INPUT_FILTER, OUTPUT_FILTER, LAST, SIZE = (
     0,
     1,
@@ -64,7 +66,9 @@ def stvsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
         - y
     )
     weight = p[OUTPUT_WEIGHT]
-    den = 1.0 + u_filtered * u_filtered + weight * (y_filtered * y_filtered + rate_filtered * rate_filtered)
+    den = 1.0
+    if p[NORMALISE] != 0.0:
+        den += u_filtered * u_filtered + weight * (y_filtered * y_filtered + rate_filtered * rate_filtered)
     gradient = p[ESTIMATOR_GAIN] * error / den
     gain = s[THETA] - p[TIME_STEP] * gradient * u_filtered
     floor = p[FLOOR] * abs(p[PLANT_GAIN])
@@ -150,6 +154,7 @@ class Stvsc(Block):
         output_weight: float | None = parameter(
             None, "weight of y and its derivative; 1/kp^2 unless given, so that y counts in volts", "V^2/um^2", gt=0
         )
+        normalise: bool = parameter(True, "divide by 1 + w'Gw; off as printed", equation="3.2.5.1.4")
         gain_floor: float = parameter(0.1, "least share of the nominal gain the estimate may fall to", gt=0, le=1)
         surface: Literal["tracking", "estimation"] = parameter(
             "tracking",
@@ -177,6 +182,7 @@ class Stvsc(Block):
                 params.filter_pole,
                 params.gain_floor,
                 float(params.surface == "estimation"),
+                float(params.normalise),
             ]
         )
 

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from pydantic import BaseModel
 
 from core.block import Oscillator
+from core.diagnose.excitation import LEAST_INFORMATION
 from core.diagnose.hypothesis import Hypothesis
 
 FACTORS = ("mass", "stiffness", "damping", "gain")
@@ -95,6 +96,23 @@ def alias_map(
     )
 
 
+def equivalents(
+    hypotheses: Sequence[Hypothesis], name: str, nominal: Oscillator, tones: Sequence[tuple[float, float]]
+) -> dict[str, float]:
+    """Return the factor on each single parameter of the device that has the response of a hypothesis at every tone."""
+    item = next(item for item in hypotheses if item.name == name)
+    return _equivalents(item, nominal, [f for f, _ in tones])
+
+
+def hidden_um(noise_um: float) -> float:
+    r"""Return the distance below which a tone hardly tells two responses apart.
+
+    A sample is worth :math:`|\Delta Y|^2/4\sigma^2` nats; less than ``LEAST_INFORMATION`` does not repay the odds of a
+    probability floor within thousands of samples.
+    """
+    return 2.0 * noise_um * math.sqrt(LEAST_INFORMATION)
+
+
 def _stiffness(item: Hypothesis, nominal: Oscillator, hz: float) -> complex:
     """Return the dynamic stiffness per gain: what one tone tells."""
     omega = 2.0 * math.pi * hz / 1e3
@@ -130,7 +148,7 @@ def _single(name: str, wanted: complex, nominal: Oscillator, hz: float) -> float
     elif name == "damping":
         factor = wanted.imag / now.imag if now.imag else 0.0
     elif name == "mass":
-        factor = (nominal.stiffness - wanted.real) / (nominal.mass * omega**2)
+        factor = (nominal.stiffness - wanted.real) / (nominal.mass * omega**2) if omega else 0.0
     else:
         factor = (wanted.real + nominal.mass * omega**2) / nominal.stiffness
     if not factor > 0.0:

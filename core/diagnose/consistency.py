@@ -24,9 +24,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 
 CYCLES, DT, WINDOW, CAPACITY, POWER_LIMIT, TONE_LIMIT, ALONE_FOR, NONE_FOR = range(8)
@@ -57,9 +56,7 @@ def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     last = -1
     healthy = False
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         residual = s[OWN + RESIDUAL * n + i]
         w[io[RESIDUAL_TAP] + i] = residual
         w[io[NIS_TAP] + i] = nis

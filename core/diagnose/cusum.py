@@ -22,9 +22,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 from core.diagnose.weights import share_out
 
@@ -47,9 +46,7 @@ def cusum_step(p: Any, s: Any, w: Any, io: Any) -> None:
     healthy = 0.0
     most = 0.0
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
         w[io[NIS_TAP] + i] = nis
         log = -0.5 * nis - s[OWN + HALF_LOG * n + i]

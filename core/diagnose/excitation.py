@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import kernel, settled
-from core.diagnose.kalman import COVARIANCE, MEMORY, OWN, RESIDUAL
+from core.diagnose.kalman import INVERSE, MEMORY, OWN, RESIDUAL
 
 LEAST_INFORMATION = 1e-3
 """Nats per sample below which thousands of samples do not repay the odds of a probability floor."""
@@ -29,7 +29,8 @@ def nearest_rival(p: Any, s: Any, separation: int, n: int, w: Any, probability: 
     nearest = 1e300
     for i in range(n):
         apart = s[OWN + RESIDUAL * n + i] - own
-        mean = p[MEMORY] * s[separation + i] + (1.0 - p[MEMORY]) * (0.5 * apart * apart / s[OWN + COVARIANCE * n + i])
+        gain = 0.5 * apart * apart * s[OWN + INVERSE * n + i]
+        mean = p[MEMORY] * s[separation + i] + (1.0 - p[MEMORY]) * gain
         s[separation + i] = settled(mean)
         if i != winner and mean < nearest:
             nearest = mean

@@ -28,9 +28,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 
 OTHER = 0
@@ -97,9 +96,7 @@ def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
         mix(s, n, p[LANES + WIDTH * n + OTHER])
     best = -math.inf
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
         w[io[NIS_TAP] + i] = nis
         log = -0.5 * nis - s[OWN + HALF_LOG * n + i]

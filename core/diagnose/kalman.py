@@ -8,9 +8,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, BlockParams, Context, Port, kernel, parameter, settled
+from core.block import Block, BlockParams, Context, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
-from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
+from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
 
 COUNT, PROCESS, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(10)
 """Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
@@ -18,8 +18,8 @@ PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI, WIDTH = range(10)
 """Lanes of the parameters, each as long as there are models."""
 STARTED, LAST_CHARGE, LEVEL, OWN = range(4)
 """State of every bank; the lanes of the filters follow, then a bank's own."""
-X1, X2, P11, P12, P22, RESIDUAL, COVARIANCE, HALF_LOG, DEPTH = range(9)
-"""Lanes of the state; ``HALF_LOG`` is half the logarithm of the residual covariance."""
+X1, X2, P11, P12, P22, RESIDUAL, COVARIANCE, INVERSE, HALF_LOG, DEPTH = range(10)
+"""Lanes of the state; the inverse and half the logarithm of the residual covariance are kept while it stays."""
 MEASURED, APPLIED, MIDDLE, CHARGE, PROBABILITY = range(5)
 """Ports of every bank."""
 LEAST = 1e-12
@@ -50,71 +50,74 @@ def driven(p: Any, s: Any) -> bool:
 
 
 @kernel
-def predict(p: Any, s: Any, i: int, n: int, u: float) -> None:
-    r"""Predict the state of one filter, :math:`x^-=\Phi x+\Gamma u,\;P^-=\Phi P\Phi^T+\Gamma Q\Gamma^T`."""
+def filter_step(p: Any, s: Any, i: int, n: int, u: float, z: float, first: bool, seen: bool) -> float:
+    r"""Predict one filter, unless this is its first sample; correct it, if there is a measurement; return r^2/psi.
+
+    .. math:: x^-=\Phi x+\Gamma u,\quad P^-=\Phi P\Phi^T+\Gamma Q\Gamma^T
+
+    .. math:: r=z-Hx^-,\quad\psi=HP^-H^T+R,\quad K=P^-H^T/\psi,\quad x=x^-+Kr,\quad P=(I-KH)P^-
+    """
     a = LANES + i
     b = OWN + i
-    f11 = p[a + PHI11 * n]
-    f12 = p[a + PHI12 * n]
-    f21 = p[a + PHI21 * n]
-    f22 = p[a + PHI22 * n]
-    g1 = p[a + GAMMA1 * n]
-    g2 = p[a + GAMMA2 * n]
+    steady = p[STEADY] != 0.0
     x1 = s[b + X1 * n]
     x2 = s[b + X2 * n]
-    s[b + X1 * n] = f11 * x1 + f12 * x2 + g1 * u
-    s[b + X2 * n] = f21 * x1 + f22 * x2 + g2 * u
-    if p[STEADY] != 0.0:
-        return
     c11 = s[b + P11 * n]
     c12 = s[b + P12 * n]
     c22 = s[b + P22 * n]
-    q1 = f11 * c11 + f12 * c12
-    q2 = f11 * c12 + f12 * c22
-    q3 = f21 * c11 + f22 * c12
-    q4 = f21 * c12 + f22 * c22
-    noise = g1 * p[PROCESS]
-    s[b + P11 * n] = q1 * f11 + q2 * f12 + g1 * noise
-    s[b + P12 * n] = q1 * f21 + q2 * f22 + g2 * noise
-    s[b + P22 * n] = q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
-
-
-@kernel
-def correct(p: Any, s: Any, i: int, n: int, z: float, seen: bool) -> float:
-    r"""Correct one filter by a measurement and return :math:`r^2/\psi`.
-
-    .. math:: r=z-Hx^-,\quad\psi=HP^-H^T+R,\quad K=P^-H^T/\psi,\quad x=x^-+Kr
-    """
-    b = OWN + i
-    residual = settled(z - s[b + X1 * n]) if seen else 0.0
-    if p[STEADY] != 0.0:
-        a = LANES + i
+    if not first:
+        f11 = p[a + PHI11 * n]
+        f12 = p[a + PHI12 * n]
+        f21 = p[a + PHI21 * n]
+        f22 = p[a + PHI22 * n]
+        g1 = p[a + GAMMA1 * n]
+        g2 = p[a + GAMMA2 * n]
+        moved = f11 * x1 + f12 * x2 + g1 * u
+        x2 = f21 * x1 + f22 * x2 + g2 * u
+        x1 = moved
+        if not steady:
+            q1 = f11 * c11 + f12 * c12
+            q2 = f11 * c12 + f12 * c22
+            q3 = f21 * c11 + f22 * c12
+            q4 = f21 * c12 + f22 * c22
+            noise = g1 * p[PROCESS]
+            c11 = q1 * f11 + q2 * f12 + g1 * noise
+            c12 = q1 * f21 + q2 * f22 + g2 * noise
+            c22 = q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
+    if steady:
         psi = p[a + PSI * n]
-        if seen:
-            s[b + X1 * n] += p[a + GAIN1 * n] * residual
-            s[b + X2 * n] += p[a + GAIN2 * n] * residual
-    else:
-        c11 = s[b + P11 * n]
-        innovation = c11 + p[SENSOR]
+    elif p[PRINTED] != 0.0:
         # the text prints psi without R, and without assumed noise that would end at nothing
-        psi = max(c11, LEAST * p[SENSOR]) if p[PRINTED] != 0.0 else innovation
-        if seen:
-            c12 = s[b + P12 * n]
-            inverse = 1.0 / innovation
-            k1 = c11 * inverse
-            k2 = c12 * inverse
-            s[b + X1 * n] += k1 * residual
-            s[b + X2 * n] += k2 * residual
-            s[b + P22 * n] -= k2 * c12
-            s[b + P12 * n] = c12 - k1 * c12
-            s[b + P11 * n] = c11 - k1 * c11
-    s[b + X1 * n] = settled(s[b + X1 * n])
-    s[b + X2 * n] = settled(s[b + X2 * n])
-    s[b + RESIDUAL * n] = residual
+        psi = max(c11, LEAST * p[SENSOR])
+    else:
+        psi = c11 + p[SENSOR]
     if psi != s[b + COVARIANCE * n]:
         s[b + COVARIANCE * n] = psi
+        s[b + INVERSE * n] = 1.0 / psi
         s[b + HALF_LOG * n] = 0.5 * math.log(psi)
-    return float(residual * residual / psi)
+    inverse = s[b + INVERSE * n]
+    residual = 0.0
+    if seen:
+        residual = settled(z - x1)
+        if steady:
+            k1 = p[a + GAIN1 * n]
+            k2 = p[a + GAIN2 * n]
+        else:
+            innovation = inverse if p[PRINTED] == 0.0 else 1.0 / (c11 + p[SENSOR])
+            k1 = c11 * innovation
+            k2 = c12 * innovation
+            c22 -= k2 * c12
+            c12 -= k1 * c12
+            c11 -= k1 * c11
+        x1 += k1 * residual
+        x2 += k2 * residual
+    s[b + X1 * n] = settled(x1)
+    s[b + X2 * n] = settled(x2)
+    s[b + P11 * n] = c11
+    s[b + P12 * n] = c12
+    s[b + P22 * n] = c22
+    s[b + RESIDUAL * n] = residual
+    return float(residual * residual * inverse)
 
 
 class FilterParams(BlockParams):
@@ -167,6 +170,11 @@ class KalmanBank(Block):
 
     sample_by_sample: ClassVar[bool] = True
     """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants without mass or spring."""
+        return lacking(device)
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:

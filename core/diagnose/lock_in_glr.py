@@ -23,9 +23,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 from core.diagnose.weights import share_out
 
@@ -53,9 +52,7 @@ def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
     threshold = p[own + THRESHOLD]
     best = -math.inf
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         residual = s[OWN + RESIDUAL * n + i]
         w[io[RESIDUAL_TAP] + i] = residual
         w[io[NIS_TAP] + i] = nis

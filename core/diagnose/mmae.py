@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import Context, Equation, FloatArray, Oscillator, Port, kernel, parameter
+from core.block import Context, Equation, FloatArray, Port, kernel, parameter
 from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
 from core.diagnose.kalman import (
     COUNT,
@@ -23,9 +23,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 from core.diagnose.weights import weigh
 
@@ -67,9 +66,7 @@ def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
     evidence = seen and driven(p, s)
     best = -math.inf
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
         w[io[NIS_TAP] + i] = nis
         log = s[OWN + LOG * n + i]
@@ -150,11 +147,6 @@ class Mmae(KalmanBank):
         arithmetic: Literal["logarithmic", "linear"] = parameter(
             "logarithmic", "what probabilities are kept as; linear as printed", equation="5.2.3.2.6", live=False
         )
-
-    @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse plants without mass or spring."""
-        return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

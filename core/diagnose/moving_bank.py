@@ -28,9 +28,8 @@ from core.diagnose.kalman import (
     FilterParams,
     KalmanBank,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 from core.diagnose.weights import weigh
 
@@ -55,9 +54,7 @@ def moving_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
     best = -math.inf
     for j in range(3):
         i = low + j
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         w[io[RESIDUAL_TAP] + j] = s[OWN + RESIDUAL * n + i]
         w[io[NIS_TAP] + j] = nis
         log = s[OWN + LOG * n + i]

@@ -27,9 +27,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 from core.diagnose.weights import weigh
 
@@ -65,9 +64,7 @@ def reseed_step(p: Any, s: Any, w: Any, io: Any) -> None:
     evidence = seen and driven(p, s)
     best = -math.inf
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
         w[io[NIS_TAP] + i] = nis
         log = s[OWN + LOG * n + i]

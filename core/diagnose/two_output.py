@@ -26,9 +26,8 @@ from core.diagnose.kalman import (
     KalmanBank,
     KalmanParams,
     applied_voltage,
-    correct,
     driven,
-    predict,
+    filter_step,
 )
 from core.diagnose.weights import weigh
 
@@ -66,9 +65,7 @@ def two_output_step(p: Any, s: Any, w: Any, io: Any) -> None:
     drive = driven(p, s)
     best = -math.inf
     for i in range(n):
-        if not first:
-            predict(p, s, i, n, u)
-        nis = correct(p, s, i, n, z, seen)
+        nis = filter_step(p, s, i, n, u, z, first, seen)
         log = s[OWN + LOG * n + i]
         if seen and drive:
             log += -0.5 * nis - s[OWN + HALF_LOG * n + i]

@@ -35,17 +35,19 @@ def weigh(
         w[probability + i] = share
         total += share
     after = 0.0
+    inverse = 1.0 / total
     for i in range(n):
-        share = max(w[probability + i] / total, floor)
+        share = max(w[probability + i] * inverse, floor)
         w[probability + i] = share
         after += share
     shift = best + math.log(total * after)
     log_floor -= math.log(after)
+    inverse = 1.0 / after
     for i in range(n):
         share = w[probability + i]
         floored = floor > 0.0 and share == floor
         s[log + i] = log_floor if floored else s[likelihood + i] - shift
-        w[probability + i] = share / after
+        w[probability + i] = share * inverse
 
 
 @kernel

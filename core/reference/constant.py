@@ -28,4 +28,9 @@ class Constant(Waveform):
         """Nothing beyond the amplitude."""
         return []
 
+    @classmethod
+    def lines(cls, params: Any) -> list[tuple[float, float]]:
+        """One line at rest."""
+        return [(0.0, 1.0)]
+
     step = playing(constant)

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from core.block import BlockParams, Context, Equation, kernel, parameter
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
+from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing
 
 
 class Tone(BlockParams):
@@ -44,5 +44,10 @@ class MultiSine(Waveform):
         """Return the number of tones, then three numbers each."""
         rows = [[tone.frequency_hz / 1e3, tone.amplitude, tone.phase_deg / 360.0] for tone in params.tones]
         return [float(len(rows)), *(value for row in rows for value in row)]
+
+    @classmethod
+    def lines(cls, params: Any) -> list[tuple[float, float]]:
+        """Return a line for each tone."""
+        return [line(tone.frequency_hz, tone.phase_deg, tone.amplitude) for tone in params.tones]
 
     step = playing(tones)

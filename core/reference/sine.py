@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from core.block import Context, Equation, kernel, parameter
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
+from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing
 
 
 @kernel
@@ -32,5 +32,10 @@ class Sine(Waveform):
     def shape_parameters(cls, params: Any, context: Context) -> list[float]:
         """Cycles per ms and cycles at the start."""
         return [params.frequency_hz / 1e3, params.phase_deg / 360.0]
+
+    @classmethod
+    def lines(cls, params: Any) -> list[tuple[float, float]]:
+        """One line."""
+        return [line(params.frequency_hz, params.phase_deg)]
 
     step = playing(sine)

@@ -33,4 +33,13 @@ class Square(Waveform):
         """Cycles per ms and duty."""
         return [params.frequency_hz / 1e3, params.duty]
 
+    @classmethod
+    def lines(cls, params: Any) -> list[tuple[float, float]]:
+        r"""Return the constant and the odd or even harmonics, :math:`a_n=\frac{4}{n\pi}|\sin n\pi d|`."""
+        if params.frequency_hz == 0.0:
+            return [(0.0, 1.0)]
+        harmonics = [(n, 4.0 / (n * math.pi) * abs(math.sin(n * math.pi * params.duty))) for n in range(1, 8)]
+        lines = [(n * params.frequency_hz, share) for n, share in harmonics if share > 1e-9]
+        return [(0.0, 2.0 * params.duty - 1.0), *lines]
+
     step = playing(square)

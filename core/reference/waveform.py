@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, ClassVar, Self
 
@@ -58,6 +59,26 @@ class Waveform(Block):
     def shape_parameters(cls, params: Any, context: Context) -> list[float]:
         """Return the packed parameters of the waveform."""
         raise NotImplementedError
+
+    @classmethod
+    def tones(cls, params: Any, context: Context) -> list[tuple[float, float]]:
+        """Return frequency in Hz and amplitude in V of its lines, a constant at 0 Hz; none when it is broad."""
+        own = [(hz, params.volts(context) * share) for hz, share in cls.lines(params)]
+        if not own:
+            return []
+        constant = params.offset_v + sum(volts for hz, volts in own if hz == 0.0)
+        moving = [(hz, volts) for hz, volts in own if hz > 0.0 and volts != 0.0]
+        return [*moving, (0.0, constant)] if constant != 0.0 else moving
+
+    @classmethod
+    def lines(cls, params: Any) -> list[tuple[float, float]]:
+        """Return frequency in Hz and share of the amplitude of every line; none when there are no lines."""
+        return []
+
+
+def line(hz: float, phase_deg: float, share: float = 1.0) -> tuple[float, float]:
+    """Return the line of a sine; at 0 Hz it is the constant its phase makes it."""
+    return hz, share if hz > 0.0 else share * math.sin(math.radians(phase_deg))
 
 
 def playing(shape: Callable[[Any, float], float]) -> Step:

@@ -85,14 +85,14 @@ def loop_of(board: Board, b1: float | None = None) -> GainLoop:
 
 
 def _simulated(board: Board, duration_s: float) -> dict[str, float]:
-    column = board.signals.index(f"{NAME}.error") - board.signals.outputs
+    model, plant = (board.signals.index(f"{name}.displacement") for name in ("model", "plant"))
     parts: list[FloatArray] = []
     ticks = round(duration_s * 1e3 / board.dt_ms)
     while board.tick < ticks:
         rows = board.advance(ticks - board.tick)
         if rows.count == 0:
             break
-        parts.append(rows.taps[:, column].copy())
+        parts.append(rows.outputs[:, model] - rows.outputs[:, plant])  # not what the sensor says of it
     error = np.concatenate(parts)
     quarter = len(error) // 4
     dt_s = board.dt_ms * 1e-3

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from core.block import BlockParams, parameter
 from core.control.controller import normalised
+from core.errors import InputError
 from core.theory.persistency import excitation, gram_of_tones
 from scenarios.studies.study import Study
 
@@ -41,6 +42,8 @@ class Persistency(Study):
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return the figures of every input."""
         device = board.spec.context().device
+        if device.time_unit_ms > 0.0:
+            raise InputError("is a transfer function, without mass or stiffness; choose a resonator", "device.id")
         w0 = device.natural_frequency
         a1, a2, gain = normalised(device, w0)
         tones = [w / w0 for w in params.frequencies_krad_s]

@@ -27,7 +27,7 @@ class PositiveReal(Study):
     """Judges transfer functions: ``spr.<name>`` is 2 if strictly positive real, 1 if positive real, 0 if neither.
 
     With them the device of the bench in time of 1/w0: its displacement, its velocity, and displacement plus velocity
-    over nine tenths of the damping.
+    over nine tenths of the damping; a device of first order has none of these.
     """
 
     title = "Positive real"
@@ -41,14 +41,15 @@ class PositiveReal(Study):
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return the verdicts, and the smallest real part on the axis where it is finite."""
         device = board.spec.context().device
-        a1, a2, _ = normalised(device, device.natural_frequency)
-        below = [1.0, a1, a2]
         cases = [(case.name, case.numerator, case.denominator) for case in params.cases]
-        cases += [
-            ("displacement", [1.0], below),
-            ("velocity", [1.0, 0.0], below),
-            ("with_velocity", [1.0, 0.9 * a1], below),
-        ]
+        if device.mass > 0.0:
+            a1, a2, _ = normalised(device, device.natural_frequency)
+            below = [1.0, a1, a2]
+            cases += [
+                ("displacement", [1.0], below),
+                ("velocity", [1.0, 0.0], below),
+                ("with_velocity", [1.0, 0.9 * a1], below),
+            ]
         found = {}
         for name, numerator, denominator in cases:
             verdict = positive_real(numerator, denominator)

@@ -68,6 +68,12 @@ class ForkFrom(StrictBody):
     snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment")
 
 
+class Variant(StrictBody):
+    """How the second bench differs."""
+
+    set: dict[str, Any] = Field({}, description="Values by dotted path; a whole table may be one")
+
+
 @router.post("", status_code=201, dependencies=[RateLimited])
 async def create_bench(body: NewBench, service: ServiceDep, response: Response) -> Bench:
     """Make a bench and let it run."""
@@ -138,3 +144,11 @@ async def fork_bench(body: ForkFrom, session: SessionDep, service: ServiceDep, r
     twin = await service.benches.fork(session, body.snapshot)
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
     return service.view(twin)
+
+
+@router.post("/{bench_id}/variant", status_code=201, dependencies=[RateLimited])
+async def vary_bench(body: Variant, session: SessionDep, service: ServiceDep, response: Response) -> Bench:
+    """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed."""
+    made = await service.benches.variant(session, body.set)
+    response.headers["Location"] = f"/api/v1/benches/{made.id}"
+    return service.view(made)

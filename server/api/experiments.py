@@ -12,6 +12,7 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from core.board.board import Board, Checkpoint
+from core.board.flops import Budget, budget
 from core.device.frequency import response
 from core.device.identification import Identified
 from core.units import UM_PER_M
@@ -132,6 +133,19 @@ async def plants(session: SessionDep, service: ServiceDep) -> MeasuredPlants:
     """Measure what a tick costs with each plant."""
     costs = await _on_copy(session, service, plant_costs)
     return MeasuredPlants(plants=[MeasuredPlant(**asdict(cost)) for cost in costs], tick_ns=1e6 * session.dt_ms)
+
+
+@router.get("/flops", dependencies=[RateLimited])
+async def flops(
+    session: SessionDep,
+    service: ServiceDep,
+    board_mflops: Annotated[float, Query(gt=0, le=1e9, description="What the board does per second")] = 50.0,
+    function_flops: Annotated[float, Query(ge=0, le=1e4, description="What an exponential is worth")] = 20.0,
+) -> Budget:
+    """Count the operations of every diagnoser as it is now, and hold them against a board of some speed."""
+    return await _on_copy(
+        session, service, lambda kept: budget(Board.restore(kept), board_mflops * 1e6, function_flops)
+    )
 
 
 async def _on_copy(session: Session, service: Service, work: Callable[[Checkpoint], T]) -> T:

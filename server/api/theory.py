@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import math
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
+from core.diagnose.aliases import AliasMap, alias_map, hidden_um
+from core.diagnose.hypothesis import Hypothesis
 from core.errors import InputError
 from core.theory.definite import definiteness
 from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, instability_map
 from core.theory.persistency import excitation, gram_of_tones
 from core.theory.positive_real import nyquist, polynomial, positive_real
+from scenarios.design import designed
 from server.api.bodies import Body, StrictRoute
 
 router = APIRouter(prefix="/theory", tags=["theory"], route_class=StrictRoute)
@@ -118,6 +121,15 @@ class InstabilityMap(BaseModel):
     critical_gain_constant: float | None = Field(description="Limit under a constant; null: none on the map")
 
 
+class HypothesesSource(Body):
+    """A device, what may be wrong with it, and the tones that drive it."""
+
+    device: dict[str, Any] = Field({}, description="Catalogue id, and values written over it")
+    hypotheses: list[Hypothesis] = Field(min_length=2, max_length=16, description="Factors on the device")
+    tones: list[Line] = Field(min_length=1, max_length=100, description="V and Hz")
+    noise_um: float = Field(0.0, ge=0, le=100, description="Noise that could hide a difference")
+
+
 @router.post("/positive-real")
 def judge_positive_real(body: TransferFunctionSource) -> PositiveRealReport:
     """Judge a transfer function, and return its Nyquist curve over the frequencies that matter."""
@@ -170,6 +182,18 @@ def judge_persistency(body: ExcitationSource) -> ExcitationReport:
         condition=_finite(found.condition),
         exciting=found.relative > 0.0,
     )
+
+
+@router.post("/aliases")
+def map_aliases(body: HypothesesSource) -> AliasMap:
+    """Map the responses of hypotheses to tones, and name what has the same."""
+    if len({item.name for item in body.hypotheses}) < len(body.hypotheses):
+        raise InputError("names must differ", "hypotheses")
+    device = designed(body.device, {}).device.oscillator()
+    if not (device.mass > 0.0 and device.stiffness > 0.0):
+        raise InputError("needs a device with mass and spring", "device.id")
+    lines = [(tone.frequency, tone.amplitude) for tone in body.tones]
+    return alias_map(body.hypotheses, device, lines, hidden_um(body.noise_um))
 
 
 @router.post("/instability-map")

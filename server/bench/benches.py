@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from core.board.board import Board
 from core.board.condition import parse_condition
+from core.board.history import History
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -22,7 +23,9 @@ from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
+from server.bench.portrait import design_of
 from server.bench.recorder import CLOSED, Recorder
+from server.bench.replay import Replay
 from server.bench.session import Session
 from server.bench.tape import Tape
 from server.errors import ApiError, not_found
@@ -115,9 +118,7 @@ class Benches:
             scenario, board = await asyncio.to_thread(prepare, source, values, seed)
             if own_scale:
                 time_scale = usual_scale(board)
-            session = Session(
-                scenario, board, time_scale, self._settings.history_ticks, self._metrics, self._engine.clock
-            )
+            session = Session(scenario, board, time_scale, self._kept(board), self._metrics, self._engine.clock)
             await self._engine.call(self._open, session, not paused)
         finally:
             self._coming -= 1
@@ -135,6 +136,20 @@ class Benches:
             self._coming -= 1
         self._sessions[twin.id] = twin
         return twin
+
+    async def variant(self, session: Session, values: dict[str, Any]) -> Session:
+        """Make a second bench that begins as this one is set now, with values written over it.
+
+        Raises
+        ------
+        InputError
+            If the values do not fit.
+        ApiError
+            If there are too many benches.
+        """
+        document = await self._engine.call(design_of, session)
+        paused, scale = not session.is_running, session.pacer.scale
+        return await self.create(document, values, session.board.spec.seed, paused, scale)
 
     async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> Session:
         """Make a bench that plays a recording, at a multiple of the pace it was recorded at.
@@ -163,14 +178,10 @@ class Benches:
             text = f"this version cannot play it: {error}"
             raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
         about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
-        pace = min(max((about.get("time_scale") or DEFAULT_SCALE) * speed, MIN_SCALE), MAX_SCALE)
-        history = self._settings.history_ticks
-        session = Session(scenario, tape, pace, history, self._metrics, self._engine.clock)
-        session.replay_of = recording.id
-        for event in recording.events or []:
-            session.events.add(
-                *(event.get(name) for name in ("tick", "actor", "kind", "text", "command", "old", "new"))  # type: ignore[arg-type]
-            )
+        recorded = about.get("time_scale") or DEFAULT_SCALE
+        pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
+        session = Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
+        session.recorded_scale = recorded
         return session
 
     async def close_bench(self, session: Session) -> None:
@@ -224,7 +235,7 @@ class Benches:
         room_bytes : int
             How large the recording may become.
         """
-        if len(session.recorders) + len(session.armed) >= 2:
+        if len(session.recordings) >= 2:
             raise ApiError(409, "conflict", "two recordings of this bench are under way already")
         condition = parse_condition(wanted.when, session.column_of) if wanted.when is not None else None
         document = await self._engine.call(session.document)
@@ -255,13 +266,13 @@ class Benches:
         def ended(first: int, ticks: int, reason: str) -> None:
             close(first, ticks, reason)
             with contextlib.suppress(RuntimeError):  # the engine may have stopped
-                self._engine.submit(session.forget_recording, recording.id)
+                self._engine.submit(session.recordings.forget, recording.id)
 
         most = min(self._settings.max_recording_ticks, room_bytes // row_bytes)
         recorder = Recorder(recording.id, file, schema, session.dt_ms, most, ended)
         try:
             tick = await self._engine.call(
-                session.record, recorder, wanted.name, actor, wanted.past_ticks, wanted.ticks, condition
+                session.recordings.begin, recorder, wanted.name, actor, wanted.past_ticks, wanted.ticks, condition
             )
         except BaseException:
             recorder.stop(CLOSED)
@@ -275,7 +286,7 @@ class Benches:
 
     async def stop_recording(self, session: Session, recording_id: str) -> Recording:
         """End a recording and wait until its file is whole."""
-        recorder = await self._engine.call(session.stop_recording, recording_id)
+        recorder = await self._engine.call(session.recordings.stop, recording_id)
         await asyncio.to_thread(recorder.join)
         return await self._recordings.get(recording_id)
 
@@ -284,6 +295,11 @@ class Benches:
         states = Counter(session.status.state for session in self.all())
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
+
+    def _kept(self, board: Board | Tape) -> int:
+        """Return for how many ticks the signals of a board are kept."""
+        affordable = History.ticks_within(self._settings.history_mb, board.signals.outputs, len(board.signals.taps))
+        return min(self._settings.history_ticks, affordable)
 
     def _check_room(self) -> None:
         """Refuse one bench too many."""

@@ -16,7 +16,6 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from itertools import compress
 from typing import Any, Protocol, TypeVar
 
 from server.lag import Lateness
@@ -33,6 +32,10 @@ LATE_S, LATE_AGAIN_S = 0.1, 60.0
 
 SPARE_S = 0.001
 """Left of every round for the rest of the process when a bench runs as fast as possible."""
+
+
+PROCESSORS = os.cpu_count() or 1
+"""How many benches are advanced side by side."""
 
 
 class Workload(Protocol):
@@ -83,7 +86,7 @@ class Engine:
         self._wake = threading.Condition()
         self._stopping = False
         self._thread = threading.Thread(target=self._run, name="combbench-engine", daemon=True)
-        self._workers = ThreadPoolExecutor(os.cpu_count(), thread_name_prefix="combbench-bench")
+        self._workers = ThreadPoolExecutor(PROCESSORS, thread_name_prefix="combbench-bench")
         self._beat = clock()
         self._silent_until = 0.0
 
@@ -202,18 +205,28 @@ class Engine:
         return True
 
     def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> bool:
-        """Give each bench one slice in turn until all are there or the round is over; false after a job."""
-        while pairs:
-            if len(pairs) == 1:
-                unfinished = [self._slice(*pairs[0])]
-            else:
-                unfinished = list(self._workers.map(self._slice, *zip(*pairs, strict=True)))
-            pairs = list(compress(pairs, unfinished))
-            if self._run_jobs():
-                return False
-            if self.clock() >= end:
-                break
-        return True
+        """Give each bench one slice in turn until all are there or the round is over; false after a job.
+
+        Every processor takes the next bench that is waiting: passing work on costs more than a slice of it.
+        """
+        waiting = deque((work, target, True) for work, target in pairs)
+
+        def share() -> None:
+            while waiting:
+                try:
+                    work, target, first = waiting.popleft()
+                except IndexError:  # another has just taken the last
+                    return
+                if not first and (self._jobs or self.clock() >= end):
+                    return
+                if self._slice(work, target):
+                    waiting.append((work, target, False))
+
+        others = [self._workers.submit(share) for _ in range(min(len(pairs), PROCESSORS) - 1)]
+        share()
+        for other in others:
+            other.result()
+        return not self._run_jobs()
 
     def _slice(self, work: Workload, target: int | None) -> bool:
         """Advance one bench; an unexpected error stops that bench alone."""

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any, get_args
 
-import numpy as np
-
-from core.board.board import Board, Checkpoint, Rows
-from core.board.condition import Condition
+from core.board.board import Board, Checkpoint
 from core.board.history import History
+from core.board.rows import Rows
 from core.device.geometry import Geometry
 from core.errors import InputError
 from core.signals import Signal
@@ -25,8 +23,9 @@ from server.bench.commands import Loop, Pause, Seek, Start, Step, StepPeriod, Ti
 from server.bench.events import Event, EventLog
 from server.bench.pacing import Pacer
 from server.bench.portrait import MAX_PENDING, document_of, status_of
-from server.bench.recorder import CLOSED, STOPPED, WANTED, Past, Recorder
-from server.bench.status import BenchStatus, Snapshot
+from server.bench.recorder import Recorder
+from server.bench.recordings import Recordings
+from server.bench.status import Snapshot
 from server.bench.tape import Tape
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
@@ -34,7 +33,6 @@ from server.metrics import Metrics
 RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
 RUN = get_args(RunsBench)
 STATUS_S = 0.2
-LEAST_LOOP = 100
 FORK_TICKS = 20_000
 """Past a fork brings along."""
 
@@ -45,16 +43,6 @@ class Kept:
 
     snapshot: Snapshot
     checkpoint: Checkpoint
-
-
-@dataclass(frozen=True)
-class Armed:
-    """A recording that waits for a condition."""
-
-    recorder: Recorder
-    condition: Condition
-    past: int
-    ticks: int | None
 
 
 class Session:
@@ -76,6 +64,11 @@ class Session:
         The engine's clock.
     """
 
+    replay_of = ""
+    """The recording it plays, if it does."""
+    recorded_scale: float | None = None
+    """Device seconds per wall second that was recorded at."""
+
     def __init__(
         self,
         scenario: Scenario,
@@ -92,20 +85,29 @@ class Session:
         self.events = EventLog()
         self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
         self.snapshots: dict[str, Kept] = {}
-        self.recorders: dict[str, Recorder] = {}
-        self.armed: dict[str, Armed] = {}
+        self.recordings = Recordings(self)
         self._history_ticks, self._metrics, self._clock = history_ticks, metrics, clock
         self._running = False
         self._closed = False
         self._logged = 0
-        self._ends_at = board.end if isinstance(board, Tape) else scenario.samples
-        self.replay_of = ""
-        self.loop: tuple[int, int] | None = None
+        self._ends_at = scenario.samples
         self._counted = (0, 0.0)
         self._status_due = 0.0
-        self.history = History(len(board.signals), history_ticks)
+        self.history = self._no_history()
         self._index = {signal.name: signal.index for signal in board.signals}
-        self.status = self._look()
+        self.look()
+
+    def _no_history(self) -> History:
+        """Return a history with nothing in it."""
+        signals = self.board.signals
+        return History(signals.outputs, len(signals.taps), self._history_ticks)
+
+    def _rewind_history(self) -> None:
+        """Let the history follow a jump of the tick."""
+        if self.history.first_tick <= self.board.tick <= self.history.end_tick:
+            self.history.end_tick = self.board.tick
+        else:
+            self.history = self._no_history()
 
     # ---- what the engine asks
 
@@ -141,13 +143,13 @@ class Session:
         self._counted = (self.pacer.overruns, self.pacer.given_up_s)
         if now >= self._status_due:
             self._status_due = now + STATUS_S
-            self.status = self._look()
+            self.look()
 
     def fail(self, error: Exception) -> None:
         """Pause after an error nobody expected, and say so."""
         self._running = False
-        self._note("board", "failed", f"stopped by an internal error: {error}")
-        self.status = self._look()
+        self.note("board", "failed", f"stopped by an internal error: {error}")
+        self.look()
 
     # ---- what people do; all run as jobs of the engine
 
@@ -156,8 +158,8 @@ class Session:
         self._running = start
         self.pacer.anchor(self.board.tick, self._clock())
         self._sync_log()
-        self._note("board", "opened", "running" if start else "paused at the first tick")
-        self.status = self._look()
+        self.note("board", "opened", "running" if start else "paused at the first tick")
+        self.look()
 
     def execute(self, command: Any, actor: str) -> Event:
         """Carry out a command at this tick edge.
@@ -167,8 +169,7 @@ class Session:
         InputError
             If it cannot be; nothing has changed then.
         """
-        if self._closed:
-            raise not_found("bench", self.id)
+        self.must_be_open()
         if isinstance(command, RUN):
             event = self._run_command(command, actor)
         else:
@@ -179,8 +180,13 @@ class Session:
             if self.board.trip is not None:
                 self._running = False
             event = self._sync_log()[-1]
-        self.status = self._look()
+        self.look()
         return event
+
+    def must_be_open(self) -> None:
+        """Raise an error if the bench is gone."""
+        if self._closed:
+            raise not_found("bench", self.id)
 
     def reset(self, scenario: Scenario, board: Board, actor: str) -> Event:
         """Begin again with a new board of the same signals."""
@@ -193,7 +199,7 @@ class Session:
             self.pacer = Pacer(board.dt_ms * 1e-3, self.pacer.scale)
         self.scenario, self.board, self._logged = scenario, board, 0
         self._ends_at = scenario.samples
-        self.history = History(len(names), self._history_ticks)
+        self.history = self._no_history()
         event = self._jumped(actor, "reset", "reset to tick 0")
         self._sync_log()
         return event
@@ -204,7 +210,7 @@ class Session:
             raise ApiError(409, "too_many_snapshots", f"{most} snapshots are kept, the limit (max_snapshots)")
         snapshot = Snapshot(id=secrets.token_hex(6), tick=self.board.tick, name=name, created=datetime.now(UTC))
         self.snapshots[snapshot.id] = Kept(snapshot, self.board.checkpoint())
-        self._note(actor, "snapshot_taken", f"kept this moment as {name or snapshot.id}")
+        self.note(actor, "snapshot_taken", f"kept this moment as {name or snapshot.id}")
         return snapshot
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
@@ -212,10 +218,7 @@ class Session:
         kept = self.snapshot(snapshot_id)
         self.board = Board.restore(kept.checkpoint)
         self._logged = self.board.log.last
-        if self.history.first_tick <= kept.snapshot.tick <= self.history.end_tick:
-            self.history.end_tick = kept.snapshot.tick
-        else:
-            self.history = History(len(self._index), self._history_ticks)
+        self._rewind_history()
         samples = self.scenario.samples
         self._ends_at = samples if samples is not None and self.board.tick < samples else None
         return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
@@ -234,14 +237,9 @@ class Session:
         first = max(self.history.first_tick, board.tick - FORK_TICKS)
         if first < board.tick <= self.history.end_tick:
             past = self.history.read(list(range(len(self._index))), first, board.tick).T
-            outputs, taps = np.split(past, [self.board.signals.outputs], axis=1)
-            twin.history.append(
-                Rows(
-                    first, len(past), np.ascontiguousarray(outputs, np.float64), np.ascontiguousarray(taps, np.float64)
-                )
-            )
-        twin._note("api", "forked", f"forked from bench {self.id}")
-        twin.status = twin._look()
+            twin.history.append(Rows.of(first, past, self.board.signals.outputs))
+        twin.note("api", "forked", f"forked from bench {self.id}")
+        twin.look()
         return twin
 
     def snapshot(self, snapshot_id: str) -> Kept:
@@ -250,67 +248,10 @@ class Session:
             raise not_found("snapshot", snapshot_id)
         return self.snapshots[snapshot_id]
 
-    def record(
-        self, recorder: Recorder, name: str, actor: str, past: int, ticks: int | None, condition: Condition | None
-    ) -> int | None:
-        """Begin a recording here with some of the past, or arm it; returns its first tick once that is known.
-
-        Parameters
-        ----------
-        past : int
-            Ticks before the beginning that it takes along, as far as the history has them.
-        ticks : int or None
-            Ticks behind the beginning after which it ends by itself.
-        condition : Condition or None
-            What it waits for.
-        """
-        if self._closed:
-            raise not_found("bench", self.id)
-        if condition is not None:
-            self.armed[recorder.id] = Armed(recorder, condition, past, ticks)
-            self._note(actor, "recording_armed", f"recording {name} waits for its condition")
-            self.status = self._look()
-            return None
-        self._note(actor, "recording_started", f"recording {name} began")
-        return self._begin_recording(recorder, self.board.tick, past, ticks)
-
-    def _begin_recording(self, recorder: Recorder, at: int, past: int, ticks: int | None) -> int:
-        """Let a recording begin at a tick that has been or is now."""
-        history, columns = self.history, list(range(len(self._index)))
-        end = self.board.tick
-        first = min(max(at - past, history.first_tick), end) if history.end_tick == end else end
-        after = None if ticks is None else max(0, ticks - (end - at))
-        recorder.begin(Past(lambda start, stop: history.read(columns, start, stop), first, end), after)
-        self.recorders[recorder.id] = recorder
-        if not recorder.is_open:
-            self.stop_recording(recorder.id)
-        self.status = self._look()
-        return first
-
-    def stop_recording(self, recording_id: str, reason: str = STOPPED) -> Recorder:
-        """End a recording here, or one that waits."""
-        waiting = self.armed.pop(recording_id, None)
-        recorder = waiting.recorder if waiting is not None else self.recorders.get(recording_id)
-        if recorder is None:
-            raise not_found("recording under way", recording_id)
-        recorder.stop(reason)
-        if recorder.reason in WANTED:
-            self._note("board", "recording_stopped", f"a recording ended: {recorder.reason}")
-        else:
-            self._note("board", "recording_failed", f"a recording broke off: {recorder.reason}")
-        self.recorders.pop(recording_id, None)
-        self.status = self._look()
-        return recorder
-
-    def forget_recording(self, recording_id: str) -> None:
-        """Let go of a recording that has ended by itself."""
-        if recording_id in self.recorders or recording_id in self.armed:
-            self.stop_recording(recording_id)
-
     def close(self) -> list[Recorder]:
         """Stop for good; returns the recordings that were under way."""
         self._running, self._closed = False, True
-        return [self.stop_recording(key, CLOSED) for key in [*self.recorders, *self.armed]]
+        return self.recordings.close()
 
     # ---- what the event loop reads
 
@@ -355,17 +296,17 @@ class Session:
         """Carry out a command that runs the bench."""
         document = command.model_dump()
         if isinstance(command, Seek | Loop):
-            return self._play(command, actor)
+            raise InputError("only a recording that is played can do that", "kind", code="conflict")
         if isinstance(command, TimeScale):
             old = self.pacer.scale
             self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
             text = "time runs as fast as possible"
             if command.value is not None:
                 text = f"time scale set to {command.value * 1e3:g} ms/s"
-            return self._note(actor, "time_scale", text, document, old, command.value)
+            return self.note(actor, "time_scale", text, document, old, command.value)
         if isinstance(command, Pause):
             self._running = False
-            return self._note(actor, "pause", "paused", document)
+            return self.note(actor, "pause", "paused", document)
         if self.board.trip is not None:
             raise InputError(
                 f"the board has tripped: {self.board.trip.reason}",
@@ -373,54 +314,17 @@ class Session:
                 code="tripped",
             )
         if isinstance(command, Start):
-            if isinstance(self.board, Tape) and self.board.tick >= self.board.end:
-                self.board.seek(self.board.first)
-                self._rewound()
             self._running = True
             self.pacer.anchor(self.board.tick, self._clock())
-            return self._note(actor, "start", "started", document)
+            return self.note(actor, "start", "started", document)
         self._running = False
         ticks = command.ticks if isinstance(command, Step) else self._period()
         goal = self.board.tick + ticks
-        event = self._note(actor, command.kind, f"stepped {ticks} tick{'s' if ticks > 1 else ''}", document)
+        event = self.note(actor, command.kind, f"stepped {ticks} tick{'s' if ticks > 1 else ''}", document)
         while self.board.tick < goal and self.board.trip is None:
             if not self._advance(min(self.board.chunk, goal - self.board.tick)):
                 break
         return event
-
-    def _play(self, command: Seek | Loop, actor: str) -> Event:
-        """Carry out a command to a bench that plays a recording."""
-        tape = self.board
-        if not isinstance(tape, Tape):
-            raise InputError("only a recording that is played can do that", "kind", code="conflict")
-        if isinstance(command, Seek):
-            tape.seek(command.tick)
-            self._rewound()
-            return self._note(actor, "seek", f"went to tick {command.tick}", command.model_dump())
-        if command.start_tick is None and command.end_tick is None:
-            self.loop, self._ends_at = None, tape.end
-            return self._note(actor, "loop", "plays to the end", command.model_dump())
-        start = tape.first if command.start_tick is None else command.start_tick
-        end = tape.end if command.end_tick is None else command.end_tick
-        if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
-            text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
-            raise InputError(text, "end_tick")
-        self.loop, self._ends_at = (start, end), end
-        if not start <= tape.tick < end:
-            tape.seek(start)
-            self._rewound()
-        return self._note(actor, "loop", f"plays ticks {start} to {end} again and again", command.model_dump())
-
-    def _rewound(self) -> None:
-        """Let history and clock follow a jump of the tick."""
-        tick = self.board.tick
-        if self.history.first_tick <= tick <= self.history.end_tick:
-            self.history.end_tick = tick
-        else:
-            self.history = History(len(self._index), self._history_ticks)
-        if self._ends_at is None and isinstance(self.board, Tape):
-            self._ends_at = self.board.end
-        self.pacer.anchor(tick, self._clock())
 
     def _period(self) -> int:
         """Return the drive period as a number of ticks one may step."""
@@ -435,64 +339,35 @@ class Session:
         if rows.count:
             self.history.append(rows)
             self._metrics.ticks.inc(rows.count)
-            if self.recorders:
-                self._record(rows)
-            if self.armed:
-                self._watch(rows)
+            self.recordings.take(rows)
         if self.board.log.last > self._logged:
             self._sync_log()
         if self.board.trip is not None and self._running and not self._has_due():
             self._running = False
-            self.status = self._look()
+            self.look()
         return rows.count
 
     def _has_due(self) -> bool:
         """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
         return any(entry.tick is not None and entry.tick <= self.board.tick for entry in self.board.pending)
 
-    def _record(self, rows: Rows) -> None:
-        """Hand copies to the recordings; one that has ended by itself is let go."""
-        with np.errstate(over="ignore"):  # what is too large for a recording is infinite there
-            samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
-        for key, recorder in list(self.recorders.items()):
-            recorder.append(rows.first_tick, samples)
-            if not recorder.is_open:
-                self.stop_recording(key)
-
-    def _watch(self, rows: Rows) -> None:
-        """Begin the armed recordings whose condition holds at some tick of these."""
-        for key, waiting in list(self.armed.items()):
-            column = self._index[waiting.condition.signal]
-            values = np.hstack((rows.outputs, rows.taps))[:, column]
-            found = np.flatnonzero(waiting.condition.sign * (values - waiting.condition.threshold) > 0.0)
-            if found.size:
-                del self.armed[key]
-                at = rows.first_tick + int(found[0])
-                self._note("board", "recording_started", f"a recording began: its condition held at tick {at}")
-                self._begin_recording(waiting.recorder, at, waiting.past, waiting.ticks)
-
     def _finish(self) -> None:
-        """Pause at the end of the scenario; starting again goes beyond it. A loop begins anew."""
-        if self.loop is not None and isinstance(self.board, Tape):
-            self.board.seek(self.loop[0])
-            self._rewound()
-            return
+        """Pause at the end of the scenario; starting again goes beyond it."""
         self._running, self._ends_at = False, None
-        self._note("scenario", "finished", "scenario finished; start again to go on")
-        self.status = self._look()
+        self.note("scenario", "finished", "scenario finished; start again to go on")
+        self.look()
 
     def _jumped(self, actor: str, kind: str, text: str) -> Event:
         """Note that time has jumped: recordings end, the clock is anchored anew."""
-        for key in [*self.recorders, *self.armed]:
-            self.stop_recording(key, f"the bench was {kind}")
+        self.recordings.close(f"the bench was {kind}")
         if self.board.trip is not None:
             self._running = False
         self.pacer.anchor(self.board.tick, self._clock())
-        event = self._note(actor, kind, text)
-        self.status = self._look()
+        event = self.note(actor, kind, text)
+        self.look()
         return event
 
-    def _note(
+    def note(
         self,
         actor: str,
         kind: str,
@@ -503,13 +378,7 @@ class Session:
     ) -> Event:
         """Add an event of the bench itself."""
         self._metrics.events.labels(kind).inc()
-        return self._tell(self.events.add(self.board.tick, actor, kind, text, command, old, new))
-
-    def _tell(self, event: Event) -> Event:
-        """Let the recordings under way have an event."""
-        for recorder in self.recorders.values():
-            recorder.note(event.model_dump_json())
-        return event
+        return self.recordings.tell(self.events.add(self.board.tick, actor, kind, text, command, old, new))
 
     def _sync_log(self) -> list[Event]:
         """Take over what the board has logged since the last time."""
@@ -519,10 +388,10 @@ class Session:
             event = self.events.add(
                 entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new
             )
-            added.append(self._tell(event))
+            added.append(self.recordings.tell(event))
         self._logged = self.board.log.last
         return added
 
-    def _look(self) -> BenchStatus:
-        """Look at the board: an object nobody changes afterwards."""
-        return status_of(self)
+    def look(self) -> None:
+        """Renew the status: an object nobody changes afterwards."""
+        self.status = status_of(self)

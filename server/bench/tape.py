@@ -9,7 +9,8 @@ import numpy as np
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from core.board.board import Board, Rows
+from core.board.board import Board
+from core.board.rows import Rows
 from core.errors import InputError
 from server.store.recording import first_tick
 
@@ -53,11 +54,11 @@ class Tape:
         """Read up to ``n`` ticks, to the end of the recording or of a piece of its file."""
         count = min(n, self._board.chunk, self.end - self.tick)
         if count <= 0:
-            return self._rows(np.zeros((0, self._width)))
+            return self._rows(np.zeros((0, self._width), np.float32))
         number = int(np.searchsorted(self._edges, self.tick, "right")) - 1
         samples = self._read(number)
         start = self.tick - int(self._edges[number])
-        found = self._rows(samples[start : start + count].astype(np.float64))
+        found = self._rows(samples[start : start + count])
         self.tick += found.count
         return found
 
@@ -95,6 +96,5 @@ class Tape:
             self._group = number, samples
         return self._group[1]
 
-    def _rows(self, samples: NDArray[np.float64]) -> Rows:
-        outputs, taps = np.split(samples, [self._outputs], axis=1)
-        return Rows(self.tick, len(samples), np.ascontiguousarray(outputs), np.ascontiguousarray(taps))
+    def _rows(self, samples: NDArray[np.float32]) -> Rows:
+        return Rows.of(self.tick, samples, self._outputs)

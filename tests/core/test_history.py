@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.board.board import Rows
 from core.board.history import History
+from core.board.rows import Rows
 from tests.lab import RICH, make
 
 SIGNALS = 3
@@ -26,7 +26,7 @@ def feed(history: History, data: np.ndarray, chunks: list[int], first: int = 0) 
         n = min(chunks[0], len(data) - at)
         chunks = [*chunks[1:], chunks[0]]
         part = data[at : at + n]
-        history.append(Rows(first + at, n, part[:, :2], part[:, 2:]))
+        history.append(Rows.of(first + at, part, 2))
         at += n
 
 
@@ -50,7 +50,7 @@ def expected_columns(data: np.ndarray, kept: range, start: int, stop: int, colum
     spans=st.lists(st.tuples(st.floats(-0.2, 1.2), st.floats(0.0, 1.2), st.integers(1, 900)), min_size=1, max_size=6),
 )
 def test_columns_against_plain_arrays(n, chunks, spans):
-    history = History(SIGNALS, 8192)
+    history = History(2, SIGNALS - 2, 8192)
     assert history.capacity == 8192 + 4096
     data = signal(n)
     feed(history, data, [max(chunk, n // 400 + 1) for chunk in chunks])
@@ -67,7 +67,7 @@ def test_columns_against_plain_arrays(n, chunks, spans):
 
 @pytest.mark.parametrize("n", [100, 8191, 8192, 8193, 20_000, 65_536])
 def test_read_is_exact_after_wrapping(n):
-    history = History(SIGNALS, 8192)
+    history = History(2, SIGNALS - 2, 8192)
     data = signal(n)
     feed(history, data, [512])
     assert history.first_tick == max(0, n - 8192)
@@ -79,16 +79,16 @@ def test_read_is_exact_after_wrapping(n):
 
 
 def test_columns_outside_of_what_is_kept_are_empty():
-    history = History(SIGNALS, 8192)
+    history = History(2, SIGNALS - 2, 8192)
     feed(history, signal(300), [100])
     found = history.columns([0], -100, 400, 5)
     assert np.all(np.isnan(found[0, :, 0])) and np.all(np.isnan(found[0, :, 4]))
     assert np.all(np.isfinite(found[0, :, 1:4]))
-    assert np.all(np.isnan(History(SIGNALS, 8192).columns([0, 1], 0, 100, 10)))
+    assert np.all(np.isnan(History(2, SIGNALS - 2, 8192).columns([0, 1], 0, 100, 10)))
 
 
 def test_more_columns_than_ticks_repeat_the_ticks():
-    history = History(SIGNALS, 8192)
+    history = History(2, SIGNALS - 2, 8192)
     data = signal(100)
     feed(history, data, [7])
     found = history.columns([1], 10, 20, 40)
@@ -97,7 +97,7 @@ def test_more_columns_than_ticks_repeat_the_ticks():
 
 
 def test_a_jump_in_time_starts_a_new_history():
-    history = History(SIGNALS, 8192)
+    history = History(2, SIGNALS - 2, 8192)
     feed(history, signal(5000), [512])
     data = signal(3000, seed=4)
     feed(history, data, [100], first=1234)
@@ -127,7 +127,7 @@ def last_crossing(x: np.ndarray, rising: bool, level: float, hysteresis: float, 
     ends=st.tuples(st.integers(0, 11_000), st.integers(0, 11_000)),
 )
 def test_crossing_against_plain_arrays(level, hysteresis, rising, ends):
-    history = History(SIGNALS, 8192)
+    history = History(2, SIGNALS - 2, 8192)
     data = signal(10_000, seed=2)
     feed(history, data, [512])
     start, stop = min(ends), max(ends)
@@ -139,7 +139,7 @@ def test_crossing_against_plain_arrays(level, hysteresis, rising, ends):
 def test_hysteresis_ignores_noise_around_the_level():
     t = np.arange(4000)
     x = np.sin(2 * np.pi * t / 400) + 0.05 * np.random.default_rng(1).normal(size=4000)
-    history = History(SIGNALS, 8192)
+    history = History(2, SIGNALS - 2, 8192)
     feed(history, np.column_stack([x, x, x]), [512])
 
     def crossings(hysteresis: float) -> list[int]:
@@ -155,7 +155,7 @@ def test_hysteresis_ignores_noise_around_the_level():
 
 def test_history_of_a_board_holds_its_signals_at_full_rate():
     board = make({}, base=RICH)
-    history = History(len(board.signals), 8192)
+    history = History(board.signals.outputs, len(board.signals.taps), 8192)
     kept = []
     for n in (3, 512, 100):
         rows = board.advance(n)

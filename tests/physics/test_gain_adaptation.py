@@ -92,5 +92,8 @@ def test_first_order_is_stable_at_any_gain():
 def test_study_needs_its_controller_and_follows_its_parameters():
     with pytest.raises(InputError, match=r"controller\.kind"):
         run(with_values(get("appB-mit"), {"controller": {"kind": "open_loop"}}))
+    noisy = run(with_values(get("appB-mit"), {"sensor.noise_um": 0.02, "study.frequencies": []})).metrics
+    assert noisy["adaptation.period_s"] == pytest.approx(2 * math.pi, abs=0.2)
+    assert noisy["adaptation.growth_per_s"] == pytest.approx(noisy["adaptation.growth_theory_per_s"], abs=0.002)
     half = run(with_values(get("appB-mit"), {"reference.amplitude_v": 2.0, "study.frequencies": []}))
     assert half.metrics["adaptation.critical_gain"] == pytest.approx(0.125, rel=1e-3)

@@ -103,6 +103,28 @@ def test_trace_limit_and_gain_floor_hold_without_excitation():
     assert free["indirect_mrac.trace"].max() > 1e5
 
 
+@pytest.mark.parametrize("stiffness", [0.5, 1.0, 1.46])
+def test_effort_falls_only_for_a_softer_device(stiffness):
+    """|G_nominal/G_fault| at 1 krad/s: what figure 3.3.3.5 shows is half the stiffness, not more mass."""
+    board = make({"controller": {"kind": "indirect_mrac"}})
+    inject(board, stiffness=stiffness - 1)
+    trace = play(board, 10_000)
+    u, r = (phasor(trace[f"{name}.voltage"][7500:], KRAD, 0.01) for name in ("drive", "reference"))
+    s = 1j / W0
+    assert abs(u / r) == pytest.approx(abs((s**2 + A1 * s + stiffness) / (s**2 + A1 * s + 1)), rel=0.01)
+
+
+def test_what_is_left_of_the_error_goes_with_the_sample():
+    def left(rate_khz: int) -> float:
+        board = make({"controller": {"kind": "indirect_mrac"}, "reference": TWO_TONES, "sample_rate_khz": rate_khz})
+        inject(board, added_mass=0.05, stiffness=0.8)
+        return rms(tail(play(board, 100 * rate_khz)))
+
+    found = [left(rate) for rate in (50, 100, 200)]
+    assert found[0] / found[1] == pytest.approx(2.0, rel=0.15) and found[1] / found[2] == pytest.approx(2.0, rel=0.15)
+    assert found[1] < 0.015
+
+
 def test_ten_times_the_mass_is_easier_than_for_the_direct_law():
     peaks = {}
     for kind in ("indirect_mrac", "mrac"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import inspect
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +67,31 @@ def test_ideal_gains_of_the_law_with_velocity_match(faults):
     )
     np.testing.assert_allclose(left, np.polymul([1.0, 1.0], [1.0, A1, 1.0]), atol=1e-9)
     assert th[0] == pytest.approx(m, rel=1e-12)
+
+
+@pytest.mark.parametrize("fault", [{}, AGED, {"damping": 4.0}])
+def test_the_plain_law_on_the_displacement_alone_fails(fault):
+    """As printed, not positive real: lost from g = 0.01 on, the healthy device too; under a constant R, with the gain
+    on r alone, from a1/(kp R^2) = 0.007 on, by Routh. With the velocity thirty times that does no harm.
+    """
+
+    def left(form: str, gain: float) -> float:
+        law = {"kind": "mrac_velocity", "form": form, "adaptation_gain": gain}
+        board = make({"controller": law, "guard.rail_ms": 1e6, "guard.travel_um": 1000})
+        inject(board, **fault)
+        trace = play(board, 20_000)
+        return math.inf if board.trip else rms(tail(trace))
+
+    assert 0.001 < A1 / (abs(KP) * 10**2) < 0.01
+    assert left("printed", 0.001) < 0.1
+    assert left("printed", 0.1) > 1.0
+    assert left("relative_degree_one", 0.1) < left("relative_degree_one", 0.03) + 0.002 < 0.005
+    # the gain is that of the plain law: nothing on the velocity, and the ideal gains those of relative degree two
+    board = make({"controllers": {"mrac_velocity": {"form": "printed"}}})
+    inject(board, **fault)
+    trace = play(board, 3)
+    for name in LABELS:
+        assert trace[f"mrac_velocity.gain_ideal.{name}"][-1] == trace[f"mrac.gain_ideal.{name}"][-1]
 
 
 def test_mrac_with_velocity_follows_and_learns_in_shadow():
@@ -141,6 +167,7 @@ def test_a_mutilated_law_breaks_its_promise(mutant: str, tmp_path: Path, monkeyp
     file.write_text(source)
     spec = importlib.util.spec_from_file_location("control.mrac", file)
     module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, "control.mrac", module)  # where its annotations are looked up
     spec.loader.exec_module(module)
     monkeypatch.setitem(registry.blocks("control"), "mrac", module.Mrac)
     assert keeps_its_promise() == (not mutant)

@@ -73,6 +73,21 @@ def test_pid_follows_with_the_published_error():
     assert found["control.tail_rms_error_um"] == pytest.approx(0.062, abs=0.005)
 
 
+def test_pid_has_little_room():
+    """Poles further out, half the sample rate, or a mass it was not made for, and it swings for ever."""
+
+    def left(values: dict[str, Any], **faults: float) -> float:
+        law = {"kind": "pid", "pole": 1.3, **values.pop("controller", {})}
+        return figures({"guard.rail_ms": 1e6, **values, "controller": law}, faults)["control.tail_rms_error_um"]
+
+    assert left({"sensor.noise_um": 0.01}) == pytest.approx(0.062, abs=0.005)
+    assert 0.06 < left({"controller": {"pole": 2.0}, "sensor.noise_um": 0.01}) < 0.13
+    assert left({"controller": {"pole": 2.5}}) > 0.2
+    assert left({"sample_rate_khz": 50}) == pytest.approx(0.32, abs=0.05)
+    assert left({}, added_mass=9.0) == pytest.approx(1.26, abs=0.1)
+    assert left({}, added_mass=-0.9) > 1.0
+
+
 def test_pid_integral_does_not_wind_up():
     """The target is out of reach for 30 ms, then within reach: the voltage leaves the limit at once."""
     values = {

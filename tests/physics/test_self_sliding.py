@@ -109,7 +109,8 @@ def test_augmented_form_is_the_loop_of_the_equations():
         u = min(max(theta @ w, -30), 30)
         ys.append(x[0])
         us.append(u)
-    board = make({"device.id": "ch4", "controller": {"kind": "self_sliding"}})
+    law = {"kind": "self_sliding", "adaptation_gain": g, "alpha_gain": 0.01}
+    board = make({"device.id": "ch4", "controller": law})
     inject(board, stiffness=k - 1)
     trace = play(board, 1500)
     # the sign of what is only rounding is nobody's: compare until the two take different sides of the surface
@@ -127,6 +128,30 @@ def test_regulator_figures():
     assert overshoot == pytest.approx(24.6, abs=2) and settled(mrac, 2.0) == pytest.approx(11.0, abs=0.6)
     sliding = trace_of(REGULATOR, {**SLIDING, "adaptation_gain": 1.0}, 30_000)
     assert 100 * (sliding["plant.displacement"].max() / 2 - 1) < 4 and settled(sliding, 2.0) < 5.5
+
+
+@pytest.mark.parametrize("gain", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("pole", [0.5, 1.0, 3.0])
+def test_regulator_overshoots_less_than_mrac_at_the_same_number_for_the_gain(pole, gain):
+    model = {"kind": "transfer_function", "numerator": [pole], "denominator": [1.0, pole]}
+    peaks = [
+        trace_of({**REGULATOR, "model": model}, {**law, "adaptation_gain": gain}, 30_000)["plant.displacement"].max()
+        for law in (SLIDING, MRAC)
+    ]
+    assert peaks[0] < peaks[1]
+
+
+def test_the_same_number_is_another_gain_for_another_target():
+    """P0 sgn(e) and g e differ in dimension: a hundredth of the target is a hundredth of the error and of r."""
+    small = {**REGULATOR, "reference": {"kind": "constant", "amplitude_v": 0.02}}
+    for law, theirs in ((MRAC, 1001), (SLIDING, 129)):
+        peak = trace_of(small, {**law, "adaptation_gain": 1.0}, 60_000)["plant.displacement"].max()
+        assert 100 * (peak / 0.02 - 1) == pytest.approx(theirs, rel=0.02)
+    # a law linear in r^2 g is the same again with g times the square of the scale; the sign law with P0 times it
+    for law, power in ((MRAC, 2), (SLIDING, 1)):
+        scaled = trace_of(small, {**law, "adaptation_gain": 100.0**power}, 10_000)["plant.displacement"]
+        whole = trace_of(REGULATOR, {**law, "adaptation_gain": 1.0}, 10_000)["plant.displacement"]
+        np.testing.assert_allclose(100 * scaled, whole, rtol=0, atol=0.02)
 
 
 @pytest.mark.parametrize("layer", [0.2, 0.1])
@@ -179,6 +204,31 @@ def test_tracking_figures_at_gain_4():
 
 def test_the_first_peak_is_the_other_way_round_at_small_gains():
     assert tracked("self_sliding", 0.5)[0] > 50 > 0 > tracked("mrac_velocity", 0.5)[0]
+
+
+def test_the_first_trough_is_the_other_way_round_at_gain_4():
+    found = []
+    for law in (MRAC, SLIDING):
+        trace = trace_of(TRACKING, {**law, "adaptation_gain": 4.0}, 2000)
+        y, m = (trace[f"{name}.displacement"][300:1600].min() for name in ("plant", "model"))
+        found.append(100 * (y / m - 1))
+    assert found == pytest.approx([73, 82], abs=3)
+
+
+def test_what_stays_of_the_error_is_the_missing_order():
+    """Plain MRAC has three static gains for a model of second order; with filters there are gains that match."""
+
+    def late(law: dict[str, Any]) -> float:
+        trace = trace_of(TRACKING, {**law, "adaptation_gain": 4.0}, 200_000)
+        return rms((trace["plant.displacement"] - trace["model.displacement"])[-20_000:])
+
+    assert late({**MRAC, "filters": True}) < 0.002 < 0.005 < late(SLIDING) < 0.02 < 0.04 < late(MRAC)
+
+
+def test_switching_with_bounds_tracks_with_error():
+    bound = {"kind": "vsmrc", "nominal": False, "reference_bound": 1.2, "output_bound_v_um": 2.0}
+    left = [rms(tail(trace_of(TRACKING, {**bound, "layer_um": layer}, 20_000))) for layer in (0.1, 0.2, 0.5)]
+    assert 0.05 < left[0] < left[1] < left[2]
 
 
 # -- 20: double integrator

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_continuous_are
 
-from core.board.spec import with_values
+from core.board.document import with_values
 from tests.lab import QUIET, do, inject, make, play, rms
 from tests.loop import A1, KP, KRAD, W0, held, simulate, tail
 
@@ -85,6 +86,19 @@ def test_sliding_law_is_the_loop_of_the_equations(kind):
         np.testing.assert_allclose(true, [KP / 1.05, 1.8 / 1.05, A1 / 1.05], rtol=1e-9)
 
 
+@pytest.mark.parametrize("weight", [0.25, 1.0, 4.0])
+def test_the_surface_is_the_row_of_the_riccati_equation(weight):
+    """Along s = 0 the error obeys e' = v, whose cost Q e^2 + R v^2 is least for v = -B'P/R e: the row [B'P/R, 1]."""
+    row = solve_continuous_are(np.zeros((1, 1)), np.eye(1), weight * np.eye(1), np.eye(1)).item()
+    board = make({"controller": {"kind": "pid"}, "controllers": {"stvsc": {"surface_weight": weight}}})
+    inject(board, **AGED)
+    trace = play(board, 500)
+    e = trace["model.displacement"] - trace["plant.displacement"]
+    rate = trace["model.velocity"] - trace["plant.velocity"]
+    assert np.abs(e).max() > 0.01
+    np.testing.assert_allclose(trace["stvsc.surface"], row * e + rate / W0, atol=1e-9)
+
+
 # -- 10: the estimator
 
 
@@ -101,6 +115,23 @@ def test_estimator_finds_what_the_input_excites(tones):
         assert max(wrong) > 0.04 and np.abs(trace["stvsc.prediction_error"][-500:]).max() < 1e-6
     else:
         assert max(wrong) < 0.03
+
+
+def test_estimator_without_its_normaliser_runs_away():
+    """A sample multiplies the error along w by 1 - h g w'w, with w'w = W sin^2 h g W/4 in the geometric mean."""
+    largest = (10.0**2 + (KP * 10.0) ** 2) / (1 + W0**-2) ** 2  # 10 V at 1 krad/s through 1/(s + 1)^2, G = I
+    limit = 4.0 / (0.01 * W0 * largest)
+    assert 0.2 < limit < 0.3
+
+    def end(gain: float, **law: Any) -> float:
+        own = {"estimator_gain": gain, "output_weight": 1.0, **law}
+        board = make({"controllers": {"stvsc": own}})
+        inject(board, added_mass=0.05)
+        return abs(play(board, 10_000)["stvsc.prediction_error"][-700:]).max()
+
+    assert end(0.1, normalise=False) < 0.01
+    assert not end(1.2 * limit, normalise=False) < 1e6
+    assert end(1.2 * limit) < 0.01
 
 
 def test_estimator_lyapunov_function_falls_as_theory_says():
@@ -234,3 +265,14 @@ def test_who_holds_the_shuttle_past_the_fold(kind, holds):
         assert not np.any(past & (np.sign(trace["drive.voltage"][2000:]) == np.sign(x[2000:])))
     else:
         assert trace["plant.contact"].any()
+
+
+@pytest.mark.parametrize(("kind", "holds"), [("stvsc", True), ("pid", True), ("mrac", False)])
+@pytest.mark.parametrize("noise_um", [0.01, 0.03])
+def test_who_holds_it_under_noise(kind, holds, noise_um):
+    """A PID with poles at 1.3 w0 amplifies noise too much for the bias of 5 V; with 1.0 it holds at these."""
+    for seed in (2, 11):
+        values = {"controller.kind": kind, "controllers.pid.pole": 1.0, "sensor.noise_um": noise_um, "seed": seed}
+        trace = play(make(values, base=PULL_IN), 4000)
+        assert trace["plant.contact"].any() != holds
+        assert not holds or rms(tail(trace)) < 0.12

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from tests.lab import do, inject, make, play, rms
 
@@ -12,17 +13,18 @@ NINE = ("pid", "mrac", "indirect_mrac", "stvsc", "self_sliding", "mrac", "stvsc"
 AGED = {"added_mass": 0.05, "stiffness": 0.8}
 
 
-def takeovers(first: str, order: tuple[str, ...], *, cold: bool = False, faults: dict[str, float] = AGED):
+def takeovers(first: str, order: tuple[str, ...], *, cold: bool = False, faults: dict[str, float] = AGED, values=None):
     """Switch between controllers; return the worst error within 5 ms and the jump of voltage of each switch."""
-    board = make({"controller.kind": first})
+    board = make({"controller.kind": first, **(values or {})})
+    ms = round(1 / board.dt_ms)
     inject(board, **faults)
-    trace = play(board, 6000)
+    trace = play(board, 60 * ms)
     found = []
     for name in order:
         before = trace["drive.voltage"][-1]
         do(board, {"kind": "switch", "controller": name, "cold": cold})
-        trace = play(board, 2000)
-        worst = np.abs(trace["plant.displacement"] - trace["model.displacement"])[:500].max()
+        trace = play(board, 20 * ms)
+        worst = np.abs(trace["plant.displacement"] - trace["model.displacement"])[: 5 * ms].max()
         found.append((worst, abs(trace["drive.voltage"][0] - before)))
     assert board.trip is None
     return np.array(found)
@@ -37,9 +39,45 @@ def test_nine_switches_among_controllers_that_ran_in_shadow():
     assert cold[:, 1].max() > 5.0
 
 
+@pytest.mark.parametrize("rate_khz", [100, 200])
+@pytest.mark.parametrize("noise_um", [0.0, 0.01])
+@pytest.mark.parametrize(
+    "order",
+    [
+        ("self_sliding", *NINE),
+        # each of the five after each of the others, in two stories that begin with the laggard
+        (
+            "pid",
+            "self_sliding",
+            "indirect_mrac",
+            "self_sliding",
+            "stvsc",
+            "mrac",
+            "self_sliding",
+            "pid",
+            "stvsc",
+            "pid",
+        ),
+        ("stvsc", "indirect_mrac", "mrac", "pid", "self_sliding", "stvsc", "self_sliding", "mrac", "stvsc", "pid"),
+    ],
+)
+def test_nine_switches_in_any_order(order, noise_um, rate_khz):
+    """What a PID leaves is 0.157 um at its peak on this device; nobody who takes over from it makes it worse."""
+    values = {"sensor.noise_um": noise_um, "sample_rate_khz": rate_khz, "seed": 5}
+    found = takeovers(order[0], order[1:], values=values)
+    assert found[:, 0].max() < 0.2
+
+
 def test_mrac_with_velocity_takes_over_as_well():
     found = takeovers("mrac", ("mrac_velocity", "stvsc", "mrac_velocity"))
     assert found[:, 0].max() < 0.2 and found[:, 1].max() < 1.0
+
+
+def test_printed_auxiliary_error_spoils_the_shadow():
+    """Taken from the voltage MRAC asked for, while PID drives with another, it accuses the device of the difference."""
+    for auxiliary, bumpless in (("applied", True), ("printed", False)):
+        (worst, _), *_ = takeovers("pid", ("mrac",), values={"controllers.mrac.auxiliary": auxiliary})
+        assert (worst < 0.2) == bumpless and (worst > 1.0) != bumpless
 
 
 def test_nine_switches_on_a_healthy_device():

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from core import registry
 from core.board.board import CHUNK, Board
 from scenarios.interconnected import adaptive_loop, simulate
-from scenarios.speed import ADAPTIVE, advance_cost, interconnected_sample
+from scenarios.speed import ADAPTIVE, GAIN, advance_cost, block_costs, interconnected_sample, loop_cost
 from tests.lab import inject, make, play
 
 pytest.importorskip("control")
@@ -32,5 +33,19 @@ def test_mrac_is_what_python_control_simulates(rate_khz):
 def test_board_is_much_faster_than_the_interconnected_simulation():
     board = Board(ADAPTIVE)
     board.advance(CHUNK)
+    peer = interconnected_sample(board)()
+    assert peer > 700 * loop_cost(board, ["plant", "effects", "sensor", "reference", "model", "mrac", "drive"])
     # even with everything else on the board
-    assert interconnected_sample(board)() > 100 * advance_cost(board, 10 * CHUNK)
+    assert peer > 100 * advance_cost(board, 10 * CHUNK)
+
+
+@pytest.mark.slow
+def test_every_controller_has_its_price():
+    costs = {}
+    for document in (ADAPTIVE, GAIN):
+        board = Board(document)
+        board.advance(CHUNK)
+        for name in board.spec.controllers:
+            costs |= block_costs(board, name)
+    assert set(costs) == set(registry.blocks("control"))
+    assert all(-5.0 < ns < 500.0 for ns in costs.values())

@@ -59,6 +59,10 @@ def test_a_study_says_what_it_cannot_do():
     with pytest.raises(InputError) as error:
         run(Scenario.load({"schema": 1, "device": {"id": "ch3"}, "study": {"kind": "process_spread"}}))
     assert error.value.field == "device.id"
+    with pytest.raises(InputError, match=r"device\.id: .*choose a resonator"):
+        run(with_values(get("appA-persistency"), {"device.id": "unstable-first-order"}))
+    first = run(with_values(get("appA-spr"), {"device.id": "unstable-first-order"})).metrics
+    assert first["spr.chapter_4_model"] == 2.0 and "spr.displacement" not in first
     assert set(studies()) >= {"process_spread", "frequency_response", "beam_width", "printed_table", "swept_sine"}
 
 

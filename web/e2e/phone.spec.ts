@@ -10,6 +10,6 @@ test("a phone shows status, scope and lanes, and stops the bench", async ({ page
   expect(overflow).toBeLessThanOrEqual(0);
   await page.getByRole("button", { name: "Stop" }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
-  await page.getByRole("button", { name: "Run" }).click();
+  await page.getByRole("button", { name: "Run", exact: true }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
 });

@@ -104,7 +104,7 @@ def test_what_was_under_way_at_a_crash_is_marked_and_kept(serve: Any, tmp_path: 
         path = live.service.recordings.path(finished["id"])
         table = pq.read_table(path)
         session: Session = live.service.benches.get(bench["id"])
-        assert session.recorders == {}
+        assert len(session.recordings) == 0
     import pyarrow as pa
 
     from server.store.database import Database

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.board.board import Rows
 from core.board.history import History
+from core.board.rows import Rows
 from server.stream.codec import FROZEN, TRIGGERED, WAITING
 from server.stream.panel import Panel, Span
 from server.stream.wire import Subscribe, TriggerSpec
@@ -22,7 +22,7 @@ def fill(history: History, values: np.ndarray[Any, Any]) -> None:
     """Append a signal (and its negative as a tap) behind what is there."""
     for start in range(0, len(values), 100):
         part = np.ascontiguousarray(values[start : start + 100, None], np.float64)
-        history.append(Rows(history.end_tick, len(part), part, -part))
+        history.append(Rows.of(history.end_tick, np.hstack([part, -part]), part.shape[1]))
 
 
 def panel(head: int = 0, **fields: Any) -> Panel:
@@ -51,7 +51,7 @@ def test_a_frozen_span_covers_what_was_asked(start: int, length: int, width: int
 
 
 def test_a_rolling_picture_keeps_its_columns_while_it_moves() -> None:
-    history = History(2, 20_000)
+    history = History(1, 1, 20_000)
     rng = np.random.default_rng(1)
     fill(history, rng.normal(size=1003))
     rolling = panel(window_ms=8.0, width=100)
@@ -67,7 +67,7 @@ def test_a_rolling_picture_keeps_its_columns_while_it_moves() -> None:
 
 
 def test_a_spike_of_one_tick_is_never_lost() -> None:
-    history = History(2, 200_000)
+    history = History(1, 1, 200_000)
     values = np.zeros(100_000)
     values[77_777] = 5.0
     fill(history, values)
@@ -77,7 +77,7 @@ def test_a_spike_of_one_tick_is_never_lost() -> None:
 
 
 def test_the_same_picture_is_not_sent_twice() -> None:
-    history = History(2, 20_000)
+    history = History(1, 1, 20_000)
     fill(history, np.zeros(50))
     for kind in ({"mode": "roll"}, {"mode": "frozen", "start_tick": 0, "end_tick": 40}):
         one = panel(**kind)
@@ -86,7 +86,7 @@ def test_the_same_picture_is_not_sent_twice() -> None:
 
 
 def test_a_frozen_picture_follows_until_its_end_is_reached() -> None:
-    history = History(2, 20_000)
+    history = History(1, 1, 20_000)
     fill(history, np.zeros(50))
     frozen = panel(mode="frozen", start_tick=20, end_tick=80, width=60)
     first = frozen.picture(history)
@@ -100,7 +100,7 @@ def test_a_frozen_picture_follows_until_its_end_is_reached() -> None:
 
 
 def test_a_bench_that_goes_back_in_time_is_shown_again() -> None:
-    history = History(2, 20_000)
+    history = History(1, 1, 20_000)
     fill(history, sine(1000))
     auto, rolling = triggered("auto", head=1000), panel()
     assert auto.picture(history) and rolling.picture(history)
@@ -124,7 +124,7 @@ def triggered(sweep: str, **fields: Any) -> Panel:
 
 
 def test_a_triggered_picture_stands_still_at_any_moment() -> None:
-    history = History(2, 20_000)
+    history = History(1, 1, 20_000)
     fill(history, sine(500))
     auto = triggered("auto", head=500)
     seen = []
@@ -144,7 +144,7 @@ def test_a_triggered_picture_stands_still_at_any_moment() -> None:
 
 
 def test_normal_waits_and_auto_rolls_when_nothing_triggers() -> None:
-    history = History(2, 20_000)
+    history = History(1, 1, 20_000)
     fill(history, np.ones(500))
     waiting, rolling = triggered("normal").picture(history), triggered("auto").picture(history)
     assert waiting is not None and waiting.flags == WAITING and np.isnan(waiting.columns).all()
@@ -152,7 +152,7 @@ def test_normal_waits_and_auto_rolls_when_nothing_triggers() -> None:
 
 
 def test_normal_keeps_the_last_picture_and_single_the_first() -> None:
-    history = History(2, 20_000)
+    history = History(1, 1, 20_000)
     fill(history, np.zeros(100) - 1)
     normal, single = triggered("normal", head=100), triggered("single", head=100)
     fill(history, sine(200))

@@ -104,6 +104,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Map Aliases
+         * @description Map the response of every hypothesis to the tones of the drive, and name what has the same.
+         */
+        get: operations["map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get"];
+        put?: never;
+        /**
+         * Get Aliases
+         * @description Say which hypotheses of a list the drive does not tell apart.
+         */
+        post: operations["get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/scenarios": {
         parameters: {
             query?: never;
@@ -312,6 +336,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/variant": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Vary Bench
+         * @description Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
+         */
+        post: operations["vary_bench_api_v1_benches__bench_id__variant_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/identification": {
         parameters: {
             query?: never;
@@ -364,6 +408,46 @@ export interface paths {
          * @description Measure what a tick costs with each plant.
          */
         get: operations["plants_api_v1_benches__bench_id__plants_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/flops": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Flops
+         * @description Count the operations of every diagnoser as it is now, and hold them against a board of some speed.
+         */
+        get: operations["flops_api_v1_benches__bench_id__flops_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/explain": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Explain Sample
+         * @description Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior.
+         */
+        get: operations["explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -940,6 +1024,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/theory/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Map Aliases
+         * @description Map the responses of hypotheses to tones, and name what has the same.
+         */
+        post: operations["map_aliases_api_v1_theory_aliases_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/theory/instability-map": {
         parameters: {
             query?: never;
@@ -1025,6 +1129,24 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
+         * Account
+         * @description What one sample did to all of them; the recorded probabilities stand beside those worked out here.
+         *
+         *     They part where the sample was no evidence, because the drive was off or nothing was measured.
+         */
+        Account: {
+            /** Kind */
+            kind: string;
+            /** Tick */
+            tick: number;
+            /** Time Ms */
+            time_ms: number;
+            /** Floor */
+            floor: number;
+            /** Models */
+            models: components["schemas"]["ModelAccount"][];
+        };
+        /**
          * ActiveFault
          * @description A fault on the device now.
          */
@@ -1047,6 +1169,65 @@ export interface components {
             };
             /** Since Tick */
             since_tick: number;
+        };
+        /**
+         * AliasMap
+         * @description Responses of all hypotheses, distances between them, and what mass and stiffness are worth in one another.
+         */
+        AliasMap: {
+            /** Tones Hz */
+            tones_hz: number[];
+            /** Stiffness Per Mass */
+            stiffness_per_mass: number;
+            /** Responses */
+            responses: components["schemas"]["Response"][];
+            /** Pairs */
+            pairs: components["schemas"]["Pair"][];
+        };
+        /**
+         * AliasReport
+         * @description Where hypotheses lie apart and where they coincide, now and at other drive frequencies.
+         */
+        AliasReport: {
+            map: components["schemas"]["AliasMap"];
+            /** Sensor Noise Um */
+            sensor_noise_um: number;
+            /** F0 Hz */
+            f0_hz: number;
+            sweep: components["schemas"]["AliasSweep"];
+        };
+        /**
+         * AliasSource
+         * @description Which hypotheses under which drive; those of the diagnoser under the drive of the bench unless given.
+         */
+        AliasSource: {
+            /** Hypotheses */
+            hypotheses?: components["schemas"]["Hypothesis"][] | null;
+            /** Tones */
+            tones?: components["schemas"]["DriveTone"][] | null;
+            /**
+             * Within Um
+             * @description Distance below which two count as coincident
+             * @default 0
+             */
+            within_um?: number;
+        };
+        /**
+         * AliasSweep
+         * @description For a single tone of the first amplitude, the closest pair over frequency.
+         */
+        AliasSweep: {
+            /** Frequency Hz */
+            frequency_hz: number[];
+            /** Distance Um */
+            distance_um: number[];
+            /**
+             * Pair
+             * @description Index into pairs_named
+             */
+            pair: number[];
+            /** Pairs Named */
+            pairs_named: components["schemas"]["NamedPair"][];
         };
         /**
          * Bench
@@ -1192,6 +1373,11 @@ export interface components {
              * @description The recording it plays; such a bench takes no changes
              */
             replay_of?: string | null;
+            /**
+             * Recorded Scale
+             * @description Device seconds per wall second it was recorded at
+             */
+            recorded_scale?: number | null;
         };
         /**
          * BenchList
@@ -1294,6 +1480,20 @@ export interface components {
              * @default 1
              */
             seed?: number;
+        };
+        /**
+         * Budget
+         * @description What all diagnosers cost a board of some speed, in their order; those that come too late overrun.
+         */
+        Budget: {
+            /** Board Flops */
+            board_flops: number;
+            /** Function Flops */
+            function_flops: number;
+            /** Share */
+            share: number;
+            /** Loads */
+            loads: components["schemas"]["Load"][];
         };
         /**
          * Catalogue
@@ -1507,6 +1707,16 @@ export interface components {
             tick: number;
             /** Digest */
             digest: string;
+        };
+        /**
+         * DriveTone
+         * @description One tone of a drive.
+         */
+        DriveTone: {
+            /** Frequency Hz */
+            frequency_hz: number;
+            /** Amplitude V */
+            amplitude_v: number;
         };
         /**
          * EquationCard
@@ -1749,7 +1959,7 @@ export interface components {
         };
         /**
          * Gallery
-         * @description All cards, by id.
+         * @description All cards, in the order of the text.
          */
         Gallery: {
             /** Cards */
@@ -1844,6 +2054,71 @@ export interface components {
             checks: {
                 [key: string]: boolean;
             };
+        };
+        /**
+         * HypothesesSource
+         * @description A device, what may be wrong with it, and the tones that drive it.
+         */
+        HypothesesSource: {
+            /**
+             * Device
+             * @description Catalogue id, and values written over it
+             * @default {}
+             */
+            device?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Hypotheses
+             * @description Factors on the device
+             */
+            hypotheses: components["schemas"]["Hypothesis"][];
+            /**
+             * Tones
+             * @description V and Hz
+             */
+            tones: components["schemas"]["Line"][];
+            /**
+             * Noise Um
+             * @description Noise that could hide a difference
+             * @default 0
+             */
+            noise_um?: number;
+        };
+        /**
+         * Hypothesis
+         * @description One model of the bank, as factors on the nominal device.
+         */
+        Hypothesis: {
+            /**
+             * Name
+             * @description short name, without spaces or dots
+             */
+            name: string;
+            /**
+             * Mass
+             * @description mass over nominal
+             * @default 1
+             */
+            mass?: number;
+            /**
+             * Stiffness
+             * @description stiffness over nominal
+             * @default 1
+             */
+            stiffness?: number;
+            /**
+             * Damping
+             * @description damping over nominal
+             * @default 1
+             */
+            damping?: number;
+            /**
+             * Gain
+             * @description drive gain over nominal
+             * @default 1
+             */
+            gain?: number;
         };
         /**
          * Identification
@@ -1980,6 +2255,32 @@ export interface components {
             amplitude: number;
             /** Frequency */
             frequency: number;
+        };
+        /**
+         * Load
+         * @description What a diagnoser costs a board.
+         *
+         *     ``functions`` are exponentials, logarithms, roots, sines; each counts as ``function_flops``.
+         */
+        Load: {
+            /** Name */
+            name: string;
+            /** Models */
+            models: number;
+            /** Operations */
+            operations: number;
+            /** Functions */
+            functions: number;
+            /** Per Model */
+            per_model: number;
+            /** Flops Per Second */
+            flops_per_second: number;
+            /** Share */
+            share: number;
+            /** Overrun */
+            overrun: boolean;
+            /** Models That Fit */
+            models_that_fit: number;
         };
         /**
          * Loop
@@ -2121,6 +2422,36 @@ export interface components {
             phase_deg: number;
         };
         /**
+         * ModelAccount
+         * @description What one sample did to one hypothesis.
+         */
+        ModelAccount: {
+            /** Name */
+            name: string;
+            /** Residual Um */
+            residual_um: number;
+            /** Covariance Um2 */
+            covariance_um2: number | null;
+            /** Log Likelihood */
+            log_likelihood: number | null;
+            /** Prior */
+            prior: number;
+            /** Posterior */
+            posterior: number;
+            /** Recorded */
+            recorded: number;
+        };
+        /**
+         * NamedPair
+         * @description Two hypotheses.
+         */
+        NamedPair: {
+            /** First */
+            first: string;
+            /** Second */
+            second: string;
+        };
+        /**
          * NewBench
          * @description What to make a bench from.
          */
@@ -2205,6 +2536,20 @@ export interface components {
             sweep: string | {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * Pair
+         * @description How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it.
+         */
+        Pair: {
+            /** First */
+            first: string;
+            /** Second */
+            second: string;
+            /** Distance Um */
+            distance_um: number;
+            /** Coincident */
+            coincident: boolean;
         };
         /**
          * ParameterCard
@@ -2578,6 +2923,22 @@ export interface components {
              * @constant
              */
             kind?: "reset_trip";
+        };
+        /**
+         * Response
+         * @description The motion of a hypothesis at the tones, and the changes of one parameter that have the same.
+         */
+        Response: {
+            /** Name */
+            name: string;
+            /** Amplitudes Um */
+            amplitudes_um: number[];
+            /** Phases Deg */
+            phases_deg: number[];
+            /** Equivalents */
+            equivalents: {
+                [key: string]: number;
+            };
         };
         /**
          * Roc
@@ -3137,6 +3498,20 @@ export interface components {
             /** Folds */
             folds: components["schemas"]["FoldPoint"][];
             boundary: components["schemas"]["SafeBoundary"] | null;
+        };
+        /**
+         * Variant
+         * @description How the second bench differs.
+         */
+        Variant: {
+            /**
+             * Set
+             * @description Values by dotted path; a whole table may be one
+             * @default {}
+             */
+            set?: {
+                [key: string]: unknown;
+            };
         };
         /**
          * Wanted
@@ -3730,6 +4105,78 @@ export interface operations {
             };
         };
     };
+    map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get: {
+        parameters: {
+            query?: {
+                /** @description One tone as large as the reference; those it has unless given */
+                frequency_hz?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasMap"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AliasSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_scenarios_api_v1_scenarios_get: {
         parameters: {
             query?: never;
@@ -4111,6 +4558,41 @@ export interface operations {
             };
         };
     };
+    vary_bench_api_v1_benches__bench_id__variant_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Variant"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     identification_api_v1_benches__bench_id__identification_post: {
         parameters: {
             query?: never;
@@ -4197,6 +4679,77 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["MeasuredPlants"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    flops_api_v1_benches__bench_id__flops_get: {
+        parameters: {
+            query?: {
+                /** @description What the board does per second */
+                board_mflops?: number;
+                /** @description What an exponential is worth */
+                function_flops?: number;
+            };
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Budget"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get: {
+        parameters: {
+            query?: {
+                /** @description The sample; the last one unless given */
+                tick?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Account"];
                 };
             };
             /** @description Refused or failed */
@@ -5323,6 +5876,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ExcitationReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    map_aliases_api_v1_theory_aliases_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HypothesesSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasMap"];
                 };
             };
             /** @description Refused or failed */

@@ -2,7 +2,6 @@ import { Button } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/api-error";
-import { Designer } from "../designer/designer";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
 import { stream } from "../stream/stream";
@@ -14,11 +13,13 @@ import { Header } from "./header/header";
 import { KeySheet } from "./key-sheet";
 import { NewBench } from "./new-bench";
 import { benchInAddress } from "./open-bench";
+import { PAGES } from "./pages";
 import { Phone } from "./phone";
+import { Rail } from "./rail";
+import { ReplayBar } from "./replay-bar";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
 import { pageInAddress, useView } from "./view-store";
-import { Workspace } from "./workspace";
 
 interface Failure {
   title: string;
@@ -31,6 +32,7 @@ export function App() {
   const page = useView((s) => s.page);
   const silent = useBench((s) => s.connection.staleSince !== undefined);
   const stale = useLasting(silent, 700);
+  const Page = PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
   useKeys();
 
@@ -53,17 +55,17 @@ export function App() {
   return (
     <div className="page" data-stale={stale}>
       {phone ? null : <Header />}
+      <ReplayBar />
       <Banner hints={!phone && page === "bench"} />
       {failure ? (
         <EmptyState title={failure.title} action={<Button onClick={start}>Try again</Button>}>
           {failure.advice}
         </EmptyState>
-      ) : page === "designer" ? (
-        <Designer />
-      ) : phone ? (
-        <Phone />
       ) : (
-        <Workspace />
+        <div className="body">
+          <Rail />
+          {phone && page === "bench" ? <Phone /> : <Page />}
+        </div>
       )}
       <KeySheet />
       <NewBench />

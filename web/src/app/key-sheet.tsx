@@ -6,7 +6,7 @@ import { SideSheet } from "./side-sheet";
 export function KeySheet() {
   return (
     <SideSheet name="keys" title="Keyboard" size={380}>
-      {(["Run", "Bench", "Look"] as const).map((group) => (
+      {(["Run", "Bench", "Look", "Pages"] as const).map((group) => (
         <Section key={group} title={group} rows={KEYMAP.filter((b) => b.group === group)} />
       ))}
       <Section title="In a panel" rows={LOCAL_KEYS} />

@@ -1,13 +1,15 @@
 import { actions } from "./actions";
 import { focusNextGroup, setLayout } from "./layouts";
+import { PAGES } from "./pages";
 import { themeSwitch } from "./theme-switch";
+import type { PageName } from "./view-store";
 
 export interface KeyBinding {
   /** `KeyboardEvent.key`, as typed. */
   key: string;
   shown: string;
   does: string;
-  group: "Run" | "Look" | "Bench";
+  group: "Run" | "Look" | "Bench" | "Pages";
   run(): void;
 }
 
@@ -22,10 +24,10 @@ export const KEYMAP: KeyBinding[] = [
   { key: "h", shown: "H", does: "heal all faults", group: "Bench", run: actions.healAll },
   { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
   { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
+  { key: "v", shown: "V", does: "record, and stop", group: "Bench", run: actions.record },
   { key: "f", shown: "F", does: "fork", group: "Bench", run: actions.fork },
   { key: "k", shown: "K", does: "keep this moment", group: "Bench", run: actions.keep },
   { key: "n", shown: "N", does: "new bench", group: "Bench", run: actions.newBench },
-  { key: "g", shown: "G", does: "device designer, and back", group: "Bench", run: actions.designer },
   { key: "l", shown: "L", does: "all panels live", group: "Look", run: actions.live },
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
@@ -33,6 +35,15 @@ export const KEYMAP: KeyBinding[] = [
   { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },
+  ...Object.entries(PAGES).map(
+    ([name, { key, title }]): KeyBinding => ({
+      key,
+      shown: key.toUpperCase(),
+      does: title,
+      group: "Pages",
+      run: () => actions.page(name as PageName),
+    }),
+  ),
 ];
 
 /** Keys that belong to the thing in focus. */

@@ -5,14 +5,22 @@ export type LayoutName = "lecture" | "lab" | "research";
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
 
-/** The bench, or the drawing board. */
-export type PageName = "bench" | "designer";
+/** What the page shows: the live bench, or what is done around it. */
+const PAGE_NAMES = ["bench", "gallery", "runs", "designer", "theory"] as const;
+
+export type PageName = (typeof PAGE_NAMES)[number];
 
 interface ViewStore {
   page: PageName;
   layout: LayoutName;
   card: CardId;
+  /** The sample of a diagnoser that was clicked, to be explained. */
+  sample: { diagnoser: string; tick: number } | undefined;
+  /** A hidden fault is to be found: the page keeps the truth to itself. */
+  blind: boolean;
   dialog: "none" | "keys" | "bench";
+  /** On a phone: the panel shown beside those it always has. */
+  extra: string;
   /** Reading size: lectures are read from the last row. */
   large: boolean;
 }
@@ -25,13 +33,17 @@ export const useView = create<ViewStore>(() => ({
   page: pageInAddress(),
   layout: window.innerWidth >= WIDE ? "research" : "lab",
   card: "diagnosers.kalman",
+  sample: undefined,
+  blind: false,
   dialog: "none",
+  extra: "",
   large: false,
 }));
 
 /** The page named in the address. */
 export function pageInAddress(): PageName {
-  return new URLSearchParams(window.location.search).get("page") === "designer" ? "designer" : "bench";
+  const asked = new URLSearchParams(window.location.search).get("page");
+  return PAGE_NAMES.find((name) => name === asked) ?? "bench";
 }
 
 /** Go to a page; the address names it, and back works. */

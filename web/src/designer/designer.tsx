@@ -1,5 +1,5 @@
 import { Button } from "@mantine/core";
-import { IconArrowLeft, IconDice5, IconPlayerPlay } from "@tabler/icons-react";
+import { IconDice5, IconPlayerPlay } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { DeviceCatalogue, Evaluation, ProcessSpread } from "../api/types";
@@ -65,9 +65,6 @@ export function Designer() {
   return (
     <main className={styles.page}>
       <header className={styles.top}>
-        <Button size="xs" variant="subtle" leftSection={<IconArrowLeft size={16} />} onClick={() => setPage("bench")}>
-          Bench
-        </Button>
         <h1>Device designer</h1>
         {state.drawn && (
           <span className={styles.drawn}>

@@ -1,0 +1,95 @@
+"""Diagnosers of a live bench: one sample explained, and what the drive cannot tell apart."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, cast
+
+import numpy as np
+from fastapi import APIRouter, Query
+
+from core.board.ensemble import Ensemble
+from core.board.explain import Account, explain, signals_of
+from core.board.spec import Section, Spec
+from core.diagnose.aliases import AliasMap, alias_map, hidden_um
+from core.diagnose.hypothesis import Hypothesis
+from core.errors import InputError, unknown
+from core.reference.waveform import Waveform
+from server.api.bodies import StrictRoute
+from server.api.deps import SessionDep
+from server.bench.session import Session
+
+router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"], route_class=StrictRoute)
+
+
+@router.get("/explain")
+def explain_sample(
+    session: SessionDep,
+    name: str,
+    tick: Annotated[int | None, Query(ge=0, le=2**53, description="The sample; the last one unless given")] = None,
+) -> Account:
+    """Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior."""
+    spec, section = found(session, name)
+    signals = signals_of(section)
+    columns = session.indices([f"{name}.{signal}" for signal in signals])
+    history = session.history
+    first, end = history.first_tick, history.end_tick
+    asked = end - 1 if tick is None else tick
+    if not first <= asked < end:
+        raise InputError(
+            f"is not kept; the history has {first} to {end - 1}" if end > first else "nothing is kept", "tick"
+        )
+    at = asked - asked % section.every
+
+    def read(one: int) -> dict[str, float]:
+        if one < first:
+            raise InputError("is the first one kept; explaining it takes the one before", "tick")
+        values = history.read(columns, one, one + 1)[:, 0]
+        if not np.all(np.isfinite(values)):
+            raise InputError(f"what {name} thought at tick {one} was not kept", "tick")
+        return dict(zip(signals, map(float, values), strict=True))
+
+    return explain(spec, section, at, read(at - section.every) if at > 0 else None, read(at))
+
+
+@router.get("/aliases")
+def map_aliases(
+    session: SessionDep,
+    name: str,
+    frequency_hz: Annotated[
+        float | None, Query(gt=0, le=1e6, description="One tone as large as the reference; those it has unless given")
+    ] = None,
+) -> AliasMap:
+    """Map the response of every hypothesis to the tones of the drive, and name what has the same."""
+    spec, section = found(session, name)
+    context = spec.context()
+    tones = [(frequency_hz, volts_of(spec))] if frequency_hz else tones_of(spec)
+    if not tones:
+        raise InputError("give one: the reference has no tone of its own", "frequency_hz")
+    return alias_map(hypotheses_of(section), context.device, tones, hidden_um(context.sensor_noise_um))
+
+
+def found(session: Session, name: str) -> tuple[Spec, Section]:
+    """Return the bench a diagnoser is on, the first or a twin, and its section."""
+    board = cast(Ensemble, session.board)
+    if name not in board.diagnosers:
+        raise unknown("diagnoser", name, board.diagnosers, "name")
+    twin = name.rpartition(":")[0]
+    return (board.twins[twin] if twin else board).spec, board.diagnosers[name]
+
+
+def hypotheses_of(section: Section) -> list[Hypothesis]:
+    """Return the hypotheses of a diagnoser; an error if it has none."""
+    hypotheses: list[Hypothesis] = getattr(section.params, "hypotheses", [])
+    if not hypotheses:
+        raise InputError(f"{section.block.name} has no hypotheses", "name")
+    return hypotheses
+
+
+def tones_of(spec: Spec) -> list[tuple[float, float]]:
+    """Return frequency in Hz and amplitude in V of the tones of the reference; none when it is broad."""
+    return cast(type[Waveform], spec.reference.block).tones(spec.reference.params, spec.context())
+
+
+def volts_of(spec: Spec) -> float:
+    """Return the amplitude of the reference in V."""
+    return float(cast(Any, spec.reference.params).volts(spec.context()))

@@ -1,0 +1,141 @@
+"""Recordings of one bench: those under way, and those that wait for a condition."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from core.board.condition import Condition
+from core.board.rows import Rows
+from server.bench.events import Event
+from server.bench.recorder import CLOSED, STOPPED, WANTED, Past, Recorder
+from server.errors import not_found
+
+if TYPE_CHECKING:
+    from server.bench.session import Session
+
+
+@dataclass(frozen=True)
+class Armed:
+    """A recording that waits for a condition."""
+
+    recorder: Recorder
+    condition: Condition
+    past: int
+    ticks: int | None
+
+
+class Recordings:
+    """Begins recordings, hands them the rows of their bench and lets go of them; on the engine thread.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.under_way: dict[str, Recorder] = {}
+        self.armed: dict[str, Armed] = {}
+
+    def __len__(self) -> int:
+        return len(self.under_way) + len(self.armed)
+
+    def begin(
+        self, recorder: Recorder, name: str, actor: str, past: int, ticks: int | None, condition: Condition | None
+    ) -> int | None:
+        """Begin a recording here with some of the past, or arm it; returns its first tick once that is known.
+
+        Parameters
+        ----------
+        past : int
+            Ticks before the beginning that it takes along, as far as the history has them.
+        ticks : int or None
+            Ticks behind the beginning after which it ends by itself.
+        condition : Condition or None
+            What it waits for.
+        """
+        session = self._session
+        session.must_be_open()
+        if condition is not None:
+            self.armed[recorder.id] = Armed(recorder, condition, past, ticks)
+            session.note(actor, "recording_armed", f"recording {name} waits for its condition")
+            session.look()
+            return None
+        session.note(actor, "recording_started", f"recording {name} began")
+        return self._begin(recorder, session.board.tick, past, ticks)
+
+    def stop(self, recording_id: str, reason: str = STOPPED) -> Recorder:
+        """End a recording here, or one that waits."""
+        waiting = self.armed.pop(recording_id, None)
+        recorder = waiting.recorder if waiting is not None else self.under_way.get(recording_id)
+        if recorder is None:
+            raise not_found("recording under way", recording_id)
+        recorder.stop(reason)
+        if recorder.reason in WANTED:
+            self._session.note("board", "recording_stopped", f"a recording ended: {recorder.reason}")
+        else:
+            self._session.note("board", "recording_failed", f"a recording broke off: {recorder.reason}")
+        self.under_way.pop(recording_id, None)
+        self._session.look()
+        return recorder
+
+    def forget(self, recording_id: str) -> None:
+        """Let go of a recording that has ended by itself."""
+        if recording_id in self.under_way or recording_id in self.armed:
+            self.stop(recording_id)
+
+    def close(self, reason: str = CLOSED) -> list[Recorder]:
+        """End all; returns them."""
+        return [self.stop(key, reason) for key in [*self.under_way, *self.armed]]
+
+    def tell(self, event: Event) -> Event:
+        """Let the recordings under way have an event."""
+        for recorder in self.under_way.values():
+            recorder.note(event.model_dump_json())
+        return event
+
+    def take(self, rows: Rows) -> None:
+        """Record some rows, and begin what waited for them."""
+        if self.under_way:
+            self._record(rows)
+        if self.armed:
+            self._watch(rows)
+
+    def _begin(self, recorder: Recorder, at: int, past: int, ticks: int | None) -> int:
+        """Let a recording begin at a tick that has been or is now."""
+        session = self._session
+        history, columns = session.history, list(range(len(session.signals)))
+        end = session.board.tick
+        first = min(max(at - past, history.first_tick), end) if history.end_tick == end else end
+        after = None if ticks is None else max(0, ticks - (end - at))
+        recorder.begin(Past(lambda start, stop: history.read(columns, start, stop), first, end), after)
+        self.under_way[recorder.id] = recorder
+        if not recorder.is_open:
+            self.stop(recorder.id)
+        session.look()
+        return first
+
+    def _record(self, rows: Rows) -> None:
+        """Hand copies to the recordings; one that has ended by itself is let go."""
+        samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
+        for key, recorder in list(self.under_way.items()):
+            recorder.append(rows.first_tick, samples)
+            if not recorder.is_open:
+                self.stop(key)
+
+    def _watch(self, rows: Rows) -> None:
+        """Begin the armed recordings whose condition holds at some tick of these."""
+        for key, waiting in list(self.armed.items()):
+            column = self._session.column_of[waiting.condition.signal]
+            values = np.hstack((rows.outputs, rows.taps))[:, column]
+            found = np.flatnonzero(waiting.condition.sign * (values - waiting.condition.threshold) > 0.0)
+            if found.size:
+                del self.armed[key]
+                at = rows.first_tick + int(found[0])
+                text = f"a recording began: its condition held at tick {at}"
+                self._session.note("board", "recording_started", text)
+                self._begin(waiting.recorder, at, waiting.past, waiting.ticks)

@@ -1,0 +1,106 @@
+"""A bench that plays a recording: the same page, the same commands to time, nothing to change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from core.errors import InputError
+from scenarios.schema import Scenario
+from server.bench.commands import Loop, Seek, Start
+from server.bench.events import Event
+from server.bench.session import RunsBench, Session
+from server.bench.tape import Tape
+from server.metrics import Metrics
+from server.store.recordings import RecordingDetail
+
+LEAST_LOOP = 100
+"""Ticks of the shortest span that is played again and again."""
+
+
+class Replay(Session):
+    """A recording in the place of a board.
+
+    Parameters
+    ----------
+    recording : RecordingDetail
+        What is played; its events are those of the bench.
+    scenario : Scenario
+        What was recorded.
+    tape : Tape
+        The recording, to be read tick by tick.
+    time_scale : float
+        Device seconds per wall second.
+    history_ticks : int
+        Ticks every signal is kept for.
+    metrics : Metrics
+        Where ticks and overruns are counted.
+    clock : callable
+        The engine's clock.
+    """
+
+    def __init__(
+        self,
+        recording: RecordingDetail,
+        scenario: Scenario,
+        tape: Tape,
+        time_scale: float | None,
+        history_ticks: int,
+        metrics: Metrics,
+        clock: Callable[[], float],
+    ) -> None:
+        super().__init__(scenario, tape, time_scale, history_ticks, metrics, clock)
+        self._tape = tape
+        self._loop_start: int | None = None
+        self._ends_at = tape.end
+        self.replay_of = recording.id
+        names = ("tick", "actor", "kind", "text", "command", "old", "new")
+        for event in recording.events or []:
+            fields: list[Any] = [event.get(name) for name in names]
+            self.events.add(*fields)
+
+    def _run_command(self, command: RunsBench, actor: str) -> Event:
+        """Carry out a command to time; only here it can be turned back."""
+        tape = self._tape
+        if isinstance(command, Seek):
+            tape.seek(command.tick)
+            self._jump()
+            return self.note(actor, "seek", f"went to tick {command.tick}", command.model_dump())
+        if isinstance(command, Loop):
+            return self._set_loop(command, actor)
+        if isinstance(command, Start) and tape.tick >= tape.end:
+            tape.seek(tape.first)
+            self._jump()
+        return super()._run_command(command, actor)
+
+    def _set_loop(self, command: Loop, actor: str) -> Event:
+        """Play a span again and again, or to the end."""
+        tape = self._tape
+        if command.start_tick is None and command.end_tick is None:
+            self._loop_start, self._ends_at = None, tape.end
+            return self.note(actor, "loop", "plays to the end", command.model_dump())
+        start = tape.first if command.start_tick is None else command.start_tick
+        end = tape.end if command.end_tick is None else command.end_tick
+        if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
+            text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
+            raise InputError(text, "end_tick")
+        self._loop_start, self._ends_at = start, end
+        if not start <= tape.tick < end:
+            tape.seek(start)
+            self._jump()
+        return self.note(actor, "loop", f"plays ticks {start} to {end} again and again", command.model_dump())
+
+    def _jump(self) -> None:
+        """Let history and clock follow the tape."""
+        self._rewind_history()
+        if self._ends_at is None:
+            self._ends_at = self._tape.end
+        self.pacer.anchor(self._tape.tick, self._clock())
+
+    def _finish(self) -> None:
+        """Begin the span again, or stop at the end."""
+        if self._loop_start is not None:
+            self._tape.seek(self._loop_start)
+            self._jump()
+        else:
+            super()._finish()

@@ -1,0 +1,63 @@
+import { expect, test } from "./lab";
+import { seriousViolations } from "./serious-violations";
+
+test("a run is started from the page, and its files are offered", async ({ page, server }) => {
+  await page.request.get(server.url);
+  await page.goto(`${server.origin}/?page=runs`);
+  await page.getByRole("button", { name: "Change a value" }).click();
+  await page.getByRole("combobox", { name: "With other values 1: path" }).fill("sensor.noise");
+  await page.getByRole("option", { name: "sensor.noise_um" }).click();
+  await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("-1");
+  await page.getByRole("button", { name: "Run", exact: true }).click();
+  await expect(page.getByRole("form").getByRole("alert")).toContainText("sensor.noise_um");
+
+  await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("0.06");
+  await page.getByRole("button", { name: "Run", exact: true }).click();
+  const result = page.getByRole("region", { name: "Result" });
+  await expect(result.getByText("Expectations")).toBeVisible({ timeout: 60_000 });
+  const id = new URL(page.url()).searchParams.get("run");
+  const run = await server.ask<{ summary: { digest: string } }>("GET", `/runs/${id}`);
+  await expect(result.getByText(run.summary.digest)).toBeVisible();
+  for (const format of ["CSV", "PARQUET", "NPZ", "MAT"]) {
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      result.getByRole("link", { name: format }).click(),
+    ]);
+    expect(download.suggestedFilename()).toBe(`ch5-seven-step.${format.toLowerCase()}`);
+  }
+  const script = await page.request.get(`${server.origin}/api/v1/runs/${id}/script`);
+  expect(await script.text()).toContain(run.summary.digest);
+  await seriousViolations(page).then((found) => expect(found).toEqual([]));
+});
+
+test("a campaign is started, watched, cancelled, gone on with, and read", async ({ page, server }) => {
+  await page.request.get(server.url);
+  await page.goto(`${server.origin}/?page=runs`);
+  await page.getByText("Campaign", { exact: true }).click();
+  await page.getByRole("combobox", { name: "Every combination of 1: path" }).fill("sensor.noise_um");
+  await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("0.05, 0.2");
+  await page.getByRole("textbox", { name: "Seeds", exact: true }).fill("2000");
+  await page.getByRole("button", { name: "Start 4000 runs" }).click();
+  await page.getByRole("button", { name: "Cancel Campaign ch5-seven-step" }).click({ timeout: 30_000 });
+  const jobs = page.getByRole("region", { name: "Runs and campaigns" });
+  await expect(jobs.getByText("cancelled")).toBeVisible({ timeout: 30_000 });
+
+  await page.getByRole("textbox", { name: "Seeds", exact: true }).fill("3");
+  await page.getByRole("button", { name: "Start 6 runs" }).click();
+  const result = page.getByRole("region", { name: "Result" });
+  await expect(result.getByText("6 of 6 runs · done")).toBeVisible({ timeout: 60_000 });
+  const rows = result.getByRole("table").first().locator("tbody tr");
+  await expect(rows).toHaveCount(2);
+  await expect(rows.first()).toContainText("0.05");
+  await result.getByRole("button", { name: "sensor.noise_um" }).click();
+  await result.getByRole("button", { name: "sensor.noise_um" }).click();
+  await expect(rows.first()).toContainText("0.2");
+  await expect(result.getByRole("img", { name: /Receiver operating characteristic/ })).toBeVisible();
+  await expect(result.getByRole("img", { name: /Detection delay/ })).toBeVisible();
+  await expect(result.getByRole("table").filter({ hasText: "truth down" })).toBeVisible();
+  const report = await page.request.get(
+    `${server.origin}${await result.getByRole("link", { name: "Report" }).getAttribute("href")}`,
+  );
+  expect(await report.text()).toContain("Receiver operating characteristic");
+  await seriousViolations(page).then((found) => expect(found).toEqual([]));
+});

@@ -1,0 +1,60 @@
+import { useState } from "react";
+import type { GalleryCard } from "../api/types";
+import { formatSi } from "../ui/format";
+import { metricName } from "../ui/metric-name";
+import { Verdict } from "../ui/verdict";
+import styles from "./gallery.module.css";
+
+const SHOWN = 3;
+
+interface ExpectationTableProps {
+  entries: GalleryCard["expectations"];
+  /** Of the whole; rows that differ from it say their own. */
+  verdict: string | null;
+}
+
+/** Bounds as they are printed rather than typed. */
+const typeset = (text: string) => text.replaceAll(">=", "≥").replaceAll("<=", "≤").replaceAll("-", "−");
+
+/** Published, expected and measured, figure by figure; the first few until all are asked for. */
+export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
+  const [all, setAll] = useState(false);
+  if (entries.length === 0) return <p className={styles.nothing}>Nothing is claimed: a bench to play with.</p>;
+  const rows = all ? entries : entries.slice(0, SHOWN);
+  return (
+    <div className={styles.figures}>
+      <table>
+        <thead>
+          <tr>
+            <th scope="col">figure</th>
+            <th scope="col">published</th>
+            <th scope="col">expected</th>
+            <th scope="col">measured</th>
+          </tr>
+        </thead>
+        <tbody>
+          {rows.map((entry) => (
+            <tr key={entry.metric} title={`${entry.metric}${entry.note ? `: ${entry.note}` : ""}`}>
+              <th scope="row">
+                {metricName(entry.metric)}
+                {entry.verdict !== verdict && <Verdict verdict={entry.verdict} />}
+                {all && entry.note && <small>{entry.note}</small>}
+              </th>
+              <td>{entry.published || "–"}</td>
+              <td className={styles.expected}>{typeset(entry.expected)}</td>
+              <td data-ok={entry.ok}>
+                {entry.measured === null || entry.measured === undefined ? "–" : formatSi(entry.measured, "")}
+                {entry.ok === false && " ✗"}
+              </td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {entries.length > SHOWN || entries.some((entry) => entry.note) ? (
+        <button type="button" className={styles.more} aria-expanded={all} onClick={() => setAll(!all)}>
+          {all ? "less" : entries.length > SHOWN ? `all ${entries.length} figures, with notes` : "notes"}
+        </button>
+      ) : null}
+    </div>
+  );
+}

@@ -1,0 +1,106 @@
+import { Button, MultiSelect } from "@mantine/core";
+import { IconFileText } from "@tabler/icons-react";
+import { useCallback, useState } from "react";
+import { api } from "../api/api";
+import type { PointTally, SweepRun } from "../api/types";
+import { useAnswer } from "../api/use-answer";
+import { Downloads } from "../ui/downloads";
+import { EmptyState } from "../ui/empty-state";
+import { LineChart } from "../ui/line-chart";
+import { Stale } from "../ui/stale";
+import { DiagnosisCharts } from "./diagnosis-charts";
+import { metricsOf, numericAxes, trend, usualMetrics } from "./points";
+import { PointsTable } from "./points-table";
+import styles from "./runs.module.css";
+
+const BUSY_MS = 2000;
+const MOST_TRENDS = 6;
+
+/** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
+export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
+  const active = sweep.state === "queued" || sweep.state === "running";
+  // biome-ignore lint/correctness/useExhaustiveDependencies: the end of a campaign is worth a question
+  const ask = useCallback(() => api.sweepPoints(sweep.id), [sweep.id, active]);
+  const { value, error, since, again } = useAnswer(ask, () => (active ? BUSY_MS : undefined));
+  const [metrics, setMetrics] = useState<string[] | undefined>(undefined);
+  const files = `/api/v1/sweeps/${sweep.id}`;
+  const points = (value?.points ?? []).filter((point) => (point.runs ?? 0) > 0);
+  const shown = metrics ?? usualMetrics(points);
+
+  return (
+    <article className={styles.result}>
+      <header>
+        <h2>{sweep.title || `Campaign ${sweep.name}`}</h2>
+        <small>
+          {sweep.done} of {sweep.runs} runs · {sweep.state}
+          {sweep.error && `: ${String(sweep.error.message)}`}
+        </small>
+      </header>
+      <Stale error={error} since={since} onRetry={again} />
+      {points.length === 0 ? (
+        !error && (
+          <EmptyState title={active ? "No run is done yet" : "No result"}>
+            The first results of a campaign appear here while the rest is under way.
+          </EmptyState>
+        )
+      ) : (
+        <>
+          <div className={styles.links}>
+            <Button
+              component="a"
+              href={`${files}/report`}
+              target="_blank"
+              size="xs"
+              leftSection={<IconFileText size={15} />}
+              title="One HTML file that needs nothing else"
+            >
+              Report
+            </Button>
+            <span>
+              All runs <Downloads href={(format) => `${files}/runs?format=${format}`} formats={["csv", "parquet"]} />
+            </span>
+          </div>
+          <Errors points={points} />
+          <MultiSelect
+            size="xs"
+            label="Figures"
+            searchable
+            data={metricsOf(points)}
+            value={shown}
+            onChange={setMetrics}
+            maxDropdownHeight={300}
+          />
+          <PointsTable points={points} metrics={shown} />
+          <Trends points={points} metrics={shown} />
+          <DiagnosisCharts points={points} />
+        </>
+      )}
+    </article>
+  );
+}
+
+function Errors({ points }: { points: PointTally[] }) {
+  const errors = [...new Set(points.flatMap((point) => point.errors ?? []))];
+  if (errors.length === 0) return null;
+  return (
+    <ul className={styles.refusal}>
+      {errors.slice(0, 4).map((text) => (
+        <li key={text}>{text}</li>
+      ))}
+    </ul>
+  );
+}
+
+function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }) {
+  const charts = numericAxes(points)
+    .flatMap((axis) => metrics.map((metric) => ({ axis, metric, lines: trend(points, axis, metric) })))
+    .slice(0, MOST_TRENDS);
+  if (charts.length === 0) return null;
+  return (
+    <div className={styles.charts}>
+      {charts.map(({ axis, metric, lines }) => (
+        <LineChart key={axis + metric} title={metric} xLabel={axis} yLabel="mean ± std" lines={lines} />
+      ))}
+    </div>
+  );
+}

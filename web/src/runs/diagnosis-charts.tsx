@@ -1,0 +1,87 @@
+import { NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import type { PointTally } from "../api/types";
+import { Confusion } from "../panels/scoreboard/confusion";
+import { LineChart } from "../ui/line-chart";
+import { delayLine, pointName } from "./points";
+import styles from "./runs.module.css";
+
+const MOST_LINES = 8;
+const UNIT: [number, number] = [0, 1];
+
+/** What a diagnoser said in all runs: operating characteristic and delays of the points, confusion of one. */
+export function DiagnosisCharts({ points }: { points: PointTally[] }) {
+  const diagnosers = [...new Set(points.flatMap((point) => Object.keys(point.diagnosis ?? {})))];
+  const [diagnoser, setDiagnoser] = useState<string | undefined>(undefined);
+  const [at, setAt] = useState(0);
+  const id = diagnoser ?? diagnosers[0];
+  if (!id) return null;
+  const found = points.flatMap((point) => {
+    const tally = point.diagnosis?.[id];
+    return tally ? [{ name: pointName(point.labels), tally }] : [];
+  });
+  const drawn = found.slice(0, MOST_LINES);
+  const one = found[Math.min(at, found.length - 1)];
+  return (
+    <section className={styles.diagnosis} aria-label="Diagnosis">
+      <div className={styles.links}>
+        <h3>Diagnosis</h3>
+        {diagnosers.length > 1 && (
+          <NativeSelect
+            size="xs"
+            aria-label="Diagnoser"
+            value={id}
+            data={diagnosers}
+            onChange={(e) => setDiagnoser(e.currentTarget.value)}
+          />
+        )}
+        {found.length > MOST_LINES && (
+          <span className={styles.note}>
+            curves of the first {MOST_LINES} of {found.length} points
+          </span>
+        )}
+      </div>
+      <div className={styles.charts}>
+        <LineChart
+          title="Receiver operating characteristic, sample by sample"
+          xLabel="false alarms"
+          yLabel="detections"
+          xRange={UNIT}
+          yRange={UNIT}
+          lines={drawn.flatMap(({ name, tally }) =>
+            tally.roc
+              ? [
+                  {
+                    name: `${name} (area ${tally.roc.area.toFixed(4)})`,
+                    x: tally.roc.false_alarm,
+                    y: tally.roc.detection,
+                  },
+                ]
+              : [],
+          )}
+        />
+        <LineChart
+          title="Detection delay"
+          xLabel="samples"
+          yLabel="share found by then"
+          yRange={UNIT}
+          lines={drawn.map(({ name, tally }) => delayLine(name, tally))}
+        />
+      </div>
+      {found.length > 1 && (
+        <NativeSelect
+          size="xs"
+          label="Confusion at"
+          w="fit-content"
+          value={String(at)}
+          data={found.map(({ name }, i) => ({ value: String(i), label: name }))}
+          onChange={(e) => setAt(Number(e.currentTarget.value))}
+        />
+      )}
+      <div className={styles.wide}>
+        <Confusion id={id} names={one.tally.names} counts={one.tally.confusion} />
+      </div>
+      {one.tally.missed > 0 && <p className={styles.note}>{one.tally.missed} changes were never found.</p>}
+    </section>
+  );
+}

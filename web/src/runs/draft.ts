@@ -1,0 +1,135 @@
+import type { Document } from "../api/types";
+
+/** A value at a dotted path of the scenario, as typed; one value or several. */
+export interface Row {
+  path: string;
+  text: string;
+}
+
+/** Bounds of a value at a dotted path, as typed. */
+export interface RangeRow {
+  path: string;
+  min: string;
+  max: string;
+  log: boolean;
+}
+
+/** What is about to be started, as the form has it. */
+export interface Draft {
+  kind: "run" | "campaign";
+  scenario: string;
+  set: Row[];
+  firstSeed: number;
+  seeds: number;
+  vary: "nothing" | "grid" | "hypercube";
+  grid: Row[];
+  ranges: RangeRow[];
+  points: number;
+  hypercubeSeed: number;
+  /** Devices drawn from the process spread; 0: the scenario's own. */
+  devices: number;
+}
+
+export const EMPTY_ROW: Row = { path: "", text: "" };
+export const EMPTY_RANGE: RangeRow = { path: "", min: "", max: "", log: false };
+
+export function newDraft(scenario: string): Draft {
+  return {
+    kind: "run",
+    scenario,
+    set: [],
+    firstSeed: 1,
+    seeds: 1,
+    vary: "grid",
+    grid: [EMPTY_ROW],
+    ranges: [EMPTY_RANGE],
+    points: 20,
+    hypercubeSeed: 1,
+    devices: 0,
+  };
+}
+
+/** A typed value: a number, a truth value, a list or table in JSON; anything else is text. */
+export function parseValue(text: string): unknown {
+  const trimmed = text.trim();
+  try {
+    return JSON.parse(trimmed.replace("−", "-"));
+  } catch {
+    return trimmed;
+  }
+}
+
+/** Several values, separated by commas; "1:10:4" is four values evenly spaced from 1 to 10. */
+export function parseValues(text: string): unknown[] {
+  return text
+    .split(",")
+    .filter((piece) => piece.trim() !== "")
+    .flatMap((piece) => {
+      const span = /^\s*(\S+)\s*:\s*(\S+)\s*:\s*(\d+)\s*$/.exec(piece);
+      const [low, high, count] = span ? span.slice(1).map(Number) : [];
+      if (!span || !Number.isFinite(low) || !Number.isFinite(high) || count < 2) return [parseValue(piece)];
+      return Array.from({ length: count }, (_, i) => Number((low + ((high - low) * i) / (count - 1)).toPrecision(12)));
+    });
+}
+
+const filled = <T extends { path: string }>(rows: readonly T[]) => rows.filter((row) => row.path.trim() !== "");
+
+/** How many points a campaign has. */
+export function pointCount(draft: Draft): number {
+  const varied =
+    draft.vary === "grid"
+      ? filled(draft.grid).reduce((product, row) => product * Math.max(1, parseValues(row.text).length), 1)
+      : draft.vary === "hypercube" && filled(draft.ranges).length > 0
+        ? draft.points
+        : 1;
+  return varied * Math.max(1, draft.devices);
+}
+
+const setOf = (rows: readonly Row[]) =>
+  Object.fromEntries(filled(rows).map((row) => [row.path.trim(), parseValue(row.text)]));
+
+/** What a run is asked for with. */
+export function runOf(draft: Draft) {
+  const { scenario, firstSeed, seeds } = draft;
+  return { scenario, set: setOf(draft.set), seeds: [firstSeed, firstSeed + seeds] };
+}
+
+/** The campaign's document, as a file would have it. */
+export function campaignOf(draft: Draft): Document {
+  const { scenario, firstSeed, seeds, vary, points, hypercubeSeed, devices } = draft;
+  const ranges = filled(draft.ranges);
+  return {
+    schema: 1,
+    id: scenario.toLowerCase(),
+    scenario,
+    set: setOf(draft.set),
+    seeds: { first: firstSeed, count: seeds },
+    ...(vary === "grid" && {
+      grid: Object.fromEntries(filled(draft.grid).map((row) => [row.path.trim(), parseValues(row.text)])),
+    }),
+    ...(vary === "hypercube" &&
+      ranges.length > 0 && {
+        latin_hypercube: {
+          points,
+          seed: hypercubeSeed,
+          ranges: Object.fromEntries(
+            ranges.map(({ path, min, max, log }) => [
+              path.trim(),
+              { min: parseValue(min), max: parseValue(max), scale: log ? "log" : "linear" },
+            ]),
+          ),
+        },
+      }),
+    ...(devices > 0 && { process_spread: { devices } }),
+  };
+}
+
+/** Dotted paths of all single values of a scenario, to choose from. */
+export function pathsOf(document: unknown, prefix = ""): string[] {
+  if (document === null || typeof document !== "object" || Array.isArray(document)) return prefix ? [prefix] : [];
+  return Object.entries(document)
+    .filter(([key, value]) => prefix || (!HEAD.includes(key) && !Array.isArray(value)))
+    .flatMap(([key, value]) => pathsOf(value, prefix ? `${prefix}.${key}` : key));
+}
+
+const HEAD = ["schema", "id", "title", "source", "summary", "claim", "verdict", "metrics"];

@@ -1,0 +1,91 @@
+import { useState } from "react";
+import type { PointTally } from "../api/types";
+import { formatSi } from "../ui/format";
+import { metricName } from "../ui/metric-name";
+import styles from "./runs.module.css";
+
+interface Column {
+  id: string;
+  title: string;
+  of(point: PointTally): string | number | undefined;
+  say(point: PointTally): string;
+}
+
+const SHOWN = 200;
+
+/** One row for each point; a click on a heading sorts by it. */
+export function PointsTable({ points, metrics }: { points: PointTally[]; metrics: string[] }) {
+  const [order, setOrder] = useState<{ id: string; down: boolean } | undefined>(undefined);
+  const axes = [...new Set(points.flatMap((point) => Object.keys(point.labels)))];
+  const columns: Column[] = [
+    ...axes.map(
+      (axis): Column => ({
+        id: axis,
+        title: axis,
+        of: (p) => p.labels[axis],
+        say: (p) => (typeof p.labels[axis] === "number" ? formatSi(p.labels[axis], "") : (p.labels[axis] ?? "")),
+      }),
+    ),
+    { id: "runs", title: "runs", of: (p) => p.runs, say: (p) => String(p.runs) },
+    { id: "ok", title: "as expected", of: (p) => p.ok, say: (p) => String(p.ok) },
+    { id: "tripped", title: "tripped", of: (p) => p.tripped, say: (p) => String(p.tripped) },
+    ...metrics.map(
+      (metric): Column => ({
+        id: metric,
+        title: metricName(metric),
+        of: (p) => p.metrics?.[metric]?.mean,
+        say: (p) => {
+          const found = p.metrics?.[metric];
+          return found ? `${formatSi(found.mean, "")} ± ${formatSi(found.std, "", 2)}` : "–";
+        },
+      }),
+    ),
+  ];
+  const by = columns.find((column) => column.id === order?.id);
+  const rows = by ? [...points].sort((a, b) => compare(by.of(a), by.of(b)) * (order?.down ? -1 : 1)) : points;
+  return (
+    <div className={styles.wide}>
+      <table className={styles.table}>
+        <thead>
+          <tr>
+            {columns.map((column) => (
+              <th
+                key={column.id}
+                scope="col"
+                aria-sort={column === by ? (order?.down ? "descending" : "ascending") : undefined}
+              >
+                <button
+                  type="button"
+                  title={`Sort by ${column.id}`}
+                  onClick={() => setOrder({ id: column.id, down: order?.id === column.id && !order.down })}
+                >
+                  {column.title}
+                  {column === by && (order?.down ? " ↓" : " ↑")}
+                </button>
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {rows.slice(0, SHOWN).map((point) => (
+            <tr key={JSON.stringify(point.labels)}>
+              {columns.map((column) => (
+                <td key={column.id}>{column.say(point)}</td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {rows.length > SHOWN && (
+        <p className={styles.note}>
+          The first {SHOWN} of {rows.length} points; the downloads hold all.
+        </p>
+      )}
+    </div>
+  );
+}
+
+function compare(a: string | number | undefined, b: string | number | undefined): number {
+  if (a === undefined || b === undefined) return a === b ? 0 : a === undefined ? 1 : -1;
+  return typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b));
+}

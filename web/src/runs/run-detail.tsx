@@ -1,0 +1,144 @@
+import { Button } from "@mantine/core";
+import { IconBrandPython, IconFileText, IconPlayerPlay } from "@tabler/icons-react";
+import { api } from "../api/api";
+import type { GalleryCard, Run } from "../api/types";
+import { openBench } from "../app/open-bench";
+import { showError } from "../app/send";
+import { setPage } from "../app/view-store";
+import { ExpectationTable } from "../gallery/expectation-table";
+import { Downloads, TRACE_FORMATS } from "../ui/downloads";
+import { EmptyState } from "../ui/empty-state";
+import { formatNumber, formatSi } from "../ui/format";
+import styles from "./runs.module.css";
+
+/** What the summary of a run holds, as `combbench run --json` prints it. */
+interface Summary {
+  seed: number;
+  seeds?: number[];
+  ticks: number;
+  dt_s: number;
+  elapsed_s: number;
+  digest: string;
+  verdict: string | null;
+  claim: string;
+  trip: { reason: string; time_ms: number } | null;
+  metrics: Record<string, number>;
+  metrics_std?: Record<string, number>;
+  expectations: GalleryCard["expectations"];
+}
+
+/** One run: what was expected and measured, every figure, and the files it left. */
+export function RunDetail({ run }: { run: Run }) {
+  const files = `/api/v1/runs/${run.id}`;
+  const summary = run.summary as Summary | null;
+  if (!summary)
+    return (
+      <EmptyState title={UNDONE[run.state] ?? run.state}>
+        {(run.error?.message as string | undefined) ??
+          (run.state === "cancelled"
+            ? "Start it again to have its result."
+            : `${Math.round(run.progress * 100)} % done.`)}
+      </EmptyState>
+    );
+  const live = () =>
+    api.createBench({ scenario: run.scenario_id, seed: run.seeds[0], paused: false }).then(({ id }) => {
+      openBench(id);
+      setPage("bench");
+    }, showError);
+  const hasTrace = summary.ticks > 0;
+  return (
+    <article className={styles.result}>
+      <header>
+        <h2>{run.title || run.scenario_id}</h2>
+        <small>
+          {run.scenario_id} ·{" "}
+          {run.seeds.length > 1 ? `seeds ${run.seeds[0]} to ${run.seeds.at(-1)}` : `seed ${run.seeds[0]}`}
+          {hasTrace && ` · ${formatNumber(summary.ticks, 0)} ticks of ${formatSi(summary.dt_s, "s", 3)}`} · took{" "}
+          {formatSi(summary.elapsed_s, "s", 3)}
+        </small>
+        {summary.trip && <p className={styles.refusal}>Tripped: {summary.trip.reason}</p>}
+      </header>
+      <div className={styles.overview}>
+        <img src={`${files}/thumbnail`} alt="The run as a drawing" />
+        <div className={styles.links}>
+          <Button
+            component="a"
+            href={`${files}/report`}
+            target="_blank"
+            size="xs"
+            leftSection={<IconFileText size={15} />}
+          >
+            Report
+          </Button>
+          <Button
+            component="a"
+            href={`${files}/script`}
+            download
+            size="xs"
+            variant="default"
+            leftSection={<IconBrandPython size={15} />}
+            title="A script that repeats this run over REST and checks its bits"
+          >
+            Repeat as Python script
+          </Button>
+          {hasTrace && (
+            <Button
+              size="xs"
+              variant="default"
+              leftSection={<IconPlayerPlay size={15} />}
+              title="The scenario as the library has it, on a live bench"
+              onClick={live}
+            >
+              Scenario on the bench
+            </Button>
+          )}
+          {hasTrace && (
+            <span>
+              Trace{run.seeds.length > 1 && " of the first seed"}{" "}
+              <Downloads href={(format) => `${files}/trace?format=${format}`} formats={TRACE_FORMATS} />
+            </span>
+          )}
+        </div>
+      </div>
+      {summary.expectations.length > 0 && (
+        <>
+          <h3>Expectations</h3>
+          {summary.claim && <p className={styles.note}>Claim: {summary.claim}.</p>}
+          <ExpectationTable entries={summary.expectations} verdict={summary.verdict} />
+        </>
+      )}
+      <h3>Figures</h3>
+      <table className={styles.table}>
+        <thead>
+          <tr>
+            <th scope="col">figure</th>
+            <th scope="col">{summary.metrics_std ? "mean" : "value"}</th>
+            {summary.metrics_std && <th scope="col">std</th>}
+          </tr>
+        </thead>
+        <tbody>
+          {Object.entries(summary.metrics).map(([name, value]) => (
+            <tr key={name}>
+              <th scope="row">{name}</th>
+              <td>{formatSi(value, "", 6)}</td>
+              {summary.metrics_std && <td>{formatSi(summary.metrics_std[name] ?? 0, "", 3)}</td>}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {summary.digest && (
+        <p className={styles.digest} title="SHA-256 over the trace: the same from page, command line and script">
+          digest {summary.digest}
+        </p>
+      )}
+    </article>
+  );
+}
+
+const UNDONE: Record<string, string> = {
+  queued: "It waits for its turn",
+  running: "It is running",
+  failed: "It could not be carried out",
+  cancelled: "It was cancelled",
+  aborted: "It was given up",
+};

@@ -1,0 +1,213 @@
+import { Button, Checkbox, NumberInput, SegmentedControl, Select, TextInput } from "@mantine/core";
+import { IconPlayerTrackNext } from "@tabler/icons-react";
+import { useEffect, useMemo, useState } from "react";
+import { api } from "../api/api";
+import { ApiError } from "../api/api-error";
+import type { ApiErrorBody, ScenarioSummary } from "../api/types";
+import { showError } from "../app/send";
+import { campaignOf, type Draft, EMPTY_RANGE, newDraft, pathsOf, pointCount, runOf } from "./draft";
+import styles from "./runs.module.css";
+import type { Chosen } from "./use-chosen";
+import { PathRows, ValueRows } from "./value-rows";
+
+const FIRST = "ch5-seven-step";
+
+/** What to run: a scenario with other values, over seeds, a grid, a hypercube, or devices of the process. */
+export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
+  const [draft, setDraft] = useState<Draft>(() => newDraft(FIRST));
+  const [library, setLibrary] = useState<ScenarioSummary[]>([]);
+  const [document, setDocument] = useState<unknown>(undefined);
+  const [refusal, setRefusal] = useState<ApiErrorBody | undefined>(undefined);
+  const [busy, setBusy] = useState(false);
+  const set = (part: Partial<Draft>) => setDraft({ ...draft, ...part });
+
+  useEffect(() => {
+    api.scenarios().then(setLibrary, showError);
+  }, []);
+  useEffect(() => {
+    api.scenario(draft.scenario).then((found) => setDocument(found.document), showError);
+  }, [draft.scenario]);
+  const paths = useMemo(() => pathsOf(document), [document]);
+  const isRun = draft.kind === "run";
+  const points = isRun ? 1 : pointCount(draft);
+  const total = points * draft.seeds;
+
+  const start = async () => {
+    setBusy(true);
+    setRefusal(undefined);
+    try {
+      const { id } = isRun ? await api.startRun(runOf(draft)) : await api.startSweep(campaignOf(draft));
+      onStarted({ kind: draft.kind, id });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      setRefusal(error.body);
+    } finally {
+      setBusy(false);
+    }
+  };
+
+  return (
+    <form
+      className={styles.form}
+      aria-label="Start"
+      onSubmit={(event) => {
+        event.preventDefault();
+        void start();
+      }}
+    >
+      <SegmentedControl
+        size="xs"
+        fullWidth
+        aria-label="What to start"
+        value={draft.kind}
+        data={[
+          { value: "run", label: "One run" },
+          { value: "campaign", label: "Campaign" },
+        ]}
+        onChange={(kind) => set({ kind: kind as Draft["kind"] })}
+      />
+      <Select
+        size="xs"
+        label="Scenario"
+        searchable
+        allowDeselect={false}
+        nothingFoundMessage="No scenario is called so"
+        value={draft.scenario}
+        data={library.map((s) => ({ value: s.id, label: s.title ? `${s.id}: ${s.title}` : s.id }))}
+        onChange={(scenario) => scenario && set({ scenario })}
+      />
+      <ValueRows
+        label="With other values"
+        more="Change a value"
+        placeholder="0.6"
+        rows={draft.set}
+        paths={paths}
+        onChange={(rows) => set({ set: rows })}
+      />
+      {!isRun && (
+        <>
+          <SegmentedControl
+            size="xs"
+            fullWidth
+            aria-label="How to vary"
+            value={draft.vary}
+            data={[
+              { value: "grid", label: "Grid" },
+              { value: "hypercube", label: "Latin hypercube" },
+              { value: "nothing", label: "Seeds alone" },
+            ]}
+            onChange={(vary) => set({ vary: vary as Draft["vary"] })}
+          />
+          {draft.vary === "grid" && (
+            <ValueRows
+              label="Every combination of"
+              more="Vary another value"
+              placeholder="0.05, 0.2  or  1:10:4"
+              rows={draft.grid}
+              paths={paths}
+              onChange={(grid) => set({ grid })}
+            />
+          )}
+          {draft.vary === "hypercube" && <Hypercube draft={draft} paths={paths} set={set} />}
+          <NumberInput
+            size="xs"
+            label="Devices drawn from the process"
+            description="0: the scenario's own. Needs a device with a drawing, such as lcr-350."
+            min={0}
+            max={20000}
+            value={draft.devices}
+            onChange={(n) => set({ devices: Number(n) || 0 })}
+          />
+        </>
+      )}
+      <div className={styles.pair}>
+        <NumberInput
+          size="xs"
+          label="First seed"
+          min={0}
+          value={draft.firstSeed}
+          onChange={(n) => set({ firstSeed: Number(n) || 0 })}
+        />
+        <NumberInput
+          size="xs"
+          label="Seeds"
+          min={1}
+          max={isRun ? 200 : 100_000}
+          value={draft.seeds}
+          onChange={(n) => set({ seeds: Math.max(1, Number(n) || 1) })}
+        />
+      </div>
+      {refusal && (
+        <p className={styles.refusal} role="alert">
+          {refusal.field && !refusal.message.includes(refusal.field) && <b>{refusal.field}: </b>}
+          {refusal.message}. {refusal.hint}
+        </p>
+      )}
+      <Button type="submit" size="sm" loading={busy} leftSection={<IconPlayerTrackNext size={17} />}>
+        {isRun ? `Run ${draft.seeds > 1 ? `${draft.seeds} seeds` : ""}` : `Start ${total} run${total === 1 ? "" : "s"}`}
+      </Button>
+      <p className={styles.note}>
+        {!isRun &&
+          `${points} point${points === 1 ? "" : "s"} with ${draft.seeds} seed${draft.seeds === 1 ? "" : "s"} each. `}
+        Runs are headless, at lower priority than the live benches; what has been run before is not run again.
+      </p>
+    </form>
+  );
+}
+
+function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(part: Partial<Draft>): void }) {
+  return (
+    <>
+      <PathRows
+        label="Spread evenly over"
+        more="Another range"
+        rows={draft.ranges}
+        paths={paths}
+        empty={EMPTY_RANGE}
+        onChange={(ranges) => set({ ranges })}
+        entry={(row, change, name) => (
+          <span className={styles.bounds}>
+            <TextInput
+              size="xs"
+              aria-label={`${name}: from`}
+              placeholder="from"
+              value={row.min}
+              onChange={(e) => change({ ...row, min: e.currentTarget.value })}
+            />
+            <TextInput
+              size="xs"
+              aria-label={`${name}: to`}
+              placeholder="to"
+              value={row.max}
+              onChange={(e) => change({ ...row, max: e.currentTarget.value })}
+            />
+            <Checkbox
+              size="xs"
+              label="log"
+              aria-label={`${name}: logarithmic`}
+              checked={row.log}
+              onChange={(e) => change({ ...row, log: e.currentTarget.checked })}
+            />
+          </span>
+        )}
+      />
+      <div className={styles.pair}>
+        <NumberInput
+          size="xs"
+          label="Points"
+          min={1}
+          max={20000}
+          value={draft.points}
+          onChange={(n) => set({ points: Math.max(1, Number(n) || 1) })}
+        />
+        <NumberInput
+          size="xs"
+          label="Seed of the points"
+          min={0}
+          value={draft.hypercubeSeed}
+          onChange={(n) => set({ hypercubeSeed: Number(n) || 0 })}
+        />
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,8 @@
+import { expect, it } from "vitest";
+import { metricName } from "./metric-name";
+
+it("says a metric in words and keeps whose it is", () => {
+  expect(metricName("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
+  expect(metricName("control.effort_ratio")).toBe("effort ratio");
+  expect(metricName("twins.healthy.control.effort_ratio")).toBe("healthy: control effort ratio");
+});

@@ -1,0 +1,7 @@
+/** A metric in words: "diagnosis.kalman.correct_fraction" reads "kalman correct fraction". */
+export function metricName(metric: string): string {
+  return metric
+    .replace(/^(?:control|device|diagnosis|identify|lateral|sensing)\./, "")
+    .replace(/^twins\.([^.]+)\./, "$1: ")
+    .replaceAll(/[._]/g, " ");
+}

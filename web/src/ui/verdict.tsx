@@ -1,0 +1,20 @@
+import { IconAdjustments, IconCheck, IconCircleHalf2, IconX } from "@tabler/icons-react";
+import styles from "./verdict.module.css";
+
+const MARKS = {
+  reproduced: { tone: "good", icon: <IconCheck size={13} stroke={2.6} /> },
+  "reproduced by tuning": { tone: "good", icon: <IconAdjustments size={13} stroke={2.2} /> },
+  partly: { tone: "fair", icon: <IconCircleHalf2 size={13} stroke={2.2} /> },
+  "not reproduced": { tone: "poor", icon: <IconX size={13} stroke={2.6} /> },
+};
+
+/** The verdict on a claim: a word, a mark of its own shape, a colour. */
+export function Verdict({ verdict }: { verdict: string | null }) {
+  const known = verdict !== null && verdict in MARKS ? MARKS[verdict as keyof typeof MARKS] : undefined;
+  return (
+    <span className={styles.verdict} data-tone={known?.tone}>
+      {known?.icon}
+      {verdict ?? "no claim"}
+    </span>
+  );
+}
