@@ -86,6 +86,8 @@ def test_a_condition_that_never_comes_can_be_called_off(live: Any) -> None:
     armed = live.http.post(recordings(bench), json={"when": "plant.displacement > 1e6"}).json()
     answer = live.http.post(f"{recordings(bench)}/{armed['id']}/stop")
     assert answer.status_code == 200 and answer.json()["ticks"] == 0
+    empty = live.http.post(f"/api/v1/recordings/{armed['id']}/replay", json={})
+    assert empty.status_code == 409 and "empty" in empty.text
     wrong = live.http.post(recordings(bench), json={"when": "plant.displacment > 1"})
     assert wrong.status_code == 422 and "plant.displacement" in wrong.text
     empty = live.http.post(recordings(bench), json={"ticks": 0})
