@@ -66,6 +66,8 @@ class Session:
 
     replay_of = ""
     """The recording it plays, if it does."""
+    recorded_scale: float | None = None
+    """Device seconds per wall second that was recorded at."""
 
     def __init__(
         self,
