@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from html import escape
 
 import numpy as np
 
 from core.block import FloatArray
 from scenarios.run import Result
-from scenarios.svg import COLOURS, thin
+from scenarios.svg import COLOURS
 
 WIDTH, HEIGHT = 240, 120
 LANE = 9
@@ -42,8 +43,7 @@ def _motion(result: Result) -> list[str]:
     names = set(result.board.signals.names)
     diagnosers = [name for name in result.board.spec.diagnosers if f"{name}.winner" in names][:2]
     bottom = HEIGHT - 4 - len(diagnosers) * (LANE + 7)
-    ticks = np.arange(len(result.outputs), dtype=float)
-    width = WIDTH / max(1.0, ticks[-1])
+    width = WIDTH / (len(result.outputs) - 1)
     drawn = {name: result.signal(f"{name}.displacement") for name in ("model", "plant")}
     peak = max(float(np.nanmax(np.abs(values))) for values in drawn.values()) or 1.0
     middle, scale = (4 + bottom) / 2, (bottom - 4) / 2 / peak
@@ -51,15 +51,30 @@ def _motion(result: Result) -> list[str]:
     parts = [
         f'<path d="M{tick * width:.1f} 2V{bottom}" stroke="#888" stroke-dasharray="2 2"/>' for tick in sorted(moments)
     ]
-    for (_, values), colour in zip(drawn.items(), ("#999", MEASURED), strict=True):
-        x, y = thin(ticks, values, COLUMNS)
-        points = " ".join(f"{a * width:.1f} {middle - b * scale:.1f}" for a, b in zip(x, y, strict=True))
-        parts.append(f'<path d="M{points}" fill="none" stroke="{colour}" stroke-linejoin="round"/>')
+    for values, colour in zip(drawn.values(), ("#999", COLOURS[0]), strict=True):
+        parts.append(_band(values, lambda value: middle - value * scale, colour))
     for number, name in enumerate(diagnosers):
         top = bottom + 3 + number * (LANE + 7)
         parts += _lane(result.signal(f"{name}.truth"), top, 3)
         parts += _lane(result.signal(f"{name}.winner"), top + 4, LANE)
     return parts
+
+
+def _band(values: FloatArray, place: Callable[[float], float], colour: str) -> str:
+    """Draw the room between the smallest and the largest value of each column; a slow trace is a line."""
+    edges = np.linspace(0, len(values), min(COLUMNS, len(values)) + 1).astype(np.int64)
+    upper, lower = [], []
+    for x, (first, end) in zip(np.linspace(0.0, WIDTH, len(edges) - 1), itertools.pairwise(edges), strict=True):
+        piece = values[first : end + 1]
+        piece = piece[np.isfinite(piece)]
+        if len(piece):
+            upper.append(f"{x:.1f} {place(float(piece.max())):.1f}")
+            lower.append(f"{x:.1f} {place(float(piece.min())):.1f}")
+    points = " ".join([*upper, *reversed(lower)])
+    return (
+        f'<path d="M{points}Z" fill="{colour}" fill-opacity=".45" stroke="{colour}" '
+        'stroke-width=".8" stroke-linejoin="round"/>'
+    )
 
 
 def _lane(verdict: FloatArray, top: float, height: float) -> list[str]:

@@ -23,6 +23,7 @@ from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
+from server.bench.portrait import design_of
 from server.bench.recorder import CLOSED, Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
@@ -136,6 +137,20 @@ class Benches:
         self._sessions[twin.id] = twin
         return twin
 
+    async def variant(self, session: Session, values: dict[str, Any]) -> Session:
+        """Make a second bench that begins as this one is set now, with values written over it.
+
+        Raises
+        ------
+        InputError
+            If the values do not fit.
+        ApiError
+            If there are too many benches.
+        """
+        document = await self._engine.call(design_of, session)
+        paused, scale = not session.is_running, session.pacer.scale
+        return await self.create(document, values, session.board.spec.seed, paused, scale)
+
     async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> Session:
         """Make a bench that plays a recording, at a multiple of the pace it was recorded at.
 
@@ -163,8 +178,11 @@ class Benches:
             text = f"this version cannot play it: {error}"
             raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
         about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
-        pace = min(max((about.get("time_scale") or DEFAULT_SCALE) * speed, MIN_SCALE), MAX_SCALE)
-        return Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
+        recorded = about.get("time_scale") or DEFAULT_SCALE
+        pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
+        session = Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
+        session.recorded_scale = recorded
+        return session
 
     async def close_bench(self, session: Session) -> None:
         """Stop a bench for good; its recordings are made whole."""

@@ -93,3 +93,4 @@ class Bench(BenchStatus):
     parameters: dict[str, Any] = Field(description="The scenario as it is now, every live change in it")
     view3d: str | None = Field(description="Path of the 3D page, if there is one")
     replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")
+    recorded_scale: float | None = Field(None, description="Device seconds per wall second it was recorded at")

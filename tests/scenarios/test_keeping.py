@@ -71,6 +71,9 @@ def test_a_drawing_shows_motion_verdicts_and_what_was_done() -> None:
     assert drawing.attrib["aria-label"] == get("ch5-seven-step").head.title
     paths = [one for one in drawing.iter(f"{SVG}path") if "stroke-dasharray" not in one.attrib]
     assert len(paths) == 2  # the model and the shuttle
+    # each is the room between its smallest and its largest value: the shuttle's fills the field, give or take a line
+    heights = [float(y) for y in re.findall(r"-?[\d.]+", paths[1].attrib["d"])[1::2]]
+    assert min(heights) == pytest.approx(4.0, abs=0.2) and max(heights) - min(heights) > 80.0
     dashes = [one for one in drawing.iter(f"{SVG}path") if "stroke-dasharray" in one.attrib]
     assert len(dashes) == len(get("ch5-seven-step").head.events)
     lanes = list(drawing.iter(f"{SVG}rect"))

@@ -28,6 +28,20 @@ LIBRARY = [pytest.param(entry, id=entry.id) for entry in library()]
 # -- the library
 
 
+ADAPTIVE_CHAPTERS = """
+    ch3-mrac-mass-x10 ch3-mrac-damping-x5 ch3-mrac-spring-x2 ch3-case1-aged-mass ch3-case2-broken-truss
+    ch3-case3-adhesion ch3-ageing-four-weeks ch3-stvsc-mass ch3-stvsc-long-stroke ch3-stvsc-pull-in ch3-pull-in-map
+    ch3-ffrls-b10 ch3-ffrls-b30 ch3-indirect-mrac ch4-regulator ch4-tracking ch4-double-integrator ch4-lcr-two-tone
+    appA-spr appA-persistency appB-mit appB-lyapunov appB-dressler appB-price appB-monopoli
+"""
+
+
+def test_every_experiment_of_chapters_3_and_4_and_the_appendices_is_there():
+    for name in ADAPTIVE_CHAPTERS.split():
+        head = get(name).head
+        assert head.claim and head.verdict and head.expect, name
+
+
 @pytest.mark.parametrize("scenario", LIBRARY)
 def test_library_scenario_keeps_its_expectations(scenario):
     result = run(scenario)

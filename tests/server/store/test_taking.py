@@ -173,6 +173,7 @@ def test_a_recording_is_played_on_the_streams_of_a_bench(live: Any) -> None:
     assert answer.status_code == 201, answer.text
     replay = answer.json()
     assert replay["replay_of"] == kept and replay["tick"] == 1000 and replay["time_scale"] == pytest.approx(0.1)
+    assert replay["recorded_scale"] == pytest.approx(0.01) and bench["recorded_scale"] is None
     assert [signal["name"] for signal in replay["signals"]] == [signal["name"] for signal in bench["signals"]]
     assert live.command(replay["id"], "start").status_code == 200
     until(lambda: live.get(replay["id"])["tick"] == 4000)

@@ -1,8 +1,22 @@
 import { client, data } from "./client";
-import type { BodeOf, Design, Document, NewBench, NewRun, SweptSine } from "./types";
+import type {
+  AliasSource,
+  BodeOf,
+  CompareWith,
+  Design,
+  Document,
+  ExcitationSource,
+  MapSource,
+  NewBench,
+  NewRun,
+  SweptSine,
+  Trace,
+  Wanted,
+} from "./types";
 
 const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
 const run = (run_id: string) => ({ params: { path: { run_id } } });
+const recording = (recording_id: string) => ({ params: { path: { recording_id } } });
 const sweep = (sweep_id: string) => ({ params: { path: { sweep_id } } });
 
 /** The REST calls of the page. */
@@ -18,6 +32,23 @@ export const api = {
     data(
       client.GET("/api/v1/benches/{bench_id}/unstable-region", { params: { path: { bench_id }, query: { drive_v } } }),
     ),
+  explanation: (bench_id: string, name: string, tick: number) =>
+    data(
+      client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/explain", {
+        params: { path: { bench_id, name }, query: { tick } },
+      }),
+    ),
+  aliases: (bench_id: string, name: string, body: Partial<AliasSource>) =>
+    data(
+      client.POST("/api/v1/benches/{bench_id}/diagnosers/{name}/aliases", {
+        params: { path: { bench_id, name } },
+        body: { within_um: 0, ...body },
+      }),
+    ),
+  positiveReal: (numerator: number[], denominator: number[]) =>
+    data(client.POST("/api/v1/theory/positive-real", { body: { numerator, denominator } })),
+  persistency: (body: ExcitationSource) => data(client.POST("/api/v1/theory/persistency", { body })),
+  instabilityMap: (body: MapSource) => data(client.POST("/api/v1/theory/instability-map", { body })),
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
@@ -32,12 +63,37 @@ export const api = {
   sweepPoints: (id: string) => data(client.GET("/api/v1/sweeps/{sweep_id}/points", sweep(id))),
   scenario: (scenario_id: string) =>
     data(client.GET("/api/v1/scenarios/{scenario_id}", { params: { path: { scenario_id } } })),
+  trace: (bench_id: string, signals: string, start_tick: number, end_tick: number, columns: number) =>
+    data(
+      client.GET("/api/v1/benches/{bench_id}/trace", {
+        params: { path: { bench_id }, query: { signals, start_tick, end_tick, columns } },
+      }),
+    ) as Promise<Trace>,
+  recordings: async () => (await data(client.GET("/api/v1/recordings"))).recordings,
+  recording: (id: string) => data(client.GET("/api/v1/recordings/{recording_id}", recording(id))),
+  record: (id: string, body: Wanted) =>
+    data(client.POST("/api/v1/benches/{bench_id}/recordings", { ...bench(id), body })),
+  stopRecording: (bench_id: string, recording_id: string) =>
+    data(
+      client.POST("/api/v1/benches/{bench_id}/recordings/{recording_id}/stop", {
+        params: { path: { bench_id, recording_id } },
+      }),
+    ),
+  removeRecording: (id: string) => data(client.DELETE("/api/v1/recordings/{recording_id}", recording(id))),
+  replay: (id: string) =>
+    data(
+      client.POST("/api/v1/recordings/{recording_id}/replay", { ...recording(id), body: { speed: 1, paused: false } }),
+    ),
+  compare: (id: string, body: CompareWith) =>
+    data(client.POST("/api/v1/recordings/{recording_id}/compare", { ...recording(id), body })),
   benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
   removeBench: (id: string) => data(client.DELETE("/api/v1/benches/{bench_id}", bench(id))),
   fork: (id: string, snapshot: string | null = null) =>
     data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body: { snapshot } })),
+  variant: (id: string, set: Record<string, unknown>) =>
+    data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set } })),
   snapshots: async (id: string) =>
     (await data(client.GET("/api/v1/benches/{bench_id}/snapshots", bench(id)))).snapshots,
   keep: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/snapshots", { ...bench(id), body: {} })),

@@ -3,13 +3,18 @@ import type { components } from "./schema";
 /** The server's own types, under the names the page uses. */
 type Schemas = components["schemas"];
 
+export type Account = Schemas["Account"];
 export type ActiveFault = Schemas["ActiveFault"];
+export type AliasReport = Schemas["AliasReport"];
+export type AliasSource = Schemas["AliasSource"];
 export type ApiErrorBody = Schemas["ErrorBody"];
 export type Bode = Schemas["Bode"];
 export type Bench = Schemas["Bench"];
 export type BlockCard = Schemas["BlockCard"];
 export type BodeOf = Schemas["BodeOf"];
 export type Design = Schemas["Design"];
+export type CompareWith = Schemas["CompareWith"];
+export type Comparison = Schemas["Comparison"];
 export type Device = Schemas["DeviceCard"];
 export type DeviceCatalogue = Schemas["Devices"];
 export type Equation = Schemas["EquationCard"];
@@ -17,14 +22,21 @@ export type Evaluation = Schemas["Evaluation"];
 export type DiagnosisTally = Schemas["DiagnosisTally"];
 export type FaultProfile = Schemas["Profile"];
 export type GalleryCard = Schemas["GalleryCard"];
+export type ExcitationSource = Schemas["ExcitationSource"];
+export type ExcitationReport = Schemas["ExcitationReport"];
 export type Identification = Schemas["Identification"];
+export type InstabilityMap = Schemas["InstabilityMap"];
 export type LogEntry = Schemas["Event"];
+export type MapSource = Schemas["MapSource"];
 export type MeasuredPlant = Schemas["MeasuredPlant"];
+export type ModelAccount = Schemas["ModelAccount"];
 export type NewBench = Schemas["NewBench"];
 export type NewRun = Schemas["NewRun"];
 export type Parameter = Schemas["ParameterCard"];
 export type PointTally = Schemas["PointTally"];
+export type PositiveReal = Schemas["PositiveRealReport"];
 export type ProcessSpread = Schemas["ProcessSpread"];
+export type Recording = Schemas["Recording"];
 export type Run = Schemas["Run"];
 export type ScenarioSummary = Schemas["ScenarioCard"];
 export type Score = Schemas["Scores"];
@@ -32,6 +44,8 @@ export type Signal = Schemas["Signal"];
 export type SweepPoints = Schemas["SweepPoints"];
 export type SweepRun = Schemas["SweepRun"];
 export type SweptSine = Schemas["SweptSine"];
+export type Wanted = Schemas["Wanted"];
+export type Trace = Schemas["Trace"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
 
 /** A scenario document as plain values. */
@@ -48,4 +62,6 @@ export type Command =
   | Schemas["Heal"]
   | Schemas["Set"]
   | Schemas["Switch"]
-  | Schemas["ResetTrip"];
+  | Schemas["ResetTrip"]
+  | Schemas["Seek"]
+  | Schemas["Loop"];

@@ -2,6 +2,8 @@ import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/jump";
+import { saveFile } from "../ui/save-file";
+import { layoutNow } from "./layouts";
 import { openBench } from "./open-bench";
 import { send, showError } from "./send";
 import { stepTimeScale } from "./time-scale";
@@ -39,6 +41,7 @@ export const actions = {
   fork: () => void fork(),
   forkBeforeTrip: () => void forkBeforeTrip(),
   keep: () => void keep(),
+  record: () => void record(),
   saveScenario: () => void saveScenario(),
 };
 
@@ -53,6 +56,22 @@ async function fork(snapshot: string | null = null): Promise<void> {
     const made = await api.fork(from.id, snapshot);
     openBench(made.id);
     notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
+  } catch (error) {
+    showError(error);
+  }
+}
+
+/** Begin to record with the last moments, or end what is recorded. */
+async function record(): Promise<void> {
+  const from = bench();
+  if (!from) return;
+  try {
+    if (from.recording.length > 0) {
+      for (const id of from.recording) await api.stopRecording(from.id, id);
+      notifications.show({ title: "Recorded", message: "Replay, download or compare it in the Recordings panel." });
+    } else {
+      await api.record(from.id, { name: from.title.slice(0, 100) || "recording", layout: layoutNow() ?? null });
+    }
   } catch (error) {
     showError(error);
   }
@@ -91,14 +110,11 @@ async function saveScenario(): Promise<void> {
   if (!from) return;
   try {
     const toml = await api.scenarioToml(from.id);
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([toml], { type: "application/toml" }));
-    link.download = `${from.scenario_id || "bench"}-${from.tick}.toml`;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    const name = `${from.scenario_id || "bench"}-${from.tick}.toml`;
+    saveFile(name, new Blob([toml], { type: "application/toml" }));
     notifications.show({
       title: "Saved as a scenario",
-      message: `Run it again with: combbench run ${link.download}. It gives the same bits.`,
+      message: `Run it again with: combbench run ${name}. It gives the same bits.`,
     });
   } catch (error) {
     showError(error);

@@ -16,6 +16,7 @@ import { benchInAddress } from "./open-bench";
 import { PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
+import { ReplayBar } from "./replay-bar";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
 import { pageInAddress, useView } from "./view-store";
@@ -54,6 +55,7 @@ export function App() {
   return (
     <div className="page" data-stale={stale}>
       {phone ? null : <Header />}
+      <ReplayBar />
       <Banner hints={!phone && page === "bench"} />
       {failure ? (
         <EmptyState title={failure.title} action={<Button onClick={start}>Try again</Button>}>

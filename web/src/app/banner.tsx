@@ -8,6 +8,7 @@ import { actions } from "./actions";
 import styles from "./banner.module.css";
 import { openAnyBench, startAgain } from "./first-bench";
 import { showError } from "./send";
+import { tryThis } from "./try-this";
 import { useLasting } from "./use-lasting";
 
 /** A connection that is back this soon was not worth a word. */
@@ -19,6 +20,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const tip = useBench((s) => s.bench && tryThis(s.bench));
   const lost = useLasting(connection.phase === "waiting" && !connection.reason?.quiet, BLINK_MS);
   const [hint, setHint] = useState(() => localStorage.getItem(HINT_KEY) === null);
 
@@ -68,13 +70,9 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         </Button>
       </Line>
     );
-  if (hint && hints)
+  if (hint && hints && tip)
     return (
-      <Line
-        tone="hint"
-        title="Try this:"
-        text="inject Added mass +5 % under Faults, and watch Diagnosis find it. Then change the controller above."
-      >
+      <Line tone="hint" title="Try this:" text={tip}>
         <CloseButton
           size="sm"
           aria-label="Dismiss the hint"

@@ -62,12 +62,19 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "faults", "faults", { below: "schematic" });
     add(api, "environment", "environment", { within: "faults", inactive: true });
     add(api, "card", "card", { within: "faults", inactive: true });
+    add(api, "why", "why", { within: "faults", inactive: true });
+    add(api, "labs", "labs", { within: "faults", inactive: true });
+    add(api, "blind", "blind", { within: "faults", inactive: true });
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
     add(api, "events", "events", { within: "lanes", inactive: true });
+    add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    add(api, "twins", "twins", { within: "lanes", inactive: true });
+    add(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
+    add(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.26, h: 0.34 },
       motion: { h: 0.36 },
@@ -80,15 +87,22 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "schematic", "schematic", { left: "motion" });
     add(api, "view3d", "view3d", { right: "motion" });
     add(api, "card", "card", { below: "view3d" });
+    add(api, "why", "why", { within: "card", inactive: true });
     add(api, "scores", "scores", { within: "card", inactive: true });
     add(api, "events", "events", { within: "card", inactive: true });
     add(api, "faults", "faults", { below: "schematic" });
     add(api, "environment", "environment", { within: "faults", inactive: true });
+    add(api, "labs", "labs", { within: "faults", inactive: true });
+    add(api, "blind", "blind", { within: "faults", inactive: true });
     add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     add(api, "lanes", "lanes", { below: "voltage" });
+    add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    add(api, "twins", "twins", { within: "lanes", inactive: true });
+    add(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
     add(api, "phase", "phase", { within: "lanes", inactive: true });
     add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     add(api, "identify", "identify", { within: "lanes", inactive: true });
+    add(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.225, h: 0.32 },
       view3d: { w: 0.25, h: 0.4 },

@@ -24,6 +24,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "h", shown: "H", does: "heal all faults", group: "Bench", run: actions.healAll },
   { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
   { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
+  { key: "v", shown: "V", does: "record, and stop", group: "Bench", run: actions.record },
   { key: "f", shown: "F", does: "fork", group: "Bench", run: actions.fork },
   { key: "k", shown: "K", does: "keep this moment", group: "Bench", run: actions.keep },
   { key: "n", shown: "N", does: "new bench", group: "Bench", run: actions.newBench },

@@ -1,4 +1,5 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
+import type { Document } from "../api/types";
 import { scopeConfig } from "../panels/scope/scope-config";
 import { BUILT_IN } from "./built-in-layouts";
 import { PANELS } from "./panels";
@@ -6,7 +7,7 @@ import { type LayoutName, useView } from "./view-store";
 
 let current: DockviewApi | undefined;
 
-const storageKey = (name: LayoutName) => `combbench.layout.3.${name}`;
+const storageKey = (name: LayoutName) => `combbench.layout.4.${name}`;
 
 /** The dock to lay out; called once it stands. */
 export function attachDock(api: DockviewApi): void {
@@ -28,6 +29,14 @@ export function setLayout(name: LayoutName): void {
   arrange(name, undefined);
 }
 
+/** How the panels stand now, to be kept with a recording. */
+export const layoutNow = () => current?.toJSON() as Document | undefined;
+
+/** Put the panels as they stood when a recording was made. */
+export function restoreLayout(layout: Document): void {
+  arrange(useView.getState().layout, layout as unknown as SerializedDockview);
+}
+
 /** Open another panel of a kind beside the active one. */
 export function addPanel(kind: string): void {
   current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, title: PANELS[kind].title, params: {} });
@@ -47,8 +56,9 @@ export function focusNextGroup(): void {
   next?.element.querySelector<HTMLElement>("[role=tab][aria-selected=true], [role=tab], button")?.focus();
 }
 
-/** Bring the panel of a kind to the front, opening one if there is none. */
+/** Bring the panel of a kind to the front, opening one if there is none; without a dock it takes the place for one. */
 export function showPanel(kind: string): void {
+  useView.setState({ extra: kind });
   const panel = current?.panels.find((p) => p.view.contentComponent === kind);
   if (panel) panel.api.setActive();
   else addPanel(kind);

@@ -13,6 +13,7 @@ describe("formatSi", () => {
     [2000, "Hz", "2.000\u00a0kHz"],
     [0.74, "ms", "740.0\u00a0µs"],
     [0, "um", "0.000\u00a0µm"],
+    [0.99999999, "ms", "1.000\u00a0ms"],
     [5, "1", "5.000"],
     [1e-5, "", "1.000e−5"],
   ])("%s %s", (value, unit, text) => expect(formatSi(value, unit)).toBe(text));

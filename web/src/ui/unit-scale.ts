@@ -70,8 +70,8 @@ function plain(toBase: number): [number, string] {
 
 function decimalsFor(shown: number, digits: number): number {
   if (!(shown > 0)) return digits - 1;
-  const before = Math.floor(Math.log10(shown)) + 1;
-  return Math.max(0, Math.min(digits + 2, digits - Math.max(before, shown >= 1 ? 1 : before)));
+  const before = Math.floor(Math.log10(shown * 1.0000005)) + 1; // what reads as 1 counts as 1
+  return Math.max(0, Math.min(digits + 2, digits - before));
 }
 
 /** Numbers without a unit, and vectors whose components differ in theirs. */

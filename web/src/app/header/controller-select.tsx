@@ -7,6 +7,7 @@ import { actions } from "../actions";
 export function ControllerSelect() {
   const active = useBench((s) => s.bench?.controller);
   const controllers = useBench((s) => s.bench?.controllers);
+  const replay = useBench((s) => Boolean(s.bench?.replay_of));
   const { block } = useCatalog();
   return (
     <Select
@@ -16,7 +17,7 @@ export function ControllerSelect() {
       aria-label="Controller"
       allowDeselect={false}
       value={active ?? null}
-      disabled={!controllers}
+      disabled={!controllers || replay}
       data={(controllers ?? []).map((name) => ({
         value: name,
         label: block("control", name)?.title ?? name.replaceAll("_", " "),

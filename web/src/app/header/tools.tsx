@@ -8,9 +8,12 @@ import {
   IconKeyboard,
   IconLayoutDashboard,
   IconMoon,
+  IconPlayerRecord,
+  IconPlayerRecordFilled,
   IconSun,
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import { useBench } from "../../stream/bench-store";
 import { actions } from "../actions";
 import { themeSwitch } from "../theme-switch";
 import { useScheme } from "../use-scheme";
@@ -27,7 +30,13 @@ interface Tool {
 export function Tools() {
   const scheme = useScheme();
   const narrow = useMediaQuery("(max-width: 1180px)", undefined, { getInitialValueInEffect: false });
+  const recording = useBench((s) => (s.bench?.recording.length ?? 0) > 0);
   const keep: Tool[] = [
+    {
+      label: recording ? "Stop recording (V)" : "Record every signal (V)",
+      icon: recording ? <IconPlayerRecordFilled size={19} color="var(--alarm)" /> : <IconPlayerRecord size={19} />,
+      run: actions.record,
+    },
     { label: "Save what happened as a scenario (S)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
     { label: "Fork: a copy of this bench from now on (F)", icon: <IconGitFork size={19} />, run: actions.fork },
     { label: "Keep this moment, to fork from later (K)", icon: <IconBookmark size={19} />, run: actions.keep },

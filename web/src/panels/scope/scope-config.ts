@@ -6,6 +6,8 @@ export interface ScopeConfig {
   mode: "roll" | "triggered";
   windowMs: number;
   trigger: Trigger;
+  /** Whether cursors and figures are shown. */
+  measure?: boolean;
 }
 
 export const DEFAULT_TRIGGER: Trigger = {

@@ -6,10 +6,14 @@ import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { EmptyState } from "../../ui/empty-state";
+import { formatSi } from "../../ui/format";
+import { ExportMenu } from "./export-menu";
 import { marksNow } from "./marks-now";
+import { MeasureStrip } from "./measure-strip";
 import { RearmContext } from "./rearm-context";
 import styles from "./scope.module.css";
 import type { ScopeConfig } from "./scope-config";
+import { type CursorPair, type PlotArea, ScopeCursors } from "./scope-cursors";
 import { ScopeLegend } from "./scope-legend";
 import { ScopePlot } from "./scope-plot";
 import { ScopeToolbar, type TriggerState } from "./scope-toolbar";
@@ -36,6 +40,8 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
     plot.current?.move(start, end),
   );
   const [pixels, setPixels] = useState(0);
+  const [area, setArea] = useState<PlotArea | undefined>(undefined);
+  const [cursors, setCursors] = useState<CursorPair>([0.25, 0.75]);
   const [trigger, setTrigger] = useState<TriggerState>("none");
 
   useEffect(() => {
@@ -51,10 +57,14 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
       gestures: { onSpan: look, onLive: goLive },
     });
     plot.current = made;
-    setPixels(made.pixels);
+    const measured = () => {
+      setPixels(made.pixels);
+      setArea(made.area);
+    };
+    measured();
     const observer = new ResizeObserver(([entry]) => {
       made.resize(entry.contentRect.width, entry.contentRect.height);
-      setPixels(made.pixels);
+      measured();
     });
     observer.observe(host.current);
     return () => {
@@ -77,13 +87,26 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
   });
 
   const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
+  const sayTime = (share: number) => {
+    const shown = plot.current;
+    return shown?.frame
+      ? formatSi((shown.span.start + share * (shown.span.end - shown.span.start)) * shown.frame.dtMs, "ms")
+      : "";
+  };
   const onKeyDown = useScopeKeys(plot, look, goLive);
   if (dtMs === undefined)
     return <EmptyState title="No bench yet">The scope fills as soon as a bench is connected.</EmptyState>;
   return (
     <section className={styles.scope} aria-label={`Scope: ${traces.map((t) => t.name).join(", ") || "empty"}`}>
       <RearmContext value={rearm}>
-        <ScopeToolbar config={config} onChange={onChange} past={view.kind === "past"} onLive={goLive} trigger={trigger}>
+        <ScopeToolbar
+          config={config}
+          onChange={onChange}
+          past={view.kind === "past"}
+          onLive={goLive}
+          trigger={trigger}
+          exporter={traces.length > 0 && <ExportMenu plot={plot} />}
+        >
           <ScopeLegend
             traces={traces}
             plot={plot}
@@ -97,16 +120,22 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
           Pick signals with +. Every signal of the bench can be shown, taps inside the blocks included.
         </EmptyState>
       ) : (
-        // biome-ignore lint/a11y/useSemanticElements: a live plot has no element of its own
-        <div
-          ref={host}
-          className={styles.plot}
-          role="group"
-          // biome-ignore lint/a11y/noNoninteractiveTabindex: the plot is worked by keys
-          tabIndex={0}
-          onKeyDown={onKeyDown}
-          aria-label="Plot. Arrow keys move, plus and minus zoom, L returns to live."
-        />
+        <>
+          <div className={styles.stage}>
+            {/* biome-ignore lint/a11y/useSemanticElements: a live plot has no element of its own */}
+            <div
+              ref={host}
+              className={styles.plot}
+              role="group"
+              // biome-ignore lint/a11y/noNoninteractiveTabindex: the plot is worked by keys
+              tabIndex={0}
+              onKeyDown={onKeyDown}
+              aria-label="Plot. Arrow keys move, plus and minus zoom, L returns to live."
+            />
+            {config.measure && area && <ScopeCursors area={area} at={cursors} say={sayTime} onMove={setCursors} />}
+          </div>
+          {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}
+        </>
       )}
     </section>
   );

@@ -13,6 +13,7 @@ import type { Envelope } from "./envelope-path";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { drawMarks, type Marks } from "./scope-marks";
 import { type ScopeModel, scopeOptions } from "./scope-options";
+import type { ScopePicture } from "./scope-picture";
 
 const MOST_AXES = 3;
 
@@ -99,6 +100,31 @@ export class ScopePlot {
     const { tick } = hover;
     const inSight = tick !== undefined && tick >= this.span.start && tick < this.span.end;
     return inSight ? columnAt(this.frame, trace, tick) : this.frame.latest[trace];
+  }
+
+  /** The field of the traces within the host, in pixels of the page. */
+  get area(): { left: number; top: number; width: number; height: number } {
+    const { left, top, width, height } = this.plot.bbox;
+    const ratio = uPlot.pxRatio;
+    return { left: left / ratio, top: top / ratio, width: width / ratio, height: height / ratio };
+  }
+
+  /** What is shown now, to be drawn elsewhere; nothing before the first picture has come. */
+  picture(): ScopePicture | undefined {
+    if (!this.frame) return undefined;
+    return {
+      traces: this.options.traces,
+      envelopes: this.envelopes,
+      times: columnTimes(this.frame, this.origin),
+      units: this.units,
+      scales: this.scales,
+      ranges: this.units.map((_, axis) => this.ranges[axis] ?? { min: -1, max: 1 }),
+      span: this.span,
+      origin: this.origin,
+      isTriggered: this.frame.triggered,
+      dtMs: this.frame.dtMs,
+      marks: this.options.marks(),
+    };
   }
 
   /** The scale of a unit's axis, or undefined if it has got none. */

@@ -1,4 +1,5 @@
-import { NativeSelect } from "@mantine/core";
+import { ActionIcon, NativeSelect } from "@mantine/core";
+import { IconRuler2 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { formatSi } from "../../ui/format";
 import styles from "./scope.module.css";
@@ -15,11 +16,12 @@ interface ScopeToolbarProps {
   past: boolean;
   onLive(): void;
   trigger: TriggerState;
+  exporter: ReactNode;
   children: ReactNode;
 }
 
 /** What a scope shows and how: signals, roll or trigger, window, live. */
-export function ScopeToolbar({ config, onChange, past, onLive, trigger, children }: ScopeToolbarProps) {
+export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter, children }: ScopeToolbarProps) {
   const windows = WINDOWS_MS.includes(config.windowMs)
     ? WINDOWS_MS
     : [...WINDOWS_MS, config.windowMs].sort((a, b) => a - b);
@@ -54,6 +56,17 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, children
           }))}
           onChange={(event) => onChange({ ...config, windowMs: Number(event.currentTarget.value) })}
         />
+        <ActionIcon
+          size={26}
+          variant={config.measure ? "light" : "default"}
+          aria-label="Measure"
+          aria-pressed={config.measure ?? false}
+          title="Cursors A and B, and figures over what is visible"
+          onClick={() => onChange({ ...config, measure: !config.measure })}
+        >
+          <IconRuler2 size={15} />
+        </ActionIcon>
+        {exporter}
         <button
           type="button"
           className={styles.live}

@@ -1,0 +1,156 @@
+import { Button, NativeSelect, Slider } from "@mantine/core";
+import { IconArrowLeft, IconRepeat } from "@tabler/icons-react";
+import { useCallback, useState } from "react";
+import { api } from "../api/api";
+import type { Bench } from "../api/types";
+import { useAnswer } from "../api/use-answer";
+import { useBench } from "../stream/bench-store";
+import { formatNumber } from "../ui/format";
+import { openAnyBench } from "./first-bench";
+import { restoreLayout } from "./layouts";
+import { openBench } from "./open-bench";
+import styles from "./replay-bar.module.css";
+import { send, showError } from "./send";
+
+/** Multiples of the pace it was recorded at. */
+const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
+
+/** The bench a replay was begun from, to go back to. */
+let cameFrom: string | undefined;
+
+/** Play a recording in this page. */
+export async function openReplay(recording: string): Promise<void> {
+  const from = useBench.getState().bench;
+  if (from && !from.replay_of) cameFrom = from.id;
+  openBench((await api.replay(recording)).id);
+}
+
+/** While the page plays a recording: where it is, how fast, which span again and again, and the way back. */
+export function ReplayBar() {
+  const replay = useBench((s) => s.bench?.replay_of);
+  const bench = useBench((s) => s.bench);
+  return replay && bench ? <Bar key={bench.id} recording={replay} bench={bench} /> : null;
+}
+
+function Bar({ recording, bench }: { recording: string; bench: Bench }) {
+  const ask = useCallback(() => api.recording(recording), [recording]);
+  const { value: about } = useAnswer(ask, () => undefined);
+  const [span, setSpan] = useState<[number, number] | undefined>(undefined);
+  const [looping, setLooping] = useState(false);
+  const [held, setHeld] = useState<number | undefined>(undefined);
+  if (!about) return null;
+  const first = about.start_tick;
+  const end = first + about.ticks;
+  const [from, to] = span ?? [first, end];
+  const ms = (tick: number) => formatNumber(tick * about.dt_ms, 2);
+  const speed = bench.recorded_scale && bench.time_scale ? bench.time_scale / bench.recorded_scale : undefined;
+  const nearest =
+    speed && SPEEDS.reduce((a, b) => (Math.abs(Math.log(b / speed)) < Math.abs(Math.log(a / speed)) ? b : a));
+
+  const loop = async (next: boolean, [start_tick, end_tick]: [number, number]) => {
+    setLooping(next);
+    const took = await send(
+      next ? { kind: "loop", start_tick, end_tick } : { kind: "loop" },
+      next ? "Looping" : "Plays to the end",
+    );
+    if (took && next && bench.state !== "running") await send({ kind: "start" });
+  };
+  const leave = async () => {
+    try {
+      const id = cameFrom;
+      if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
+      else await openAnyBench();
+      await api.removeBench(bench.id);
+    } catch (error) {
+      showError(error);
+    }
+  };
+
+  return (
+    <section className={styles.bar} aria-label="Replay">
+      <strong>Replay</strong>
+      <span className={styles.name}>{about.name}</span>
+      <div className={styles.track}>
+        <Slider
+          size="sm"
+          min={first}
+          max={end - 1}
+          label={(tick) => `${ms(tick)} ms`}
+          thumbLabel="Position of the replay"
+          value={held ?? Math.min(Math.max(bench.tick, first), end - 1)}
+          onChange={setHeld}
+          onChangeEnd={(tick) => {
+            setHeld(undefined);
+            void send({ kind: "seek", tick });
+          }}
+        />
+        {looping && (
+          <i
+            className={styles.span}
+            style={{
+              left: `${((from - first) / (end - first)) * 100}%`,
+              right: `${((end - to) / (end - first)) * 100}%`,
+            }}
+          />
+        )}
+      </div>
+      <span className={styles.time}>
+        {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)} ms
+      </span>
+      <NativeSelect
+        size="xs"
+        aria-label="Speed of the replay"
+        value={String(nearest ?? 1)}
+        data={SPEEDS.map((s) => ({ value: String(s), label: `${s} ×` }))}
+        onChange={(e) =>
+          send({
+            kind: "time_scale",
+            value: Math.min(1, (bench.recorded_scale ?? 0.002) * Number(e.currentTarget.value)),
+          })
+        }
+      />
+      <Button
+        size="compact-sm"
+        variant={looping ? "light" : "default"}
+        aria-pressed={looping}
+        leftSection={<IconRepeat size={15} />}
+        onClick={() => void loop(!looping, [from, to])}
+      >
+        Loop
+      </Button>
+      <Button
+        size="compact-sm"
+        variant="default"
+        title="The loop begins here"
+        onClick={() => {
+          const next: [number, number] = [bench.tick, to > bench.tick ? to : end];
+          setSpan(next);
+          void loop(true, next);
+        }}
+      >
+        from here
+      </Button>
+      <Button
+        size="compact-sm"
+        variant="default"
+        title="The loop ends here"
+        disabled={bench.tick <= from + 2}
+        onClick={() => {
+          const next: [number, number] = [from, Math.min(bench.tick, end)];
+          setSpan(next);
+          void loop(true, next);
+        }}
+      >
+        to here
+      </Button>
+      {about.layout && (
+        <Button size="compact-sm" variant="default" onClick={() => about.layout && restoreLayout(about.layout)}>
+          Its layout
+        </Button>
+      )}
+      <Button size="compact-sm" leftSection={<IconArrowLeft size={15} />} onClick={leave}>
+        Leave
+      </Button>
+    </section>
+  );
+}

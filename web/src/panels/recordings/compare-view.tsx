@@ -1,0 +1,111 @@
+import { Button, CloseButton, NativeSelect, NumberInput, SegmentedControl } from "@mantine/core";
+import { useState } from "react";
+import { api } from "../../api/api";
+import type { Comparison, Recording } from "../../api/types";
+import { showError } from "../../app/send";
+import { formatSi } from "../../ui/format";
+import styles from "./recordings.module.css";
+
+const SHOWN = 60;
+
+interface CompareViewProps {
+  first: Recording;
+  others: Recording[];
+  onClose(): void;
+}
+
+/** Two recordings beside each other: signal by signal the largest difference, the tolerance, pass or fail. */
+export function CompareView({ first, others, onClose }: CompareViewProps) {
+  const candidates = others.filter((one) => one.id !== first.id && one.ticks > 0);
+  const [second, setSecond] = useState(candidates[0]?.id ?? "");
+  const [percent, setPercent] = useState(1);
+  const [align, setAlign] = useState<"tick" | "start">("tick");
+  const [found, setFound] = useState<Comparison | undefined>(undefined);
+  const compare = () =>
+    api
+      .compare(first.id, { other: second, absolute: 0, relative: percent / 100, tolerances: {}, align })
+      .then(setFound, showError);
+  const rows = [...(found?.signals ?? [])].sort((a, b) => Number(a.ok) - Number(b.ok));
+  const failed = rows.filter((row) => !row.ok).length;
+  return (
+    <section className={styles.compare} aria-label="Comparison">
+      <div className={styles.form}>
+        <b>{first.name} with</b>
+        <NativeSelect
+          size="xs"
+          label="Other recording"
+          value={second}
+          data={candidates.map((one) => ({
+            value: one.id,
+            label: `${one.name}, ${new Date(one.created).toLocaleTimeString()}`,
+          }))}
+          onChange={(e) => setSecond(e.currentTarget.value)}
+        />
+        <NumberInput
+          size="xs"
+          label="Tolerance"
+          title="Share of the largest value of each signal"
+          suffix=" %"
+          min={0}
+          w={92}
+          value={percent}
+          onChange={(n) => setPercent(Number(n) || 0)}
+        />
+        <SegmentedControl
+          size="xs"
+          aria-label="Laid upon each other by"
+          value={align}
+          data={[
+            { value: "tick", label: "equal ticks" },
+            { value: "start", label: "first on first" },
+          ]}
+          onChange={(value) => setAlign(value as "tick" | "start")}
+        />
+        <Button size="xs" disabled={!second} onClick={compare}>
+          Compare
+        </Button>
+        <CloseButton size="sm" aria-label="Close the comparison" onClick={onClose} />
+      </div>
+      {candidates.length === 0 && <p>Make a second recording to compare with.</p>}
+      {found && (
+        <>
+          <p className={styles.verdict} data-ok={found.ok} role="status">
+            {found.ok ? "Pass" : "Fail"}: {found.signals.length - failed} of {found.signals.length} signals within{" "}
+            {percent} % over {found.ticks} ticks
+            {found.only_in_first.length + found.only_in_second.length > 0 &&
+              `; ${found.only_in_first.length + found.only_in_second.length} are in one recording alone`}
+          </p>
+          <table className={styles.table}>
+            <thead>
+              <tr>
+                <th scope="col">signal</th>
+                <th scope="col">largest difference</th>
+                <th scope="col">at tick</th>
+                <th scope="col">rms</th>
+                <th scope="col">tolerance</th>
+                <th scope="col">verdict</th>
+              </tr>
+            </thead>
+            <tbody>
+              {rows.slice(0, SHOWN).map((row) => (
+                <tr key={row.signal} data-ok={row.ok}>
+                  <th scope="row">{row.signal}</th>
+                  <td>{formatSi(row.max_difference, row.unit)}</td>
+                  <td>{row.at_tick}</td>
+                  <td>{formatSi(row.rms_difference, row.unit)}</td>
+                  <td>{formatSi(row.tolerance, row.unit)}</td>
+                  <td>{row.ok ? "pass" : "fail"}</td>
+                </tr>
+              ))}
+            </tbody>
+          </table>
+          {rows.length > SHOWN && (
+            <p>
+              The first {SHOWN} of {rows.length}, failures first.
+            </p>
+          )}
+        </>
+      )}
+    </section>
+  );
+}

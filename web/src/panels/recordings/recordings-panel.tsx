@@ -1,0 +1,57 @@
+import { useState } from "react";
+import { api } from "../../api/api";
+import { useAnswer } from "../../api/use-answer";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { usePanelVisible } from "../../ui/panel-visible";
+import { Stale } from "../../ui/stale";
+import { CompareView } from "./compare-view";
+import { RecordForm } from "./record-form";
+import { RecordingRow } from "./recording-row";
+import styles from "./recordings.module.css";
+
+const BUSY_MS = 1000;
+const CALM_MS = 10_000;
+
+/** Every signal at full rate, kept: record, replay, download, compare. */
+export function RecordingsPanel() {
+  return usePanelVisible() ? <Recordings /> : null;
+}
+
+function Recordings() {
+  const bench = useBench((s) => s.bench?.id);
+  const replay = useBench((s) => s.bench?.replay_of);
+  const underWay = useBench((s) => (s.bench?.recording.length ?? 0) + (s.bench?.armed.length ?? 0));
+  const { value, error, since, again } = useAnswer(api.recordings, (list) =>
+    underWay > 0 || list?.some((one) => !one.finished) ? BUSY_MS : CALM_MS,
+  );
+  const [first, setFirst] = useState<string | undefined>(undefined);
+  const comparing = value?.find((one) => one.id === first);
+
+  return (
+    <section className={styles.panel} aria-label="Recordings">
+      {bench && !replay && <RecordForm onChanged={again} />}
+      <Stale error={error} since={since} onRetry={again} />
+      {comparing && value && (
+        <CompareView key={comparing.id} first={comparing} others={value} onClose={() => setFirst(undefined)} />
+      )}
+      {value?.length === 0 ? (
+        <EmptyState title="Nothing recorded yet">
+          Record now, or set a condition and leave it waiting: the moments before it are kept too.
+        </EmptyState>
+      ) : (
+        <ul className={styles.list}>
+          {value?.map((recording) => (
+            <RecordingRow
+              key={recording.id}
+              recording={recording}
+              isHere={recording.bench_id === bench}
+              onCompare={() => setFirst(recording.id)}
+              onChanged={again}
+            />
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}

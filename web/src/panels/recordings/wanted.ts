@@ -1,0 +1,27 @@
+import type { Document, Wanted } from "../../api/types";
+
+/** What the form asks to be recorded; times in ms of the device. */
+export interface RecordDraft {
+  name: string;
+  pastMs: number;
+  /** 0: until it is stopped. */
+  lengthMs: number;
+  /** Signal of the condition; empty: at once. */
+  signal: string;
+  above: boolean;
+  level: number;
+}
+
+export const NEW_DRAFT: RecordDraft = { name: "", pastMs: 1, lengthMs: 0, signal: "", above: true, level: 0 };
+
+/** The request of a draft, in ticks. */
+export function wantedOf(draft: RecordDraft, dtMs: number, layout: Document | undefined): Wanted {
+  const ticks = (ms: number) => Math.max(0, Math.round(ms / dtMs));
+  return {
+    name: draft.name.trim() || "recording",
+    past_ticks: ticks(draft.pastMs),
+    ticks: draft.lengthMs > 0 ? Math.max(1, ticks(draft.lengthMs)) : null,
+    when: draft.signal ? `${draft.signal} ${draft.above ? ">" : "<"} ${draft.level}` : null,
+    layout: layout ?? null,
+  };
+}
