@@ -36,6 +36,10 @@ def inlined(function: F) -> F:
     return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
 
 
+SMALL = 1e-100
+"""What is smaller counts as nothing."""
+
+
 @kernel
 def settled(value: float) -> float:
     """Return ``value``, or zero once it is too small to matter.
@@ -43,7 +47,7 @@ def settled(value: float) -> float:
     States that decay for ever end as subnormal numbers, on which a processor is ten times slower. What is not a
     number stays so: the guard must see it.
     """
-    return 0.0 if abs(value) < 1e-100 else value
+    return 0.0 if abs(value) < SMALL else value
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,11 @@ UNITS = (
 )
 
 
+def one_line(text: str) -> str:
+    """Keep what a caller wrote from breaking the line it is told in."""
+    return "".join(one if one.isprintable() else " " for one in text)
+
+
 class InputError(ValueError):
     """One clear line about one field.
 
@@ -52,6 +57,7 @@ class InputError(ValueError):
     """
 
     def __init__(self, message: str, field: str = "", hint: str = "", code: str = "invalid") -> None:
+        message, field = one_line(message), one_line(field)
         super().__init__(f"{field}: {message}" if field else message)
         self.message = message
         self.field = field

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import kernel, settled
+from core.block import SMALL, kernel, settled
 from core.device.oscillator import transition
 
 FILTER_SIZE = 7
@@ -80,27 +80,24 @@ def least_squares(
     limit : float
         Largest trace of the covariance, 0 for none.
     """
-    # one pass over the triangle serves both halves of the matrix
-    for i in range(n):
-        s[product + i] = 0.0
-    at = covariance
-    for i in range(n):
-        value = s[regressor + i]
-        total = 0.0
-        for j in range(i):
-            total += s[at] * s[regressor + j]
-            s[product + j] += s[at] * value
-            at += 1
-        s[product + i] += total + s[at] * value
-        at += 1
     information = 0.0
     before = 0.0
     lost = 0.0
+    row = covariance
     for i in range(n):
-        value = s[product + i]
-        information += s[regressor + i] * value
-        lost += value * value
-        before += s[covariance + entry(i, i)]
+        total = 0.0
+        for j in range(i):
+            total += s[row + j] * s[regressor + j]
+        at = row + i
+        before += s[at]
+        # the rest of the row stands in the column below the diagonal
+        for j in range(i, n):
+            total += s[at] * s[regressor + j]
+            at += j + 1
+        s[product + i] = total
+        information += s[regressor + i] * total
+        lost += total * total
+        row += i + 1
     inverse = 1.0 / (noise + information)
     for i in range(n):
         s[theta + i] += s[product + i] * inverse * error
@@ -108,11 +105,17 @@ def least_squares(
     if limit <= 0.0 or after <= limit or after <= before:
         grow = 1.0 / forgetting
         at = covariance
+        small = False
         for i in range(n):
             gain = s[product + i] * inverse
             for j in range(i + 1):
-                s[at] = settled((s[at] - gain * s[product + j]) * grow)
+                value = (s[at] - gain * s[product + j]) * grow
+                small |= abs(value) < SMALL
+                s[at] = value
                 at += 1
+        if small:
+            for i in range(covariance, at):
+                s[i] = settled(s[i])
     return information
 
 

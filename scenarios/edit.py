@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
-from core.board.spec import with_values as write
+from core.board.document import with_values as write
 from core.errors import InputError
 from scenarios.schema import Scenario
 

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from core.board.spec import with_values
+from core.board.document import with_values
 from scenarios.kernel_cache import CORE
 
 SCENARIOS = Path(__file__).resolve().parent

@@ -9,8 +9,9 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from core.board.commands import Command, Timed, parse_command
+from core.board.document import Document
 from core.board.ensemble import twin_documents
-from core.board.spec import FIELDS, Document, parse
+from core.board.spec import FIELDS, parse
 from core.errors import InputError, from_validation, unknown_field
 from scenarios.studies import parse_study
 

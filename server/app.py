@@ -10,6 +10,7 @@ from fastapi import FastAPI
 
 from server import errors, openapi
 from server.api import (
+    aliases,
     benches,
     catalog,
     devices,
@@ -41,6 +42,7 @@ API = "/api/v1"
 ROUTERS = (
     catalog,
     devices,
+    aliases,
     scenarios,
     benches,
     experiments,

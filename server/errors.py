@@ -10,12 +10,12 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel
+from pydantic import BaseModel, field_validator
 from sqlalchemy.exc import DBAPIError
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from core.errors import InputError
+from core.errors import InputError, one_line
 
 log = logging.getLogger(__name__)
 
@@ -30,6 +30,12 @@ class ErrorBody(BaseModel):
     message: str
     field: str = ""
     hint: str = ""
+
+    @field_validator("message", "field", "hint")
+    @classmethod
+    def _in_one_line(cls, text: str) -> str:
+        """Keep what a caller wrote from breaking the line."""
+        return one_line(text)
 
 
 class ErrorReply(BaseModel):

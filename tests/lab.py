@@ -11,7 +11,7 @@ import numpy as np
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.board.board import Board
 from core.board.commands import parse_command
-from core.board.spec import with_values
+from core.board.document import with_values
 
 QUIET: dict[str, Any] = {
     "sample_rate_khz": 100,

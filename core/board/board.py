@@ -8,64 +8,24 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.block import BlockParams, BoolArray, FloatArray
+from core.block import BlockParams
 from core.board import changes, program, score
-from core.board.commands import Command, Heal, Inject, LogEntry, Set, Switch, Trip
+from core.board.commands import Command, LogEntry, Trip
 from core.board.condition import Condition, parse_condition
+from core.board.document import Document
 from core.board.guard import REASONS
 from core.board.log import Log
 from core.board.observer import Observer
-from core.board.spec import Document, Section, Spec, parse
+from core.board.pending import Pending, watches
+from core.board.rows import Rows
+from core.board.spec import Section, Spec, parse
 from core.board.wiring import Wiring, scored, wire
 from core.errors import InputError
 from core.signals import SignalTable
 
 CHUNK = 512
 """Most ticks of one call of ``advance``."""
-
-
-@dataclass(frozen=True)
-class Rows:
-    """Ticks that were run: views that hold until the next ``advance``; idle taps are 0 throughout."""
-
-    first_tick: int
-    count: int
-    outputs: FloatArray
-    taps: FloatArray
-    idle: BoolArray
-
-    @staticmethod
-    def of(first_tick: int, samples: NDArray[Any], outputs: int) -> Rows:
-        """Return rows from samples (ticks by signals, outputs first), none of them known to be idle."""
-        own, taps = (np.ascontiguousarray(part, np.float64) for part in np.split(samples, [outputs], axis=1))
-        return Rows(first_tick, len(samples), own, taps, np.zeros(taps.shape[1], dtype=np.bool_))
-
-
-@dataclass
-class Pending:
-    """A command that waits for its moment: a tick, or a condition watched from a tick on."""
-
-    command: Command
-    actor: str
-    tick: int | None
-    condition: Condition | None = None
-    since: int = 0
-
-    @property
-    def watched(self) -> Condition | None:
-        """The condition, once it is watched."""
-        return self.condition if self.tick is None else None
-
-    def event(self) -> Document:
-        """Return it as an event of a scenario."""
-        document = changes.event(self.command.model_dump(exclude_none=True, mode="json"))
-        document.pop("at_ms", None)
-        if self.condition is None:
-            document.pop("when", None)  # met already, or never asked for
-        document["at_sample"] = self.since if self.tick is None else self.tick
-        return document
 
 
 COPIED = ("faults", "pending", "trip", "wiring", "_observer")
@@ -183,31 +143,7 @@ class Board:
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
         wiring = self.wiring
-        conditions = [entry.watched for entry in self.pending if entry.watched is not None]
-        watches = np.array(
-            [[wiring.index[c.signal], c.sign, c.threshold] for c in conditions], dtype=np.float64
-        ).reshape(-1, 3)
-        trip = wiring.index["guard.trip"]
-        outputs, taps = self._outputs[at:], self._taps[at:]
-        if not self.compiled:
-            return program.run_uncompiled(
-                self._steps,
-                n,
-                self.tick,
-                self.dt_ms,
-                self._table,
-                wiring.p,
-                wiring.s,
-                wiring.w,
-                wiring.io,
-                wiring.output_index,
-                wiring.tap_index,
-                outputs,
-                taps,
-                trip,
-                watches,
-            )
-        return program.run(
+        arguments = (
             n,
             self.tick,
             self.dt_ms,
@@ -218,11 +154,12 @@ class Board:
             wiring.io,
             wiring.output_index,
             wiring.tap_index,
-            outputs,
-            taps,
-            trip,
-            watches,
+            self._outputs[at:],
+            self._taps[at:],
+            wiring.index["guard.trip"],
+            watches(self.pending, wiring.index),
         )
+        return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
     def _link(self) -> None:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
@@ -280,16 +217,7 @@ class Board:
 
     def _do(self, command: Command, actor: str) -> LogEntry:
         untimed = command.model_copy(update={"at_sample": None, "at_ms": None, "when": None})
-        if isinstance(untimed, Inject):
-            old, new = changes.inject(self, untimed)
-        elif isinstance(untimed, Heal):
-            old, new = changes.heal(self, untimed)
-        elif isinstance(untimed, Set):
-            old, new = changes.set_values(self, untimed.values)
-        elif isinstance(untimed, Switch):
-            old, new = changes.switch(self, untimed)
-        else:
-            old, new = changes.reset_trip(self)
+        old, new = changes.carry_out(self, untimed)
         return self._note(actor, untimed.kind, changes.describe(untimed), command=untimed, old=old, new=new)
 
     # -- log

@@ -10,7 +10,8 @@ from core import registry
 from core.block import BlockParams
 from core.board import program
 from core.board.commands import Command, Heal, Inject, Set, Switch
-from core.board.spec import Section, Spec, parse, with_values
+from core.board.document import with_values
+from core.board.spec import Section, Spec, parse
 from core.board.wiring import Instance, Wiring, engage, wire
 from core.errors import InputError, from_validation, short, unknown
 from core.faults.fault import FaultParams
@@ -69,6 +70,19 @@ def check(board: Board, command: Command) -> None:
         _changed(board.spec, command.values)
     elif isinstance(command, Switch):
         registry.block("control", command.controller, "controller")
+
+
+def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
+    """Do what a command says, at this tick; return what was before and what is now."""
+    if isinstance(command, Inject):
+        return inject(board, command)
+    if isinstance(command, Heal):
+        return heal(board, command)
+    if isinstance(command, Set):
+        return set_values(board, command.values)
+    if isinstance(command, Switch):
+        return switch(board, command)
+    return reset_trip(board)
 
 
 def inject(board: Board, command: Inject) -> tuple[Any, Any]:

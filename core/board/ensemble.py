@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from core.block import FloatArray
-from core.board.board import Board, Checkpoint, Rows
+from core.board.board import Board, Checkpoint
 from core.board.commands import LogEntry, parse_command
+from core.board.document import IDENTIFIER, Document, with_values
+from core.board.rows import Rows
 from core.board.score import Scores
-from core.board.spec import IDENTIFIER, Document, Section, with_values
+from core.board.spec import Section
 from core.errors import InputError, short, unknown
 from core.signals import Signal, SignalTable
 

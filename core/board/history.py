@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.block import FloatArray, IntArray, inlined, kernel
-from core.board.board import Rows
+from core.board.rows import Rows
 
 Float32Array = NDArray[np.float32]
 FACTOR = 16

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import copy
-import re
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from core import registry
 from core.block import Block, BlockParams, Context, Oscillator
+from core.board.document import IDENTIFIER, SECTIONS, Document, as_written, normal_form
 from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
@@ -19,26 +17,6 @@ from core.board.model import Model
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.errors import InputError, from_validation, short
-
-Document = dict[str, Any]
-IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
-
-PARKED = {"controller": ("controllers", "control", "open_loop"), "sensor": ("sensors", "sense", "ideal")}
-"""Of these all run, one is in use: table of the one, table of all, family, and the usual one."""
-
-EXCHANGED = {"reference.kind": ("reference", "kind", ()), "plant.model": ("plant", "model", ("drive", "every"))}
-"""Paths that name a block which is alone in its table: the table, the key, and what else may stand there."""
-
-ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_um": "amplitude_v"}
-"""An amplitude is given in volts or in micrometres; setting one drops the other."""
-
-DEFAULTS: Document = {
-    "device": {"id": "ch3"},
-    "plant": {},
-    "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 1000.0},
-    "controller": {"kind": "open_loop"},
-    "sensor": {"kind": "ideal"},
-}
 
 
 @dataclass(frozen=True)
@@ -59,22 +37,6 @@ class Frame(BaseModel):
     seed: int = Field(1, ge=0, le=2**53, description="seed of all noise")
 
 
-SECTIONS = (
-    "device",
-    "environment",
-    "plant",
-    "reference",
-    "model",
-    "controller",
-    "controllers",
-    "sensor",
-    "sensors",
-    "drive",
-    "guard",
-    "identifiers",
-    "diagnosers",
-    "twins",
-)
 FIELDS = (*Frame.model_fields, *SECTIONS)
 
 
@@ -162,7 +124,7 @@ def parse(document: Document) -> Spec:
     try:
         return _parse(doc)
     except InputError as error:
-        raise _as_written(error, document) from None
+        raise as_written(error, document) from None
 
 
 def _parse(doc: Document) -> Spec:
@@ -219,82 +181,6 @@ def _suited(spec: Spec) -> Spec:
 
 def _for(pair: tuple[Oscillator, Oscillator], sections: dict[str, Section]) -> dict[str, Section]:
     return {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
-
-
-def _as_written(error: InputError, document: Document) -> InputError:
-    """Name a field by the table it was written in, not by the one it was parked in."""
-    for one, (all_of_them, _, usual) in PARKED.items():
-        table = document.get(one, {})
-        prefix = f"{all_of_them}.{table.get('kind', usual)}."
-        rest = error.field.removeprefix(prefix)
-        if rest != error.field and rest.split(".")[0] in table:
-            return InputError(error.message, f"{one}.{rest}", error.hint, error.code)
-    return error
-
-
-def normal_form(document: Document) -> Document:
-    """Return a copy with defaults in place and the parameters of controller and sensor parked."""
-    doc = copy.deepcopy(document)
-    for key, value in DEFAULTS.items():
-        doc.setdefault(key, copy.deepcopy(value))
-    for key in SECTIONS:
-        if key in doc and not isinstance(doc[key], dict):
-            raise InputError(f"must be a table, got {short(doc[key])}", key)
-    for key in ("controllers", "sensors", "identifiers", "diagnosers"):
-        for name, table in doc.get(key, {}).items():
-            if not isinstance(table, dict):
-                raise InputError(f"must be a table, got {short(table)}", f"{key}.{name}")
-    for one, (_, family, usual) in PARKED.items():
-        registry.block(family, doc[one].get("kind", usual), f"{one}.kind")
-    _park(doc)
-    return doc
-
-
-def _park(doc: Document) -> None:
-    """Move the parameters of the controller and the sensor in use to where those of all are."""
-    for one, (all_of_them, _, usual) in PARKED.items():
-        table = doc.get(one)
-        if isinstance(table, dict):
-            kind = table.pop("kind", usual)
-            if table and isinstance(kind, str):
-                doc.setdefault(all_of_them, {}).setdefault(kind, {}).update(table)
-            doc[one] = {"kind": kind}
-
-
-def with_values(document: Document, values: dict[str, Any]) -> Document:
-    """Return the document with dotted paths written over; tables on the way are made."""
-    doc = copy.deepcopy(document)
-    _park(doc)
-    for path, value in values.items():
-        parts = path.split(".")
-        if not all(parts):
-            raise InputError("is not a dotted path", path)
-        table: Any = doc
-        for part in parts[:-1]:
-            if isinstance(table, list):
-                table = table[_position(part, table, path)]
-            else:
-                table = table.setdefault(part, {})
-            if not isinstance(table, dict | list):
-                raise InputError(f"{part} is not a table", path)
-        if isinstance(table, list):
-            table[_position(parts[-1], table, path)] = copy.deepcopy(value)
-            continue
-        table[parts[-1]] = copy.deepcopy(value)
-        if path in ONE_AMPLITUDE:
-            table.pop(ONE_AMPLITUDE[path], None)
-        if path in EXCHANGED:
-            # a new kind keeps what it shares with the old one
-            section, key, own = EXCHANGED[path]
-            fields = {key, *own, *registry.block(section, value, path).Params.model_fields}
-            doc[section] = {name: entry for name, entry in table.items() if name in fields}
-    return doc
-
-
-def _position(part: str, items: list[Any], path: str) -> int:
-    if not part.isdigit() or int(part) >= len(items):
-        raise InputError(f"{part} is not a position in a list of {len(items)}", path)
-    return int(part)
 
 
 def _frame(values: Document) -> Frame:

@@ -146,7 +146,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
                     size += 1
                     if not port.hidden:
                         shown.append((name, port, instance, kind))
-    for name in (*spec.controllers, *spec.sensors):
+    for name in spec.controllers:
         index[f"{name}.engaged"] = size
         size += 1
     index[NOTHING] = size
@@ -198,10 +198,9 @@ def rests(spec: Spec, instance: Instance, read: set[str]) -> bool:
 
 
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
-    """Tell every controller whether it drives, and every sensor whether it is needed; the others may rest."""
-    running = {spec.active, *needed(spec)}
-    for name in (*spec.controllers, *spec.sensors):
-        w[index[f"{name}.engaged"]] = 1.0 if name in running else 0.0
+    """Tell every controller whether it drives."""
+    for name in spec.controllers:
+        w[index[f"{name}.engaged"]] = 1.0 if name == spec.active else 0.0
 
 
 def needed(spec: Spec) -> set[str]:

@@ -158,7 +158,7 @@ class SelfSliding(Block):
     class Params(BlockParams):
         """Parameters of the law, in um, V and 1/w0."""
 
-        adaptation_gain: float = parameter(0.05, "adaptation gain P0", equation="4.2.1.4-6", gt=0, le=1e4)
+        adaptation_gain: float = parameter(0.03, "adaptation gain P0", equation="4.2.1.4-6", gt=0, le=1e4)
         form: Literal["augmented", "relative_degree_one", "velocity", "printed"] = parameter(
             "augmented",
             "augmented error with filtered regressor, plain error, surface with velocity, or augmented error with the "
@@ -169,7 +169,7 @@ class SelfSliding(Block):
             "working", "error measured minus model, or as printed", equation="4.2.1.1"
         )
         alpha_gain: float = parameter(
-            0.2, "gain of the weight of the auxiliary error", equation="4.2.2.5", ge=0, le=1e3
+            0.3, "gain of the weight of the auxiliary error", equation="4.2.2.5", ge=0, le=1e3
         )
         surface_slope: float = parameter(2.0, "c of the surface with velocity, over w0", gt=0, le=100)
         layer_um: float = parameter(0.0, "boundary layer of the sign, 0 for none", "um", ge=0, le=100)

@@ -12,7 +12,7 @@ import numpy as np
 
 from core.block import Block, Context, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
-from core.diagnose.hypothesis import BankParams, assumed_noise
+from core.diagnose.hypothesis import BankParams, assumed_noise, lacking
 from core.diagnose.kalman import gaussian
 
 COUNT, EVERY, FILTER1, FILTER2, LANES = range(5)
@@ -95,6 +95,11 @@ class ArxBank(Block):
 
     sample_by_sample: ClassVar[bool] = True
     """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants without mass or spring."""
+        return lacking(device)
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:

@@ -42,6 +42,11 @@ SEVEN_STEP = [
 """The six hypotheses of 5.2.4."""
 
 
+def lacking(device: Oscillator) -> str:
+    """Say why a device has no hypotheses: they are factors on mass and spring."""
+    return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
+
+
 class BankParams(BlockParams):
     """Parameters of any diagnoser with a list of hypotheses."""
 

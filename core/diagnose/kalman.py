@@ -8,9 +8,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, BlockParams, Context, Port, kernel, parameter, settled
+from core.block import Block, BlockParams, Context, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
-from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
+from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
 
 COUNT, PROCESS, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(10)
 """Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
@@ -170,6 +170,11 @@ class KalmanBank(Block):
 
     sample_by_sample: ClassVar[bool] = True
     """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants without mass or spring."""
+        return lacking(device)
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:

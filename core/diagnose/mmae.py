@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import Context, Equation, FloatArray, Oscillator, Port, kernel, parameter
+from core.block import Context, Equation, FloatArray, Port, kernel, parameter
 from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
 from core.diagnose.kalman import (
     COUNT,
@@ -147,11 +147,6 @@ class Mmae(KalmanBank):
         arithmetic: Literal["logarithmic", "linear"] = parameter(
             "logarithmic", "what probabilities are kept as; linear as printed", equation="5.2.3.2.6", live=False
         )
-
-    @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse plants without mass or spring."""
-        return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

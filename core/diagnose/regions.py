@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.device.oscillator import transition
 from core.diagnose import window
+from core.diagnose.hypothesis import lacking
 
 PHI11, PHI12, PHI21, PHI22, STATIC, EVERY, WINDOW, DEGRADED_AT, UNACCEPTABLE_AT, DANGER_AT, DANGER_UM = range(11)
 STARTED, LAST_CHARGE, X, V, ERROR, POWER, SAMPLES = range(7)
@@ -88,6 +89,11 @@ class Regions(Block):
             None, "samples of a comparison; a period of the tone unless given", ge=2, le=1_000_000
         )
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants without mass or spring."""
+        return lacking(device)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

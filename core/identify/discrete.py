@@ -9,7 +9,7 @@ import numpy as np
 
 from core.block import Context, FloatArray, Oscillator, Port, kernel, parameter
 from core.device.oscillator import held
-from core.estimation import diagonal, trace
+from core.estimation import diagonal, trace, triangle
 from core.identify.identifier import (
     CHARGE,
     DAMPING_SCALE,
@@ -34,7 +34,8 @@ from core.identify.identifier import (
 )
 
 N = 4
-MASS, DAMPING, STIFFNESS, FORCE, DT, INITIAL, LIMIT, OWN_P = range(OWN_PARAMETER, OWN_PARAMETER + 8)
+MASS, DAMPING, STIFFNESS, FORCE, DT, INITIAL, LIMIT, NOISE = range(OWN_PARAMETER, OWN_PARAMETER + 8)
+OWN_P = NOISE + triangle(N)
 START, LAST_Y, OLDER_Y, LAST_U, OLDER_U, LAST_CHARGE, WAS_ENABLED = range(7)
 THETA, PHI, PRODUCT, COVARIANCE, TRUE, SCALES, GRAM = 7, 11, 15, 19, 29, 33, 37
 OWN_S = GRAM + room(N)
@@ -76,7 +77,9 @@ class Discrete(Identifier):
         """Pack everything up to what the law itself needs."""
         device = context.device
         known = [device.mass, device.damping, device.stiffness, device.force, context.dt_ms]
-        return [*cls.shared(params, context), *known, params.initial_covariance, params.covariance_limit]
+        noise = diagonal(N, context.sensor_noise_um**2)
+        noise[0] = noise[2] = 0.0  # the two voltages
+        return [*cls.shared(params, context), *known, params.initial_covariance, params.covariance_limit, *noise]
 
     @classmethod
     def begin(cls, params: Any, context: Context) -> FloatArray:
@@ -179,5 +182,5 @@ def report(p: Any, s: Any, w: Any, io: Any, residual: float) -> None:
             w[io[ESTIMATE_PORT] + 2] = 2.0 * sigma * mass / p[DAMPING]
     w[io[RESIDUAL]] = residual
     w[io[ERROR_PORT]] = worst(s, THETA, w, true, N)
-    excite(p, s, GRAM, PHI, N, w, io, EXCITATION_PORT)
+    excite(p, NOISE, s, GRAM, PHI, N, w, io, EXCITATION_PORT)
     w[io[TRACE]] = trace(s, COVARIANCE, N)

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port
-from core.identify.filtered import GRAM, PHI, Filtered, FilterParams, observe
+from core.identify.filtered import GRAM, NOISE, PHI, Filtered, FilterParams, observe
 from core.identify.identifier import EXCITATION, OWN_PORT, excite
 
 FIRST = OWN_PORT
@@ -16,7 +16,7 @@ FIRST = OWN_PORT
 def excitation_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Filter, and judge the regressor window by window."""
     observe(p, s, w, io)
-    excite(p, s, GRAM, PHI, 3, w, io, FIRST)
+    excite(p, NOISE, s, GRAM, PHI, 3, w, io, FIRST)
 
 
 class Excitation(Filtered):
@@ -27,6 +27,7 @@ class Excitation(Filtered):
 
     Three parameters need three directions: a constant gives one and a tone two, so a step and a single tone are
     flagged, two tones just pass and four pass well. A transient counts, so the first window after a change passes too.
+    Noise of the sensor does not: what it adds to the mean is taken out.
     """
 
     title = "Excitation monitor"

@@ -6,9 +6,10 @@ import math
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from scipy.linalg import solve_discrete_lyapunov
 
 from core.block import Context, FloatArray, Port, kernel, parameter
-from core.estimation import FILTER_SIZE, advance_filter, second_derivative, state_filter
+from core.estimation import FILTER_SIZE, advance_filter, second_derivative, state_filter, triangle
 from core.identify.identifier import (
     CHARGE,
     DAMPING_SCALE,
@@ -39,7 +40,8 @@ HELD, FILTER, NOMINAL, RANGE = (
     OWN_PARAMETER + 1 + FILTER_SIZE,
     OWN_PARAMETER + 4 + FILTER_SIZE,
 )
-OWN_P = RANGE + 1
+NOISE = RANGE + 1
+OWN_P = NOISE + triangle(3)
 START, LAST_Y, LAST_CHARGE, U_FILTER, Y_FILTER, PHI, THETA = 0, 1, 2, 3, 5, 7, 10
 GRAM = THETA + 3
 OWN_S = GRAM + room(3)
@@ -95,6 +97,7 @@ class Filtered(Identifier):
             *filters,
             *coefficients(context.device),
             getattr(params, "range_ratio", 0.0),
+            *noise_gram(params.filter_pole, h, held, context.sensor_noise_um),
         ]
 
     @classmethod
@@ -104,6 +107,29 @@ class Filtered(Identifier):
         if getattr(params, "start", "nominal") == "nominal":
             start[THETA : THETA + 3] = coefficients(context.device)
         return start
+
+
+def noise_gram(pole: float, h: float, held: float, noise_um: float) -> list[float]:
+    r"""Return the lower triangle of the mean of :math:`\varphi\varphi^T` that white noise of the measurement makes.
+
+    A sample takes part twice, at the end of an interval and at the start of the next:
+    :math:`q_{i+1}=\Phi q_i+b_0n_i+b_1n_{i+1}`, whose covariance is the solution of a Lyapunov equation in
+    :math:`[q,n]`.
+    """
+    packed = np.array(state_filter(pole, h))
+
+    def advanced(q: tuple[float, float], before: float, now: float) -> FloatArray:
+        s = np.array(q)
+        advance_filter(packed, 0, s, 0, before, now)
+        return s
+
+    whole = np.zeros((3, 3))
+    whole[:2] = np.column_stack(
+        [advanced((1.0, 0.0), 0.0, 0.0), advanced((0.0, 1.0), 0.0, 0.0), advanced((0.0, 0.0), 1.0, held)]
+    )
+    new = np.append(advanced((0.0, 0.0), 0.0, 1.0 - held), 1.0)
+    covariance = noise_um**2 * solve_discrete_lyapunov(whole, np.outer(new, new))
+    return [0.0, 0.0, float(covariance[1, 1]), 0.0, float(covariance[1, 0]), float(covariance[0, 0])]
 
 
 @kernel
@@ -158,4 +184,4 @@ def report(p: Any, s: Any, w: Any, io: Any, residual: float) -> None:
         w[io[ESTIMATE_PORT] + 2] = heavier * s[THETA + 1] / p[NOMINAL + 1]
     w[io[RESIDUAL]] = residual
     w[io[ERROR_PORT]] = worst(s, THETA, w, true, 3)
-    excite(p, s, GRAM, PHI, 3, w, io, EXCITATION_PORT)
+    excite(p, NOISE, s, GRAM, PHI, 3, w, io, EXCITATION_PORT)

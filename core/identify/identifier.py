@@ -28,7 +28,7 @@ ESTIMATE = Port("estimate", "1", "estimated mass, stiffness and damping over nom
 TRUTH = Port("truth", "1", "true mass, stiffness and damping over nominal", labels=PHYSICAL)
 ERROR = Port("error_pct", "%", "largest relative error of the estimated coefficients")
 EXCITATION = (
-    Port("excitation", "mixed", "smallest eigenvalue of the mean of phi phi' over the last whole window"),
+    Port("excitation", "mixed", "smallest eigenvalue of the mean of phi phi' over the last window, less noise"),
     Port("excitation_relative", "1", "the same with every component of phi scaled to a unit mean square"),
     Port("identifiable", "1", "1 while this input tells all parameters apart"),
 )
@@ -96,11 +96,12 @@ def voltage(p: Any, s: Any, last_charge: int, w: Any, io: Any) -> float:
 
 
 @kernel
-def excite(p: Any, s: Any, gram: int, regressor: int, n: int, w: Any, io: Any, first: int) -> None:
-    """Gather the Gram matrix and judge it at the end of each window.
+def excite(p: Any, noise: int, s: Any, gram: int, regressor: int, n: int, w: Any, io: Any, first: int) -> None:
+    """Gather the Gram matrix and judge it at the end of each window, less twice what noise of the sensor adds to it.
 
-    A count, its lower triangle, n^2 scratch numbers and the last verdict stand from ``gram`` on. The three ports of
-    ``EXCITATION`` begin at ``first``.
+    Noise turns the regressor in every direction and tells nothing; taken away once, half of the windows would still
+    show some of it. A count, the lower triangle, n^2 scratch numbers and the last verdict stand from ``gram`` on, the
+    lower triangle of the mean noise from ``noise`` on. The three ports of ``EXCITATION`` begin at ``first``.
     """
     gather(s, gram + 1, regressor, n)
     s[gram] += 1.0
@@ -108,6 +109,8 @@ def excite(p: Any, s: Any, gram: int, regressor: int, n: int, w: Any, io: Any, f
     scratch = gram + 1 + size
     judged = scratch + n * n
     if s[gram] >= p[WINDOW]:
+        for i in range(size):
+            s[gram + 1 + i] -= 2.0 * s[gram] * p[noise + i]
         s[judged] = smallest_eigenvalue(s, gram + 1, scratch, n, False) / s[gram]
         s[judged + 1] = smallest_eigenvalue(s, gram + 1, scratch, n, True)
         for i in range(size + 1):

@@ -10,11 +10,11 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter
 from core.device.geometry import drawn
 from core.noise import key, normal
-from core.sense.sensor import ENGAGED_PORT, Sensor, SensorParams, rest
+from core.sense.sensor import Sensor, SensorParams
 from core.units import FF_PER_F, UM_PER_M
 
 GRADIENT, OVERLAP, GAP, START, NOISE, FIRST_KEY, SECOND_KEY = range(7)
-ENGAGED, TRUE, LATERAL, ROTATION, DISPLACEMENT, SUM, POSITIVE, NEGATIVE, ERROR = range(9)
+TRUE, LATERAL, ROTATION, DISPLACEMENT, SUM, POSITIVE, NEGATIVE, ERROR = range(8)
 
 NODES = np.array([-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640])
 WEIGHTS = np.array([0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891])
@@ -39,9 +39,6 @@ def squeezed(p: Any, side: float, overlap: float, y: float, theta: float) -> flo
 
 def capacitive_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Read both combs; displacement from the difference."""
-    if w[io[ENGAGED]] == 0.0:
-        rest(w, io, DISPLACEMENT, ERROR)
-        return
     x = w[io[TRUE]]
     y = w[io[LATERAL]]
     theta = 1e-3 * w[io[ROTATION]]
@@ -66,7 +63,6 @@ class Capacitive(Sensor):
 
     title = "Capacitive sensor"
     inputs = (
-        ENGAGED_PORT,
         Port("true", "um", "true displacement", source="plant.displacement"),
         Port("lateral", "um", "true lateral displacement, where the plant has one", source="plant.shift?"),
         Port("rotation", "mrad", "true rotation, where the plant has one", source="plant.rotation?"),

@@ -10,19 +10,15 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Port, parameter, settled
 from core.noise import key, normal
 from core.sense.grating import GratingParams, level, pack_grating, slope
-from core.sense.sensor import ENGAGED_PORT, Sensor, rest
+from core.sense.sensor import Sensor
 
 NOISE, KEY, DT, DECAY, GRATING = range(5)
-ENGAGED, TRUE, VELOCITY, SIGNAL, HEIGHT = range(5)
+TRUE, VELOCITY, SIGNAL, HEIGHT = range(4)
 STARTED, LAST, SUM = range(3)
 
 
 def doppler_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Read the apparent velocity and integrate it."""
-    if w[io[ENGAGED]] == 0.0:
-        s[STARTED] = 0.0
-        rest(w, io, SIGNAL, HEIGHT)
-        return
     x = w[io[TRUE]]
     signal = slope(p, GRATING, x) * w[io[VELOCITY]] + p[NOISE] * normal(p[KEY], w[TICK])
     if s[STARTED] == 0.0:
@@ -48,7 +44,6 @@ class Doppler(Sensor):
 
     title = "Doppler velocimeter"
     inputs = (
-        ENGAGED_PORT,
         Port("true", "um", "true displacement", source="plant.displacement"),
         Port("moving", "um/ms", "true velocity", source="plant.velocity"),
     )

@@ -9,17 +9,14 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Port, parameter
 from core.noise import key, normal
 from core.sense.grating import BeamParams, level
-from core.sense.sensor import ENGAGED_PORT, Sensor, rest
+from core.sense.sensor import Sensor
 
 NOISE, FIRST_KEY, SECOND_KEY, SPACING, GRATING = range(5)
-ENGAGED, TRUE, FIRST, SECOND = range(4)
+TRUE, FIRST, SECOND = range(3)
 
 
 def dual_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Detect both beams."""
-    if w[io[ENGAGED]] == 0.0:
-        rest(w, io, FIRST, SECOND)
-        return
     x = w[io[TRUE]]
     w[io[FIRST]] = level(p, GRATING, x) + p[NOISE] * normal(p[FIRST_KEY], w[TICK])
     w[io[SECOND]] = level(p, GRATING, x - p[SPACING]) + p[NOISE] * normal(p[SECOND_KEY], w[TICK])
@@ -34,7 +31,7 @@ class DualBeam(Sensor):
     """
 
     title = "Two beams"
-    inputs = (ENGAGED_PORT, Port("true", "um", "true displacement", source="plant.displacement"))
+    inputs = (Port("true", "um", "true displacement", source="plant.displacement"),)
     outputs = (
         Port("first", "1", "light of the first beam, full light being 1"),
         Port("second", "1", "light of the second beam, full light being 1"),

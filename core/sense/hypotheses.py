@@ -21,9 +21,8 @@ MOST = 10
 SCORE, USED, WIDTH = FILTER, FILTER + 1, FILTER + 2
 """Layout of a hypothesis: a filter, its score, whether it is followed; and its length."""
 NO, YES, NEW = 0.0, 1.0, 2.0
-RUNNING, BEST, CHANGES, FRESH = range(4)
-OWN = FRESH + FILTER
-"""State: whether it runs, the best hypothesis, how often that changed, a filter to start from, the hypotheses."""
+STARTED, BEST, CHANGES, OWN = range(4)
+"""State: whether it has run, the best hypothesis, how often that changed, the hypotheses."""
 
 
 @kernel

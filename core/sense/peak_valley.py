@@ -11,36 +11,30 @@ from core.block import Context, Equation, FloatArray, Port, parameter
 from core.sense.doppler import Doppler
 from core.sense.grating import OFFSET, WAVE, level
 from core.sense.sensor import (
-    ENGAGED_PORT,
     ERROR_PORT,
     LAST_PORT,
     RECOVERED_PORT,
     TRUE_PORT,
     Sensor,
     SensorParams,
+    begin_at,
     calibrated,
-    rest,
 )
 from core.sense.through_wafer import ThroughWafer
 
 SOURCE, HYSTERESIS, TOLERANCE, FOLLOW, GRATING = range(5)
-ENGAGED, LAST, LIGHT, HEIGHT, TRUE, MOVING, DISPLACEMENT, ERROR, EXTREMES, DIRECTION, WRONG_WAY = range(11)
+LAST, LIGHT, HEIGHT, TRUE, MOVING, DISPLACEMENT, ERROR, EXTREMES, DIRECTION, WRONG_WAY = range(10)
 STARTED, SURE, EVEN, ODD, BEHIND, SENSE, BEST, REST = range(8)
 
 
 def peak_valley_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Count and interpolate."""
-    if w[io[ENGAGED]] == 0.0:
-        s[STARTED] = 0.0
-        rest(w, io, DISPLACEMENT, WRONG_WAY)
-        return
     half = math.pi / p[GRATING + WAVE]  # half a pitch, from one extreme to the next
     if s[STARTED] == 0.0:
         s[STARTED] = 1.0
         s[EVEN] = level(p, GRATING, p[GRATING + OFFSET])
         s[ODD] = level(p, GRATING, p[GRATING + OFFSET] + half)
-        near = w[io[LAST]] if math.isfinite(w[io[LAST]]) else 0.0
-        s[BEHIND] = math.floor((near - p[GRATING + OFFSET]) / half)
+        s[BEHIND] = math.floor((begin_at(w[io[LAST]]) - p[GRATING + OFFSET]) / half)
         s[SENSE] = 1.0
         s[SURE] = 0.0
         s[REST] = -1.0
@@ -103,7 +97,6 @@ class PeakValley(Sensor):
 
     title = "Peak and valley counter"
     inputs = (
-        ENGAGED_PORT,
         LAST_PORT,
         Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
         Port("height", "um", "integrated Doppler signal", source="doppler.height"),

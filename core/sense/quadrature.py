@@ -10,7 +10,6 @@ import numpy as np
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.sense.dual_beam import DualBeam
 from core.sense.sensor import (
-    ENGAGED_PORT,
     ERROR_PORT,
     LAST_PORT,
     RECOVERED_PORT,
@@ -18,30 +17,25 @@ from core.sense.sensor import (
     TRUE_PORT,
     Sensor,
     SensorParams,
+    begin_at,
     calibrated,
-    rest,
     slips,
 )
 
 MEAN, AMPLITUDE, COSINE, SINE, PITCH, OFFSET = range(6)
-ENGAGED, LAST, FIRST, SECOND, TRUE, DISPLACEMENT, ERROR, TURN, SLIPS = range(9)
+LAST, FIRST, SECOND, TRUE, DISPLACEMENT, ERROR, TURN, SLIPS = range(8)
 TWO_PI = 2.0 * math.pi
 
 
 def quadrature_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Take the phase of the pair and unwrap it."""
-    if w[io[ENGAGED]] == 0.0:
-        s[0] = 0.0
-        rest(w, io, DISPLACEMENT, SLIPS)
-        return
     cosine = (w[io[FIRST]] - p[MEAN]) / p[AMPLITUDE]
     # the second beam sees cos(phase - delta)
     sine = ((w[io[SECOND]] - p[MEAN]) / p[AMPLITUDE] - p[COSINE] * cosine) / p[SINE]
     if math.isfinite(cosine) and math.isfinite(sine):
         if s[0] == 0.0:
             s[0] = 1.0
-            near = w[io[LAST]] if math.isfinite(w[io[LAST]]) else 0.0
-            s[1] = (near - p[OFFSET]) / p[PITCH]
+            s[1] = (begin_at(w[io[LAST]]) - p[OFFSET]) / p[PITCH]
         turn = math.atan2(sine, cosine) / TWO_PI
         s[1] = turn + math.floor(s[1] - turn + 0.5)
         w[io[TURN]] = turn
@@ -63,7 +57,6 @@ class Quadrature(Sensor):
 
     title = "Quadrature with unwrap"
     inputs = (
-        ENGAGED_PORT,
         LAST_PORT,
         Port("first", "1", "light of the first beam", source="dual_beam.first"),
         Port("second", "1", "light of the second beam", source="dual_beam.second"),

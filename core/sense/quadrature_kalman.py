@@ -7,48 +7,41 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, Oscillator, Port
+from core.block import Context, Equation, FloatArray, Oscillator, Port
 from core.sense import tracker
 from core.sense.dual_beam import DualBeam
 from core.sense.sensor import (
-    ENGAGED_PORT,
     ERROR_PORT,
     LAST_PORT,
     RECOVERED_PORT,
     SLIPS_PORT,
     TRUE_PORT,
     Sensor,
+    begin_at,
     calibrated,
-    rest,
     slips,
 )
-from core.sense.tracker import APPLIED_PORT, FILTER, MOTION, TrackerParams, coast, correct, predict, take_over
+from core.sense.tracker import APPLIED_PORT, MOTION, TrackerParams, X, correct, predict
 
 PITCH, OFFSET, NOISE, MODEL = range(4)
-ENGAGED, LAST, TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(9)
-RUNNING, FRESH, OWN = 0, 1, 1 + FILTER
-"""State: whether it runs, a filter to start from, the filter."""
+LAST, TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(8)
+STARTED, OWN = range(2)
+"""State: whether it has run, then the filter."""
 
 
 def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, unwrap the phase about the prediction, correct."""
-    if w[TICK] > 0.0:
-        coast(p, MODEL, s, FRESH, w[io[APPLIED]])
-    if w[io[ENGAGED]] == 0.0:
-        s[RUNNING] = 0.0
-        rest(w, io, DISPLACEMENT, SLIPS)
-        return
-    if s[RUNNING] == 0.0:
-        s[RUNNING] = 1.0
-        take_over(s, FRESH, OWN, w[io[LAST]])
+    if s[STARTED] == 0.0:
+        s[STARTED] = 1.0
+        s[OWN + X] = begin_at(w[io[LAST]])
     else:
         predict(p, MODEL, s, OWN, w[io[APPLIED]])
-    x = s[OWN + tracker.X]
+    x = s[OWN + X]
     ahead = (x - p[OFFSET]) / p[PITCH] - w[io[TURN]]
     residual = p[PITCH] * (math.floor(ahead + 0.5) - ahead) if math.isfinite(ahead) else 0.0
     correct(s, OWN, residual, 1.0, p[NOISE])
-    error = s[OWN + tracker.X] - w[io[TRUE]]
-    w[io[DISPLACEMENT]] = s[OWN + tracker.X]
+    error = s[OWN + X] - w[io[TRUE]]
+    w[io[DISPLACEMENT]] = s[OWN + X]
     w[io[ERROR]] = error
     w[io[RESIDUAL]] = residual
     w[io[SLIPS]] = slips(error, p[PITCH])
@@ -62,7 +55,6 @@ class QuadratureKalman(Sensor):
 
     title = "Quadrature with Kalman filter"
     inputs = (
-        ENGAGED_PORT,
         LAST_PORT,
         Port("turn", "1", "phase of the pair, in turns", source="quadrature.turn"),
         APPLIED_PORT,
@@ -104,7 +96,7 @@ class QuadratureKalman(Sensor):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it runs, a filter to start from, the filter."""
-        return np.array([0.0, *tracker.start(params, context), *[0.0] * FILTER])
+        """Whether it has run, the filter."""
+        return np.array([0.0, *tracker.start(params, context)])
 
     step = quadrature_kalman_step

@@ -7,7 +7,6 @@ from typing import Any, TypeVar
 
 from core.block import Block, BlockParams, Context, Port, kernel, parameter
 
-ENGAGED_PORT = Port("engaged", "1", "1 while the sensor in use needs this one, or it always runs", source="@engaged")
 LAST_PORT = Port("last", "um", "what was measured last: where to take over", source="sensor.displacement")
 
 TRUE_PORT = Port("true", "um", "true displacement, for the error only", source="plant.displacement")
@@ -25,10 +24,9 @@ class SensorParams(BlockParams):
 
 
 @kernel
-def rest(w: Any, io: Any, first: int, last: int) -> None:
-    """Put out zeros."""
-    for port in range(first, last + 1):
-        w[io[port]] = 0.0
+def begin_at(last: float) -> float:
+    """Return where to begin: where the shuttle was measured last, or 0 if that is no number."""
+    return last if math.isfinite(last) else 0.0
 
 
 @kernel

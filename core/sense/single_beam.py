@@ -7,18 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, Oscillator, Port, parameter
+from core.block import Context, Equation, FloatArray, Oscillator, Port, parameter
 from core.sense import tracker
 from core.sense.grating import WAVE
 from core.sense.hypotheses import (
     BEST,
     CHANGES,
-    FRESH,
     GRATING,
     MODEL,
     MOST,
     OWN,
-    RUNNING,
+    STARTED,
     USED,
     WIDTH,
     YES,
@@ -27,40 +26,28 @@ from core.sense.hypotheses import (
     turns,
 )
 from core.sense.sensor import (
-    ENGAGED_PORT,
     ERROR_PORT,
     LAST_PORT,
     RECOVERED_PORT,
     SLIPS_PORT,
     TRUE_PORT,
     Sensor,
+    begin_at,
     calibrated,
-    rest,
     slips,
 )
 from core.sense.through_wafer import ThroughWafer
-from core.sense.tracker import APPLIED_PORT, MOTION, TrackerParams, V, X, coast, predict, take_over
+from core.sense.tracker import APPLIED_PORT, FILTER, MOTION, TrackerParams, V, X, predict
 
-ENGAGED, LAST, LIGHT, APPLIED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(11)
+LAST, LIGHT, APPLIED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(10)
 
 
 def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Follow every hypothesis and put out the likeliest."""
-    if w[TICK] > 0.0:
-        coast(p, MODEL, s, FRESH, w[io[APPLIED]])
-    if w[io[ENGAGED]] == 0.0:
-        s[RUNNING] = 0.0
-        rest(w, io, DISPLACEMENT, SLIPS)
-        return
-    first = s[RUNNING] == 0.0
+    first = s[STARTED] == 0.0
     if first:
-        s[RUNNING] = 1.0
-        s[BEST] = 0.0
-        s[CHANGES] = 0.0
-        for j in range(MOST * WIDTH):
-            s[OWN + j] = 0.0
-        take_over(s, FRESH, OWN, w[io[LAST]])
-        s[OWN + USED] = YES
+        s[STARTED] = 1.0
+        s[OWN + X] = begin_at(w[io[LAST]])
     z = w[io[LIGHT]]
     for i in range(MOST):
         b = OWN + i * WIDTH
@@ -93,15 +80,13 @@ class SingleBeam(Sensor):
     memory of a few periods of the drive. While the stiffness is known to 30 % one filter would do; beyond that it
     slips, and the reflections bring it back.
 
-    It costs as much as the rest of the bench together, and therefore rests while no one uses it: unless it is the
-    sensor in use or ``always`` is set, its output is 0 and so is the tap ``active``. Then only the nominal model goes
-    on under the voltage: the speed to start with. The displacement to start with is what was measured last.
+    It costs as much as the rest of the bench together while it runs. It begins where the shuttle was measured last,
+    at no speed.
     The text leaves the unit to others (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
     """
 
     title = "Single beam, several hypotheses"
     inputs = (
-        ENGAGED_PORT,
         LAST_PORT,
         Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
         APPLIED_PORT,
@@ -161,7 +146,10 @@ class SingleBeam(Sensor):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it runs, the best hypothesis, changes of it, a filter to start from, the hypotheses."""
-        return np.array([0.0, 0.0, 0.0, *tracker.start(params, context), *[0.0] * (MOST * WIDTH)])
+        """Whether it has run, the best hypothesis, changes of it, the hypotheses: one."""
+        start = np.zeros(OWN + MOST * WIDTH)
+        start[OWN : OWN + FILTER] = tracker.start(params, context)
+        start[OWN + USED] = YES
+        return start
 
     step = single_beam_step

@@ -9,17 +9,14 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Port
 from core.noise import key, normal
 from core.sense.grating import BeamParams, level
-from core.sense.sensor import ENGAGED_PORT, Sensor
+from core.sense.sensor import Sensor
 
 NOISE, KEY, GRATING = range(3)
-ENGAGED, TRUE, INTENSITY = range(3)
+TRUE, INTENSITY = range(2)
 
 
 def through_wafer_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Let the light through and detect it."""
-    if w[io[ENGAGED]] == 0.0:
-        w[io[INTENSITY]] = 0.0
-        return
     w[io[INTENSITY]] = level(p, GRATING, w[io[TRUE]]) + p[NOISE] * normal(p[KEY], w[TICK])
 
 
@@ -34,7 +31,7 @@ class ThroughWafer(Sensor):
     """
 
     title = "Through-wafer intensity"
-    inputs = (ENGAGED_PORT, Port("true", "um", "true displacement", source="plant.displacement"))
+    inputs = (Port("true", "um", "true displacement", source="plant.displacement"),)
     outputs = (Port("intensity", "1", "detected light, full light being 1"),)
     equations = (
         Equation(

@@ -62,24 +62,6 @@ def start(params: TrackerParams, context: Context) -> list[float]:
 
 
 @kernel
-def coast(p: Any, at: int, s: Any, b: int, u: float) -> None:
-    """Advance displacement and velocity alone, by the nominal model: where to start from."""
-    x = s[b + X]
-    v = s[b + V]
-    s[b + X] = settled(p[at + PHI11] * x + p[at + PHI12] * v + p[at + GAMMA1] * u)
-    s[b + V] = settled(p[at + PHI21] * x + p[at + PHI22] * v + p[at + GAMMA2] * u)
-
-
-@kernel
-def take_over(s: Any, fresh: int, b: int, last: float) -> None:
-    """Start the filter at ``b`` from the one that coasts at ``fresh``, where the shuttle was measured last."""
-    for j in range(FILTER):
-        s[b + j] = s[fresh + j]
-    if math.isfinite(last):
-        s[b + X] = last
-
-
-@kernel
 def predict(p: Any, at: int, s: Any, b: int, u: float) -> None:
     """Advance the filter at ``b`` of the state by one sample under the voltage that was held."""
     f11 = p[at + PHI11]

@@ -8,17 +8,14 @@ import numpy as np
 
 from core.block import TICK, Context, Equation, FloatArray, Port, parameter
 from core.noise import key, normal
-from core.sense.sensor import ENGAGED_PORT, Sensor, SensorParams
+from core.sense.sensor import Sensor, SensorParams
 
 NOISE, KEY = range(2)
-ENGAGED, TRUE, VELOCITY = range(3)
+TRUE, VELOCITY = range(2)
 
 
 def velocimeter_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Read the velocity."""
-    if w[io[ENGAGED]] == 0.0:
-        w[io[VELOCITY]] = 0.0
-        return
     w[io[VELOCITY]] = w[io[TRUE]] + p[NOISE] * normal(p[KEY], w[TICK])
 
 
@@ -29,7 +26,7 @@ class Velocimeter(Sensor):
     """
 
     title = "In-plane velocimeter"
-    inputs = (ENGAGED_PORT, Port("true", "um/ms", "true velocity", source="plant.velocity"))
+    inputs = (Port("true", "um/ms", "true velocity", source="plant.velocity"),)
     outputs = (Port("velocity", "um/ms", "measured velocity"),)
     equations = (Equation("measurement", r"z_i=\dot x(t_i)+v_i,\quad v_i\sim N(0,\sigma_v^2)", "5.2.4, C = I"),)
 

@@ -126,8 +126,13 @@ def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
 
 
 def growth(loop: GainLoop, rule: int, rate: float, w: float) -> float:
-    """Return the growth rate of the worst solution, 1/time: negative when all decay."""
+    """Return the growth rate of the worst solution, 1/time: negative when all decay.
+
+    What no number holds after one period grows at least as told.
+    """
     matrix = monodromy(loop.packed(), rule, rate, w)
+    if not np.all(np.isfinite(matrix)):
+        return math.log(float(np.finfo(np.float64).max)) * w / (2.0 * math.pi)
     roots = np.linalg.eigvals(matrix)
     if w == 0.0:
         return float(np.max(roots.real))

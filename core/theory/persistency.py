@@ -51,8 +51,8 @@ class Excitation:
 def excitation(gram: FloatArray) -> Excitation:
     """Judge a mean Gram matrix, shape (n, n)."""
     size = np.sqrt(np.diag(gram))
-    scale = np.outer(size, size)
-    relative = 0.0 if np.any(size == 0.0) else float(_eigenvalues(gram / scale)[0])
+    # One after the other: the product of two small sizes may be too small for a number.
+    relative = 0.0 if np.any(size == 0.0) else float(_eigenvalues(gram / size[:, None] / size)[0])
     return Excitation(_eigenvalues(gram), relative)
 
 

@@ -16,6 +16,8 @@ import numpy as np
 from core.block import FloatArray
 from core.errors import InputError
 
+LARGEST = 1e30
+"""Coefficients beyond this, or below its inverse, would make products that no number holds."""
 TINY = 1e-10
 MOST = 20
 """Highest order that roots of polynomials in double precision can be trusted with."""
@@ -57,6 +59,9 @@ def polynomial(coefficients: Sequence[float], field: str) -> FloatArray:
     if values.ndim != 1 or not np.all(np.isfinite(values)) or not np.any(values):
         raise InputError("must be finite numbers, not all 0", field)
     values = values[np.flatnonzero(values)[0] :]
+    sizes = np.abs(values[values != 0.0])
+    if sizes.min() < 1.0 / LARGEST or sizes.max() > LARGEST:
+        raise InputError(f"must be 0 or between {1.0 / LARGEST:g} and {LARGEST:g} in size", field)
     if len(values) > MOST + 1:
         raise InputError(f"must be of order {MOST} or less", field)
     return values

@@ -11,10 +11,15 @@ from scenarios.schema import Scenario
 
 @cache
 def library() -> tuple[Scenario, ...]:
-    """Return every scenario of the library, by id."""
+    """Return every scenario of the library in the order of the text: its chapters, then its appendices."""
     entries = [entry for entry in files(__name__).iterdir() if entry.name.endswith(".toml")]
     found = [Scenario.load(entry.read_text("utf-8")) for entry in entries]
-    return tuple(sorted(found, key=lambda scenario: scenario.id))
+    return tuple(
+        sorted(
+            found,
+            key=lambda scenario: (scenario.id.startswith("app"), not scenario.id.startswith("first"), scenario.id),
+        )
+    )
 
 
 def get(name: str) -> Scenario:

@@ -91,10 +91,14 @@ def _record(board: Board, seed: int, samples: int, columns: list[int], *, health
 def _threshold(records: list[FloatArray], rate: float) -> float:
     """Return the threshold whose crossings from below come at a rate."""
     allowed = rate * sum(len(record) for record in records)
+    # a rise from a to b crosses every level from a up to, but not including, b
+    rises = [(record[:-1], record[1:]) for record in records]
+    feet = np.sort(np.concatenate([a[b > a] for a, b in rises]))
+    heads = np.sort(np.concatenate([b[b > a] for a, b in rises]))
     low, high = 0.0, max(float(record.max()) for record in records)
     for _ in range(50):
         middle = 0.5 * (low + high)
-        episodes = sum(int(np.sum((record[1:] > middle) & (record[:-1] <= middle))) for record in records)
+        episodes = np.searchsorted(feet, middle, "right") - np.searchsorted(heads, middle, "right")
         low, high = (middle, high) if episodes > allowed else (low, middle)
     return high
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Response
+from fastapi import APIRouter, Body, Query, Response
 from pydantic import BaseModel, Field
 
 from scenarios.schema import Scenario
@@ -68,6 +68,12 @@ class ForkFrom(StrictBody):
     snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment")
 
 
+class Variant(StrictBody):
+    """How the second bench differs."""
+
+    set: dict[str, Any] = Field({}, description="Values by dotted path; a whole table may be one")
+
+
 @router.post("", status_code=201, dependencies=[RateLimited])
 async def create_bench(body: NewBench, service: ServiceDep, response: Response) -> Bench:
     """Make a bench and let it run."""
@@ -107,9 +113,13 @@ async def command(
 
 
 @router.get("/{bench_id}/events")
-async def list_events(session: SessionDep, after: int = 0, limit: int | None = None) -> EventList:
+async def list_events(
+    session: SessionDep,
+    after: Annotated[int, Query(ge=0, le=2**53)] = 0,
+    limit: Annotated[int | None, Query(ge=1, le=100_000)] = None,
+) -> EventList:
     """List what happened after an event."""
-    lost, events = session.events.after(max(0, after), max(1, limit) if limit is not None else None)
+    lost, events = session.events.after(after, limit)
     return EventList(events=events, last=session.events.last, lost=lost)
 
 
@@ -134,3 +144,11 @@ async def fork_bench(body: ForkFrom, session: SessionDep, service: ServiceDep, r
     twin = await service.benches.fork(session, body.snapshot)
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
     return service.view(twin)
+
+
+@router.post("/{bench_id}/variant", status_code=201, dependencies=[RateLimited])
+async def vary_bench(body: Variant, session: SessionDep, service: ServiceDep, response: Response) -> Bench:
+    """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed."""
+    made = await service.benches.variant(session, body.set)
+    response.headers["Location"] = f"/api/v1/benches/{made.id}"
+    return service.view(made)

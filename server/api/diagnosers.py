@@ -11,6 +11,7 @@ from core.board.ensemble import Ensemble
 from core.board.explain import Account, explain, signals_of
 from core.board.spec import Section, Spec
 from core.diagnose.aliases import AliasMap, alias_map, hidden_um
+from core.diagnose.hypothesis import Hypothesis
 from core.errors import InputError, unknown
 from core.reference.waveform import Waveform
 from server.api.bodies import StrictRoute
@@ -27,7 +28,7 @@ def explain_sample(
     tick: Annotated[int | None, Query(ge=0, le=2**53, description="The sample; the last one unless given")] = None,
 ) -> Account:
     """Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior."""
-    spec, section = _found(session, name)
+    spec, section = found(session, name)
     signals = signals_of(section)
     columns = session.indices([f"{name}.{signal}" for signal in signals])
     history = session.history
@@ -59,22 +60,36 @@ def map_aliases(
     ] = None,
 ) -> AliasMap:
     """Map the response of every hypothesis to the tones of the drive, and name what has the same."""
-    spec, section = _found(session, name)
-    hypotheses = getattr(section.params, "hypotheses", None)
-    if not hypotheses:
-        raise InputError(f"{section.block.name} has no hypotheses", "name")
+    spec, section = found(session, name)
     context = spec.context()
-    waveform, params = cast(type[Waveform], spec.reference.block), cast(Any, spec.reference.params)
-    tones = [(frequency_hz, params.volts(context))] if frequency_hz else waveform.tones(params, context)
+    tones = [(frequency_hz, volts_of(spec))] if frequency_hz else tones_of(spec)
     if not tones:
         raise InputError("give one: the reference has no tone of its own", "frequency_hz")
-    return alias_map(hypotheses, context.device, tones, hidden_um(context.sensor_noise_um))
+    return alias_map(hypotheses_of(section), context.device, tones, hidden_um(context.sensor_noise_um))
 
 
-def _found(session: Session, name: str) -> tuple[Spec, Section]:
+def found(session: Session, name: str) -> tuple[Spec, Section]:
     """Return the bench a diagnoser is on, the first or a twin, and its section."""
     board = cast(Ensemble, session.board)
     if name not in board.diagnosers:
         raise unknown("diagnoser", name, board.diagnosers, "name")
     twin = name.rpartition(":")[0]
     return (board.twins[twin] if twin else board).spec, board.diagnosers[name]
+
+
+def hypotheses_of(section: Section) -> list[Hypothesis]:
+    """Return the hypotheses of a diagnoser; an error if it has none."""
+    hypotheses: list[Hypothesis] = getattr(section.params, "hypotheses", [])
+    if not hypotheses:
+        raise InputError(f"{section.block.name} has no hypotheses", "name")
+    return hypotheses
+
+
+def tones_of(spec: Spec) -> list[tuple[float, float]]:
+    """Return frequency in Hz and amplitude in V of the tones of the reference; none when it is broad."""
+    return cast(type[Waveform], spec.reference.block).tones(spec.reference.params, spec.context())
+
+
+def volts_of(spec: Spec) -> float:
+    """Return the amplitude of the reference in V."""
+    return float(cast(Any, spec.reference.params).volts(spec.context()))

@@ -51,7 +51,7 @@ class GalleryCard(BaseModel):
 
 
 class Gallery(BaseModel):
-    """All cards, by id."""
+    """All cards, in the order of the text."""
 
     cards: list[GalleryCard]
 

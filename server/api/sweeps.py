@@ -81,7 +81,11 @@ async def get_sweep_points(sweep_id: str, service: ServiceDep) -> SweepPoints:
     return SweepPoints(sweep=await service.sweeps.get(sweep_id), points=await service.sweeps.points(sweep_id))
 
 
-@router.get("/{sweep_id}/runs", response_class=Response, responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}})
+@router.get(
+    "/{sweep_id}/runs",
+    response_class=Response,
+    responses={200: {"content": {MEDIA_TYPES[kind]: {} for kind in ("csv", "parquet")}}},
+)
 async def get_sweep_runs(
     sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"
 ) -> Response:

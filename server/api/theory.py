@@ -78,8 +78,8 @@ class ExcitationSource(Body):
 
     tones: list[Line] = Field(min_length=1, max_length=100)
     gain: float = Field(1.0, ge=-1e6, le=1e6)
-    a1: float = Field(0.2, gt=0, le=1e6)
-    a2: float = Field(1.0, gt=0, le=1e6)
+    a1: float = Field(0.2, ge=1e-9, le=1e6)
+    a2: float = Field(1.0, ge=1e-9, le=1e6)
     filter_pole: float = Field(1.0, gt=1e-3, le=1e3)
 
 

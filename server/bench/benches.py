@@ -23,6 +23,7 @@ from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
+from server.bench.portrait import design_of
 from server.bench.recorder import CLOSED, Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
@@ -135,6 +136,20 @@ class Benches:
             self._coming -= 1
         self._sessions[twin.id] = twin
         return twin
+
+    async def variant(self, session: Session, values: dict[str, Any]) -> Session:
+        """Make a second bench that begins as this one is set now, with values written over it.
+
+        Raises
+        ------
+        InputError
+            If the values do not fit.
+        ApiError
+            If there are too many benches.
+        """
+        document = await self._engine.call(design_of, session)
+        paused, scale = not session.is_running, session.pacer.scale
+        return await self.create(document, values, session.board.spec.seed, paused, scale)
 
     async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> Session:
         """Make a bench that plays a recording, at a multiple of the pace it was recorded at.

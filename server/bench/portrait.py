@@ -94,7 +94,7 @@ def bench_of(session: Session, around: dict[str, Any], view3d: str | None) -> Be
             )
             for name, section in session.board.diagnosers.items()
         },
-        parameters=spec.document,
+        parameters=document_now(session),
         view3d=view3d,
         replay_of=session.replay_of or None,
         recorded_scale=session.recorded_scale,
@@ -117,3 +117,15 @@ def document_of(session: Session) -> dict[str, Any]:
         if session.scenario.samples is not None:
             document["samples"] = session.scenario.samples
     return document
+
+
+def document_now(session: Session) -> dict[str, Any]:
+    """Return what the bench is made of now, its twins included."""
+    board = session.board
+    twins = getattr(board, "base", {}).get("twins")
+    return {**board.spec.document, **({"twins": twins} if twins else {})}
+
+
+def design_of(session: Session) -> dict[str, Any]:
+    """Return the scenario of a bench as it is set now, from tick 0: live changes, but nothing that happened."""
+    return {**session.scenario.document, **document_now(session)}

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from core.board.board import Rows
 from core.board.condition import Condition
+from core.board.rows import Rows
 from server.bench.events import Event
 from server.bench.recorder import CLOSED, STOPPED, WANTED, Past, Recorder
 from server.errors import not_found

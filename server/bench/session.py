@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any, get_args
 
-from core.board.board import Board, Checkpoint, Rows
+from core.board.board import Board, Checkpoint
 from core.board.history import History
+from core.board.rows import Rows
 from core.device.geometry import Geometry
 from core.errors import InputError
 from core.signals import Signal

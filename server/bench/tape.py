@@ -9,7 +9,8 @@ import numpy as np
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from core.board.board import Board, Rows
+from core.board.board import Board
+from core.board.rows import Rows
 from core.errors import InputError
 from server.store.recording import first_tick
 

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from itertools import count
 from typing import Any
 
+from server.bench.portrait import document_now
 from server.bench.session import Session
 from server.bench.status import BenchStatus
 from server.errors import ApiError
@@ -130,7 +131,7 @@ class Hub:
         if known is None or known[0] is not status:
             message = Status(
                 **{**dict(status), **self.around(session)},
-                parameters=session.board.spec.document if with_parameters else None,
+                parameters=document_now(session) if with_parameters else None,
                 dropped_frames=-1,
             )
             known = (status, message.model_dump_json())

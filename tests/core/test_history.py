@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.board.board import Rows
 from core.board.history import History
+from core.board.rows import Rows
 from tests.lab import RICH, make
 
 SIGNALS = 3

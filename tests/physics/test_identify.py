@@ -11,6 +11,7 @@ import pytest
 from scipy.signal import cont2discrete, lfilter
 
 from core.errors import InputError
+from core.identify.filtered import noise_gram
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.speed import estimate_record, estimate_start
@@ -202,9 +203,39 @@ def test_one_tone_and_a_step_are_flagged_and_four_tones_pass(kind):
     assert np.all(play(make(step), 8000)["x.identifiable"][4500:] == 0.0)
 
 
-def test_noise_does_not_pass_for_excitation():
-    trace = play(bench({"kind": "excitation"}, ONE, {"sensor.noise_um": 0.01}), 8000)
-    assert np.all(trace["x.identifiable"][4500:] == 0.0)
+@pytest.mark.parametrize("kind", ["excitation", "gradient", "recursive_least_squares"])
+@pytest.mark.parametrize("noise_um", [0.01, 0.1])
+def test_noise_does_not_pass_for_excitation(kind, noise_um):
+    for seed in (1, 6):
+        values = {"sensor.noise_um": noise_um, "seed": seed}
+        for tones, identifiable in ((ONE, 0.0), ([12.0], 0.0), (FOUR, 1.0)):
+            assert np.all(play(bench({"kind": kind}, tones, values), 12_000)["x.identifiable"][4500:] == identifiable)
+        step = {"reference": {"kind": "step", "amplitude_v": 5.0}, "identifiers": {"x": {"kind": kind}}}
+        assert np.all(play(make({**values, **step}), 12_000)["x.identifiable"][4500:] == 0.0)
+
+
+def test_noise_that_is_turned_up_live_is_taken_out_as_well():
+    board = bench({"kind": "excitation"}, ONE, {"sensor.noise_um": 0.0})
+    play(board, 4000)
+    do(board, {"kind": "set", "values": {"sensor.noise_um": 0.1}})
+    assert np.all(play(board, 12_000)["x.identifiable"][2500:] == 0.0)
+
+
+@pytest.mark.parametrize(("method", "held"), [("foh", 0.0), ("zoh", 1.0)])
+def test_noise_in_the_regressor_is_that_of_its_filters(method, held):
+    """White noise through a filter has the variance of its impulse response, and 1/(4 L^3), 1/(4 L) h in the limit."""
+    pole, h, sigma = 1.3, 0.156, 0.05
+    impulse = np.zeros(2000)
+    impulse[1] = sigma
+    y, dy = (
+        lfilter(b.ravel(), a, impulse)
+        for b, a, _ in (cont2discrete((top, [1.0, 2 * pole, pole**2]), h, method) for top in ([1.0], [1.0, 0.0]))
+    )
+    expected = [0.0, 0.0, dy @ dy, 0.0, dy @ y, y @ y]
+    np.testing.assert_allclose(noise_gram(pole, h, held, sigma), expected, rtol=1e-6, atol=1e-12)
+    fine = noise_gram(pole, 1e-3, held, sigma)
+    assert fine[5] == pytest.approx(sigma**2 * 1e-3 / (4 * pole**3), rel=1e-3)
+    assert fine[2] == pytest.approx(sigma**2 * 1e-3 / (4 * pole), rel=1e-2)
 
 
 def test_excitation_is_the_smallest_eigenvalue_in_closed_form():

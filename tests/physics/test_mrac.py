@@ -69,6 +69,15 @@ def test_mrac_with_ten_times_the_mass():
     assert np.abs(trace["plant.displacement"] - trace["model.displacement"]).max() > 5.0
 
 
+@pytest.mark.parametrize("gain", [0.03, 0.3, 3.0, 10.0])
+def test_mrac_with_ten_times_the_mass_bursts_on_the_copied_model_at_any_gain(gain):
+    law = {"kind": "mrac", "adaptation_gain": gain}
+    board = make({"controller": law, "guard.rail_ms": 1e6, "guard.travel_um": 100.0})
+    inject(board, added_mass=9.0)
+    trace = play(board, 10_000)
+    assert 6.0 < np.abs(trace["plant.displacement"] - trace["model.displacement"]).max() < 45.0
+
+
 def test_mrac_takes_the_lag_out_of_five_times_the_damping():
     def lag(controller: dict[str, Any]) -> float:
         board = make({"controller": controller})

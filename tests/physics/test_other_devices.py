@@ -80,7 +80,7 @@ def test_one_tone_and_a_step_are_flagged_on_any_device(reference, device):
     chosen: dict[str, Any] = {"kind": "step", "amplitude_um": 2.0}
     if reference != "step":
         chosen = {"kind": "sine", "amplitude_um": 2.0, "frequency_hz": 500.0}
-    noise = 0.01 if reference == "noisy" else 0.0
+    noise = 0.05 if reference == "noisy" else 0.0
     board = bench(device, noise_um=noise, reference=chosen, identifiers={"monitor": {"kind": "excitation"}})
     assert np.all(play(board, 8000)["monitor.identifiable"][4500:] == 0.0)
 

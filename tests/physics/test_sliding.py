@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are
 
-from core.board.spec import with_values
+from core.board.document import with_values
 from tests.lab import QUIET, do, inject, make, play, rms
 from tests.loop import A1, KP, KRAD, W0, held, simulate, tail
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.board.spec import with_values
+from core.board.document import with_values
 from core.errors import InputError
 from scenarios.key import content_hash, run_key
 from scenarios.library import get

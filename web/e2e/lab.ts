@@ -2,8 +2,8 @@ import { test as base, expect, type Page } from "@playwright/test";
 import { LabServer } from "./lab-server";
 
 interface LabFixtures {
-  /** Open a fresh bench of the first-look scenario in a layout; it is closed after the test. */
-  openBench(layout?: "lecture" | "lab" | "research"): Promise<void>;
+  /** Open a fresh bench of the first-look scenario in a layout, with values written over; closed after the test. */
+  openBench(layout?: "lecture" | "lab" | "research", set?: Record<string, unknown>): Promise<void>;
 }
 
 /** Tests against a real server, with a bench of their own. */
@@ -19,9 +19,9 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
   ],
   openBench: async ({ page, server }, use) => {
     const opened: string[] = [];
-    await use(async (layout = "lab") => {
+    await use(async (layout = "lab", set = {}) => {
       await page.request.get(server.url);
-      const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: "first-look" });
+      const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: "first-look", set });
       opened.push(id);
       await page.goto(`${server.origin}/?bench=${id}&layout=${layout}`);
       await expect(page.getByTestId("bench-state")).toHaveText("running");
@@ -40,3 +40,13 @@ export const pictureOf = (page: Page, selector: string): Promise<string> =>
     .evaluate((canvas) => (canvas as HTMLCanvasElement).toDataURL());
 
 export const SCOPE_CANVAS = "section[aria-label^='Scope'] canvas";
+
+/** The six hypotheses of the first look. */
+export const HYPOTHESES = [
+  { name: "healthy" },
+  { name: "m+5", mass: 1.05 },
+  { name: "m+10", mass: 1.1 },
+  { name: "k+5", stiffness: 1.05 },
+  { name: "k+10", stiffness: 1.1 },
+  { name: "b+30", damping: 1.3 },
+];

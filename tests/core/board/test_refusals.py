@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from core.board.spec import with_values
+from core.board.document import with_values
 from core.errors import InputError
 from tests.lab import RICH, do, document, fault, inject, inner_digest, make, play, run_digest
 

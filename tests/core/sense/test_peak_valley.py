@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.sense.grating import level
-from core.sense.peak_valley import GRATING, PeakValley
+from core.sense.peak_valley import DIRECTION, DISPLACEMENT, GRATING, LIGHT, MOVING, TRUE, WRONG_WAY, PeakValley
 from tests.core.sense.bench import errors, lost, make
 
 COUNTER = {"sensor.kind": "peak_valley"}
@@ -16,14 +16,13 @@ def recover(x: np.ndarray, offset: float) -> np.ndarray:
     """Let the unit count a noiseless signal along any path that begins at zero."""
     context = make({"sensors.through_wafer.grating_offset_um": offset}).spec.context()
     p, s = PeakValley.pack(PeakValley.Params(), context), PeakValley.state(PeakValley.Params(), context)
-    w, io = np.zeros(11), np.arange(11)
-    w[0] = 1.0
+    w, io = np.zeros(WRONG_WAY + 1), np.arange(WRONG_WAY + 1)
     velocity = np.gradient(x)
     found = np.zeros((len(x), 3))
     for i, at in enumerate(x):
-        w[2], w[4], w[5] = level(p, GRATING, at), at, velocity[i]
+        w[LIGHT], w[TRUE], w[MOVING] = level(p, GRATING, at), at, velocity[i]
         PeakValley.step(p, s, w, io)
-        found[i] = w[6], w[9], w[10]
+        found[i] = w[DISPLACEMENT], w[DIRECTION], w[WRONG_WAY]
     return found
 
 

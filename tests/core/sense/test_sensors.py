@@ -11,22 +11,24 @@ from tests.core.sense.bench import make
 from tests.lab import do, play
 
 
-def test_only_what_the_sensor_in_use_needs_is_engaged():
+def test_only_what_the_sensor_in_use_needs_runs():
     assert needed(make({"sensor.kind": "ideal"}).spec) == {"ideal"}
     assert needed(make({"sensor.kind": "quadrature_kalman"}).spec) == {"quadrature_kalman", "quadrature", "dual_beam"}
     both = make({"sensor.kind": "quadrature", "sensors.single_beam.always": True}).spec
     assert needed(both) == {"quadrature", "dual_beam", "single_beam", "through_wafer"}
 
 
-def test_engagement_follows_a_change_while_running():
+def test_what_runs_follows_a_change_of_the_sensor_in_use():
     board = make({"sensor.kind": "ideal"})
-    play(board, 100)
-    assert board.value("quadrature.engaged") == 0.0
-    do(board, {"kind": "set", "values": {"sensor.kind": "quadrature"}})
-    assert [board.value(f"{name}.engaged") for name in ("quadrature", "dual_beam", "ideal")] == [1.0, 1.0, 0.0]
-    do(board, {"kind": "set", "values": {"sensor.kind": "ideal"}})
-    trace = play(board, 10)
-    assert not trace["dual_beam.first"].any() and trace["sensor.displacement"].any()
+    own = ["dual_beam.first", "dual_beam.second", "quadrature.displacement", "quadrature.turn", "quadrature.error"]
+    seen = []
+    for kind in ("ideal", "quadrature", "ideal"):
+        if kind != board.spec.measuring:
+            do(board, {"kind": "set", "values": {"sensor.kind": kind}})
+        trace = play(board, 100)
+        assert trace["sensor.displacement"].all()
+        seen.append([trace[name].any() for name in own])
+    assert seen == [[False] * 5, [True] * 5, [False] * 5]
 
 
 def test_recovery_sees_the_light_of_the_same_tick():

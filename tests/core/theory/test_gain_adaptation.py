@@ -102,3 +102,10 @@ def test_map_rows_are_frequencies():
     found = instability_map(loop, MIT, np.array([0.05, 0.15]), np.array([0.5, 0.8, 1.5]))
     assert found.shape == (3, 2)
     assert found[1, 1] > 0 > max(found[1, 0], found[0, 1], found[2, 1])
+
+
+def test_what_grows_beyond_any_number_grows_fast():
+    fierce = GainLoop(0.01, 1.0, 100.0, 100.0, 100.0)
+    rate, w = 1e3, 0.01
+    assert not np.all(np.isfinite(monodromy(fierce.packed(), MIT, rate, w)))
+    assert growth(fierce, MIT, rate, w) == pytest.approx(709.78 * w / (2.0 * math.pi), rel=1e-4)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.board.board import Rows
 from core.board.history import History
+from core.board.rows import Rows
 from server.stream.codec import FROZEN, TRIGGERED, WAITING
 from server.stream.panel import Panel, Span
 from server.stream.wire import Subscribe, TriggerSpec

@@ -1,5 +1,18 @@
 import { client, data } from "./client";
-import type { BodeOf, CompareWith, Design, Document, NewBench, NewRun, SweptSine, Trace, Wanted } from "./types";
+import type {
+  AliasSource,
+  BodeOf,
+  CompareWith,
+  Design,
+  Document,
+  ExcitationSource,
+  MapSource,
+  NewBench,
+  NewRun,
+  SweptSine,
+  Trace,
+  Wanted,
+} from "./types";
 
 const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
 const run = (run_id: string) => ({ params: { path: { run_id } } });
@@ -19,6 +32,23 @@ export const api = {
     data(
       client.GET("/api/v1/benches/{bench_id}/unstable-region", { params: { path: { bench_id }, query: { drive_v } } }),
     ),
+  explanation: (bench_id: string, name: string, tick: number) =>
+    data(
+      client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/explain", {
+        params: { path: { bench_id, name }, query: { tick } },
+      }),
+    ),
+  aliases: (bench_id: string, name: string, body: Partial<AliasSource>) =>
+    data(
+      client.POST("/api/v1/benches/{bench_id}/diagnosers/{name}/aliases", {
+        params: { path: { bench_id, name } },
+        body: { within_um: 0, ...body },
+      }),
+    ),
+  positiveReal: (numerator: number[], denominator: number[]) =>
+    data(client.POST("/api/v1/theory/positive-real", { body: { numerator, denominator } })),
+  persistency: (body: ExcitationSource) => data(client.POST("/api/v1/theory/persistency", { body })),
+  instabilityMap: (body: MapSource) => data(client.POST("/api/v1/theory/instability-map", { body })),
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
@@ -62,6 +92,8 @@ export const api = {
   removeBench: (id: string) => data(client.DELETE("/api/v1/benches/{bench_id}", bench(id))),
   fork: (id: string, snapshot: string | null = null) =>
     data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body: { snapshot } })),
+  variant: (id: string, set: Record<string, unknown>) =>
+    data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set } })),
   snapshots: async (id: string) =>
     (await data(client.GET("/api/v1/benches/{bench_id}/snapshots", bench(id)))).snapshots,
   keep: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/snapshots", { ...bench(id), body: {} })),

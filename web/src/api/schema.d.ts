@@ -104,6 +104,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Map Aliases
+         * @description Map the response of every hypothesis to the tones of the drive, and name what has the same.
+         */
+        get: operations["map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get"];
+        put?: never;
+        /**
+         * Get Aliases
+         * @description Say which hypotheses of a list the drive does not tell apart.
+         */
+        post: operations["get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/scenarios": {
         parameters: {
             query?: never;
@@ -312,6 +336,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/variant": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Vary Bench
+         * @description Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
+         */
+        post: operations["vary_bench_api_v1_benches__bench_id__variant_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/identification": {
         parameters: {
             query?: never;
@@ -404,26 +448,6 @@ export interface paths {
          * @description Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior.
          */
         get: operations["explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Map Aliases
-         * @description Map the response of every hypothesis to the tones of the drive, and name what has the same.
-         */
-        get: operations["map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1161,6 +1185,51 @@ export interface components {
             pairs: components["schemas"]["Pair"][];
         };
         /**
+         * AliasReport
+         * @description Where hypotheses lie apart and where they coincide, now and at other drive frequencies.
+         */
+        AliasReport: {
+            map: components["schemas"]["AliasMap"];
+            /** Sensor Noise Um */
+            sensor_noise_um: number;
+            /** F0 Hz */
+            f0_hz: number;
+            sweep: components["schemas"]["AliasSweep"];
+        };
+        /**
+         * AliasSource
+         * @description Which hypotheses under which drive; those of the diagnoser under the drive of the bench unless given.
+         */
+        AliasSource: {
+            /** Hypotheses */
+            hypotheses?: components["schemas"]["Hypothesis"][] | null;
+            /** Tones */
+            tones?: components["schemas"]["DriveTone"][] | null;
+            /**
+             * Within Um
+             * @description Distance below which two count as coincident
+             * @default 0
+             */
+            within_um?: number;
+        };
+        /**
+         * AliasSweep
+         * @description For a single tone of the first amplitude, the closest pair over frequency.
+         */
+        AliasSweep: {
+            /** Frequency Hz */
+            frequency_hz: number[];
+            /** Distance Um */
+            distance_um: number[];
+            /**
+             * Pair
+             * @description Index into pairs_named
+             */
+            pair: number[];
+            /** Pairs Named */
+            pairs_named: components["schemas"]["NamedPair"][];
+        };
+        /**
          * Bench
          * @description A live bench.
          */
@@ -1640,6 +1709,16 @@ export interface components {
             digest: string;
         };
         /**
+         * DriveTone
+         * @description One tone of a drive.
+         */
+        DriveTone: {
+            /** Frequency Hz */
+            frequency_hz: number;
+            /** Amplitude V */
+            amplitude_v: number;
+        };
+        /**
          * EquationCard
          * @description An equation, with its erratum when the printed one is wrong.
          */
@@ -1880,7 +1959,7 @@ export interface components {
         };
         /**
          * Gallery
-         * @description All cards, by id.
+         * @description All cards, in the order of the text.
          */
         Gallery: {
             /** Cards */
@@ -2361,6 +2440,16 @@ export interface components {
             posterior: number;
             /** Recorded */
             recorded: number;
+        };
+        /**
+         * NamedPair
+         * @description Two hypotheses.
+         */
+        NamedPair: {
+            /** First */
+            first: string;
+            /** Second */
+            second: string;
         };
         /**
          * NewBench
@@ -3411,6 +3500,20 @@ export interface components {
             boundary: components["schemas"]["SafeBoundary"] | null;
         };
         /**
+         * Variant
+         * @description How the second bench differs.
+         */
+        Variant: {
+            /**
+             * Set
+             * @description Values by dotted path; a whole table may be one
+             * @default {}
+             */
+            set?: {
+                [key: string]: unknown;
+            };
+        };
+        /**
          * Wanted
          * @description What to record: from now, or from when a condition holds, with some of the past.
          */
@@ -4002,6 +4105,78 @@ export interface operations {
             };
         };
     };
+    map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get: {
+        parameters: {
+            query?: {
+                /** @description One tone as large as the reference; those it has unless given */
+                frequency_hz?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasMap"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AliasSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_scenarios_api_v1_scenarios_get: {
         parameters: {
             query?: never;
@@ -4383,6 +4558,41 @@ export interface operations {
             };
         };
     };
+    vary_bench_api_v1_benches__bench_id__variant_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Variant"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     identification_api_v1_benches__bench_id__identification_post: {
         parameters: {
             query?: never;
@@ -4540,41 +4750,6 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Account"];
-                };
-            };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
-        };
-    };
-    map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get: {
-        parameters: {
-            query?: {
-                /** @description One tone as large as the reference; those it has unless given */
-                frequency_hz?: number | null;
-            };
-            header?: never;
-            path: {
-                name: string;
-                bench_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["AliasMap"];
                 };
             };
             /** @description Refused or failed */

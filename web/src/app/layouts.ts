@@ -56,8 +56,9 @@ export function focusNextGroup(): void {
   next?.element.querySelector<HTMLElement>("[role=tab][aria-selected=true], [role=tab], button")?.focus();
 }
 
-/** Bring the panel of a kind to the front, opening one if there is none. */
+/** Bring the panel of a kind to the front, opening one if there is none; without a dock it takes the place for one. */
 export function showPanel(kind: string): void {
+  useView.setState({ extra: kind });
   const panel = current?.panels.find((p) => p.view.contentComponent === kind);
   if (panel) panel.api.setActive();
   else addPanel(kind);

@@ -1,8 +1,15 @@
-import { IconChartHistogram, IconLayoutDashboard, IconPhoto, IconRulerMeasure } from "@tabler/icons-react";
+import {
+  IconChartHistogram,
+  IconLayoutDashboard,
+  IconMathFunction,
+  IconPhoto,
+  IconRulerMeasure,
+} from "@tabler/icons-react";
 import type { ComponentType, ReactNode } from "react";
 import { Designer } from "../designer/designer";
 import { GalleryPage } from "../gallery/gallery-page";
 import { RunsPage } from "../runs/runs-page";
+import { Theory } from "../theory/theory";
 import type { PageName } from "./view-store";
 import { Workspace } from "./workspace";
 
@@ -46,5 +53,12 @@ export const PAGES: Record<PageName, PageKind> = {
     icon: <IconRulerMeasure size={ICON} />,
     key: "g",
     component: Designer,
+  },
+  theory: {
+    name: "Theory",
+    title: "Theory: what can be said before anything is run",
+    icon: <IconMathFunction size={ICON} />,
+    key: "t",
+    component: Theory,
   },
 };

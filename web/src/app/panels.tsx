@@ -1,9 +1,13 @@
 import type { ComponentType } from "react";
+import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
+import { BlindPanel } from "../panels/blind/blind-panel";
 import { CardPanel } from "../panels/card/card-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
+import { HypothesesPanel } from "../panels/hypotheses/hypotheses-panel";
 import { IdentifyPanel } from "../panels/identify/identify-panel";
+import { LabsPanel } from "../panels/labs/labs-panel";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { PhasePanel } from "../panels/phase/phase-panel";
 import { RecordingsPanel } from "../panels/recordings/recordings-panel";
@@ -12,7 +16,9 @@ import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
 import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
+import { TwinsPanel } from "../panels/twins/twins-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
+import { WhyPanel } from "../panels/why/why-panel";
 
 export interface PanelProps {
   params: { scope?: ScopeConfig };
@@ -30,6 +36,12 @@ export interface PanelKind {
 export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
   lanes: { title: "Diagnosis", component: LanesPanel },
+  adaptation: { title: "Adaptation", component: AdaptationPanel },
+  hypotheses: { title: "Hypotheses", component: HypothesesPanel },
+  labs: { title: "Noise and memory", component: LabsPanel },
+  blind: { title: "Blind diagnosis", component: BlindPanel },
+  twins: { title: "Twins", component: TwinsPanel },
+  why: { title: "Why", component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
   faults: { title: "Faults", changes: true, component: FaultsPanel },
   card: { title: "Block", component: CardPanel },

@@ -1,6 +1,6 @@
-import { Button } from "@mantine/core";
+import { Button, NativeSelect } from "@mantine/core";
 import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
-import { useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
@@ -12,7 +12,9 @@ import { usePageVisible } from "../ui/use-page-visible";
 import { actions } from "./actions";
 import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";
+import { PANELS } from "./panels";
 import styles from "./phone.module.css";
+import { useView } from "./view-store";
 
 /** A bench in the hand: status, one scope, the lanes, 3D, and the button that stops it. */
 export function Phone() {
@@ -47,6 +49,7 @@ export function Phone() {
               <View3dPanel />
             </ErrorFence>
           </div>
+          <Extra />
         </main>
         <footer className={styles.stop}>
           <Button
@@ -64,3 +67,39 @@ export function Phone() {
     </PanelVisible>
   );
 }
+
+/** One more panel, of any kind; what is clicked elsewhere opens here. */
+function Extra() {
+  const kind = useView((s) => s.extra);
+  const place = useRef<HTMLDivElement>(null);
+  const panel = PANELS[kind];
+  useEffect(() => {
+    if (kind) place.current?.scrollIntoView({ block: "start" });
+  }, [kind]);
+  return (
+    <div ref={place} className={styles.extra}>
+      <NativeSelect
+        size="sm"
+        aria-label="Another panel"
+        value={kind}
+        data={[
+          { value: "", label: "Another panel…" },
+          ...Object.entries(PANELS)
+            .filter(([name]) => !ALWAYS.includes(name))
+            .map(([value, { title }]) => ({ value, label: title })),
+        ]}
+        onChange={(e) => useView.setState({ extra: e.currentTarget.value })}
+      />
+      {panel && (
+        <div className={styles.panel}>
+          <ErrorFence key={kind} name={panel.title}>
+            <panel.component params={{}} setParams={() => undefined} />
+          </ErrorFence>
+        </div>
+      )}
+    </div>
+  );
+}
+
+/** What a phone shows anyway. */
+const ALWAYS = ["scope", "lanes", "view3d"];

@@ -6,7 +6,7 @@ export type LayoutName = "lecture" | "lab" | "research";
 export type CardId = string;
 
 /** What the page shows: the live bench, or what is done around it. */
-const PAGE_NAMES = ["bench", "gallery", "runs", "designer"] as const;
+const PAGE_NAMES = ["bench", "gallery", "runs", "designer", "theory"] as const;
 
 export type PageName = (typeof PAGE_NAMES)[number];
 
@@ -14,7 +14,13 @@ interface ViewStore {
   page: PageName;
   layout: LayoutName;
   card: CardId;
+  /** The sample of a diagnoser that was clicked, to be explained. */
+  sample: { diagnoser: string; tick: number } | undefined;
+  /** A hidden fault is to be found: the page keeps the truth to itself. */
+  blind: boolean;
   dialog: "none" | "keys" | "bench";
+  /** On a phone: the panel shown beside those it always has. */
+  extra: string;
   /** Reading size: lectures are read from the last row. */
   large: boolean;
 }
@@ -27,7 +33,10 @@ export const useView = create<ViewStore>(() => ({
   page: pageInAddress(),
   layout: window.innerWidth >= WIDE ? "research" : "lab",
   card: "diagnosers.kalman",
+  sample: undefined,
+  blind: false,
   dialog: "none",
+  extra: "",
   large: false,
 }));
 

@@ -5,6 +5,7 @@ import { DrawLoop } from "./draw-loop";
 import { appendEvent } from "./event-log";
 import { mergeStatus } from "./merge-status";
 import { StreamClient } from "./stream-client";
+import { veil } from "./veil";
 import type { ServerMessage } from "./wire";
 
 const STALE_MS = 1000;
@@ -52,14 +53,14 @@ function receive(message: ServerMessage): void {
       const restarted = serverId !== "" && serverId !== message.server;
       serverId = message.server;
       if (restarted) useBench.setState({ events: [] });
-      useBench.setState({ bench: message.bench });
+      useBench.setState({ bench: veil.status(message.bench) });
       const last = useBench.getState().events.at(-1)?.seq ?? 0;
       if (message.last_event > last) client.send({ type: "resume", after: last });
       return;
     }
     case "status": {
       const { bench, scores } = useBench.getState();
-      const next = bench && mergeStatus(bench, message);
+      const next = bench && mergeStatus(bench, veil.status(message));
       if (next && next !== bench) useBench.setState({ bench: next });
       if (message.scores && JSON.stringify(message.scores) !== JSON.stringify(scores))
         useBench.setState({ scores: message.scores });
@@ -84,9 +85,14 @@ function receive(message: ServerMessage): void {
 }
 
 function flushEvents(): void {
-  const events = pendingEvents.reduce(appendEvent, useBench.getState().events);
+  const events = veil.events(pendingEvents).reduce(appendEvent, useBench.getState().events);
   pendingEvents = [];
   useBench.setState({ events });
+}
+
+/** Show again what was hidden. */
+export function liftVeil(): void {
+  useBench.setState({ events: veil.lift().reduce(appendEvent, useBench.getState().events) });
 }
 
 setInterval(() => {

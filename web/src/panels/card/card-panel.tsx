@@ -8,6 +8,7 @@ import { Prose } from "../../ui/prose";
 import { BlockEquation } from "./block-equation";
 import styles from "./card.module.css";
 import { instances } from "./instances";
+import { LiveValues } from "./live-values";
 import { ParameterList } from "./parameter-list";
 
 /** What was last clicked: what the block does, its equations and its parameters. */
@@ -58,6 +59,7 @@ export function CardPanel() {
               ))}
             </div>
           )}
+          <LiveValues key={`live ${instance.id} ${instance.name}`} instance={instance} />
           <ParameterList key={instance.id} instance={instance} parameters={found.parameters} document={parameters} />
         </>
       ) : (

@@ -36,3 +36,14 @@ it("reads values where commands put them, shadow sensors and the active controll
   expect(value("sensor", "noise_um")).toBe(0.07);
   expect(value("sensor", "range_um")).toBeUndefined();
 });
+
+it("has cards for identifiers, and none for the diagnosers of twins", () => {
+  const list = instances({
+    parameters: { identifiers: { excitation: { kind: "excitation" } } },
+    controller: "pid",
+    controllers: ["pid"],
+    diagnosers: { kalman: { kind: "mmae", names: [] }, "two:kalman": { kind: "mmae", names: [] } },
+  });
+  expect(list.find((i) => i.id === "identifiers.excitation")).toMatchObject({ family: "identify", name: "excitation" });
+  expect(list.filter((i) => i.family === "diagnose").map((i) => i.id)).toEqual(["diagnosers.kalman"]);
+});

@@ -24,6 +24,9 @@ export function parameterValue(document: Document, instance: Instance, parameter
   return places.map((path) => section(document, path)[parameter]).find((value) => value !== undefined);
 }
 
+/** Diagnosers of twins have a colon in their names; they are set with the twin. */
+const ofTheBoard = (id: string) => !id.includes(":");
+
 /** Every block on a bench that has a card. */
 export function instances(bench: Pick<Bench, "parameters" | "controllers" | "controller" | "diagnosers">): Instance[] {
   const { parameters } = bench;
@@ -48,9 +51,12 @@ export function instances(bench: Pick<Bench, "parameters" | "controllers" | "con
     single("drive", "Drive", "board", "drive"),
     single("plant", "Device", "plant", text("plant", "model", "linear")),
     { ...single("sensor", "Sensor", "sense", sensor), also: [`sensors.${sensor}`] },
-    ...Object.keys(bench.diagnosers).map((id) =>
-      single(`diagnosers.${id}`, "Diagnosis", "diagnose", text(`diagnosers.${id}`, "kind", "mmae")),
+    ...Object.entries((parameters.identifiers ?? {}) as Record<string, { kind?: string }>).map(([id, { kind = "" }]) =>
+      single(`identifiers.${id}`, "Identifier", "identify", kind),
     ),
+    ...Object.keys(bench.diagnosers)
+      .filter(ofTheBoard)
+      .map((id) => single(`diagnosers.${id}`, "Diagnosis", "diagnose", text(`diagnosers.${id}`, "kind", "mmae"))),
     single("model", "Reference model", "board", "model"),
     single("guard", "Guard", "board", "guard"),
   ];

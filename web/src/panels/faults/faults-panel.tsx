@@ -2,6 +2,7 @@ import { Button } from "@mantine/core";
 import { useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../app/actions";
+import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber } from "../../ui/format";
@@ -14,8 +15,15 @@ export function FaultsPanel() {
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const active = useBench((s) => s.bench?.faults);
   const pending = useBench((s) => s.bench?.pending);
+  const blind = useView((s) => s.blind);
   const [open, setOpen] = useState<string | undefined>(undefined);
   const faults = blocks.filter((b) => b.family === "faults");
+  if (blind)
+    return (
+      <EmptyState title="A fault may be hidden">
+        What acts on the device is shown again once you have committed your answer under Blind diagnosis.
+      </EmptyState>
+    );
   if (faults.length === 0)
     return (
       <EmptyState

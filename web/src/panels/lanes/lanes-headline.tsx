@@ -8,9 +8,10 @@ import styles from "./lanes.module.css";
 export function LanesHeadline({ id, names, switches }: { id: string; names: string[]; switches: TruthSwitch[] }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const blind = useView((s) => s.blind);
   const last = switches.at(-1);
   const winner = typeof score?.winner === "number" ? names[score.winner] : score?.winner;
-  const right = score !== undefined && score.winner === score.truth;
+  const right = !blind && score !== undefined && score.winner === score.truth;
   return (
     <dl className={styles.headline}>
       <div>
@@ -25,15 +26,15 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       </div>
       <div>
         <dt>delay</dt>
-        <dd>{delayText(last, dtMs)}</dd>
+        <dd>{blind ? "hidden" : delayText(last, dtMs)}</dd>
       </div>
       <div>
         <dt>correct</dt>
-        <dd>{score ? formatPercent(score.correct_fraction) : "–"}</dd>
+        <dd>{blind ? "hidden" : score ? formatPercent(score.correct_fraction) : "–"}</dd>
       </div>
       <div>
         <dt>false switches</dt>
-        <dd>{score?.false_switches ?? "–"}</dd>
+        <dd>{blind ? "hidden" : (score?.false_switches ?? "–")}</dd>
       </div>
     </dl>
   );

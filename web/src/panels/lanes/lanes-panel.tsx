@@ -1,23 +1,60 @@
+import { NativeSelect } from "@mantine/core";
+import { useMemo, useState } from "react";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { contestants } from "./contestants";
 import { DiagnoserLanes } from "./diagnoser-lanes";
+import { LaneTools } from "./lane-tools";
 import styles from "./lanes.module.css";
+import { Race } from "./race";
+import { useLaneTime } from "./use-lane-time";
 
-/** Every diagnoser of the bench: what it believes, against what is true. */
+const ALL = "";
+
+/** What the diagnosers of the bench believe, against what is true: all of them in a race, or one in full. */
 export function LanesPanel() {
   const diagnosers = useBench((s) => s.bench?.diagnosers);
-  const entries = Object.entries(diagnosers ?? {});
-  if (entries.length === 0)
+  const signals = useBench((s) => s.bench?.signals);
+  const dtMs = useBench((s) => s.bench?.dt_ms);
+  const [windowMs, setWindowMs] = useState(20);
+  const [wanted, setWanted] = useState(ALL);
+  const time = useLaneTime(windowMs, dtMs);
+  const all = useMemo(
+    () => contestants({ diagnosers: diagnosers ?? {}, signals: signals ?? [] }),
+    [diagnosers, signals],
+  );
+  if (all.length === 0)
     return (
       <EmptyState title="No diagnoser on this bench">
         Open a scenario of chapter 5 from New bench; its bank of Kalman filters fills these lanes.
       </EmptyState>
     );
+  const one = all.length === 1 && all[0].truth ? all[0] : all.find((c) => c.id === wanted && c.truth);
   return (
     <div className={styles.panel}>
-      {entries.map(([id, { names }]) => (
-        <DiagnoserLanes key={id} id={id} names={names} />
-      ))}
+      {all.length > 1 && (
+        <div className={styles.choice}>
+          <NativeSelect
+            size="xs"
+            aria-label="Diagnosers shown"
+            value={one?.id ?? ALL}
+            data={[
+              { value: ALL, label: `Race of all ${all.length}` },
+              ...all
+                .filter((c) => c.truth)
+                .map((c) => ({ value: c.id, label: `${c.id.replaceAll("_", " ")} in full` })),
+            ]}
+            onChange={(e) => setWanted(e.currentTarget.value)}
+          />
+          <span className={styles.advice}>Click a sample to see why</span>
+          {!one && <LaneTools time={time} onWindow={setWindowMs} />}
+        </div>
+      )}
+      {one ? (
+        <DiagnoserLanes id={one.id} names={one.names} time={time} onWindow={setWindowMs} />
+      ) : (
+        <Race contestants={all} time={time} />
+      )}
     </div>
   );
 }

@@ -1,6 +1,6 @@
 /** A box of the loop as drawn: which card it opens and which signal it shows. */
 export interface LoopBox {
-  id: "reference" | "controller" | "drive" | "plant" | "sensor" | "diagnosis";
+  id: "reference" | "controller" | "drive" | "plant" | "sensor" | "diagnosis" | "model" | "identifier";
   title: string;
   x: number;
   y: number;
@@ -8,7 +8,10 @@ export interface LoopBox {
 
 export const BOX = { width: 102, height: 66 };
 
-/** The loop, drawn once round: reference, controller, drive above; device, sensor, diagnosis below. */
+/**
+ * The loop, drawn once round: reference, controller, drive above; device, sensor, diagnosis below; under them what
+ * the controllers compare with and what identifies the device.
+ */
 export const LOOP: LoopBox[] = [
   { id: "reference", title: "Reference", x: 1, y: 2 },
   { id: "controller", title: "Controller", x: 119, y: 2 },
@@ -16,6 +19,8 @@ export const LOOP: LoopBox[] = [
   { id: "plant", title: "Device", x: 237, y: 108 },
   { id: "sensor", title: "Sensor", x: 119, y: 108 },
   { id: "diagnosis", title: "Diagnosis", x: 1, y: 108 },
+  { id: "model", title: "Reference model", x: 1, y: 198 },
+  { id: "identifier", title: "Identifier", x: 119, y: 198 },
 ];
 
 /** Signal paths between the boxes. */
@@ -26,5 +31,6 @@ export const WIRES: { id: string; d: string; label: string; at: [number, number]
   { id: "x", d: "M237 141 H221", label: "x", at: [226, 135] },
   { id: "z", d: "M170 108 V68", label: "z", at: [176, 104] },
   { id: "zd", d: "M119 148 H103", label: "z", at: [108, 142] },
+  { id: "zi", d: "M170 174 V198", label: "z", at: [176, 190] },
   { id: "ud", d: "M228 35 V86 H52 V108", label: "u", at: [58, 104] },
 ];

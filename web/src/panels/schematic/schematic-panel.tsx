@@ -28,6 +28,7 @@ export function SchematicPanel() {
       drive: "drive.voltage",
       plant: "plant.displacement",
       sensor: "sensor.displacement",
+      model: "model.displacement",
     }),
     [controller],
   );
@@ -37,6 +38,7 @@ export function SchematicPanel() {
 
   const list = instances({ parameters, controller, controllers, diagnosers });
   const diagnoser = Object.keys(diagnosers)[0];
+  const identifier = Object.keys((parameters.identifiers as object | undefined) ?? {})[0];
   const cards: Record<LoopBox["id"], string | undefined> = {
     reference: "reference",
     controller: `controllers.${controller}`,
@@ -44,8 +46,11 @@ export function SchematicPanel() {
     plant: "plant",
     sensor: "sensor",
     diagnosis: diagnoser && `diagnosers.${diagnoser}`,
+    model: "model",
+    identifier: identifier && `identifiers.${identifier}`,
   };
   const kind = (box: LoopBox) => {
+    if (box.id === "model") return String((parameters.model as { kind?: string } | undefined)?.kind ?? "copy");
     const instance = list.find((i) => i.id === cards[box.id]);
     return instance ? (block(instance.family, instance.name)?.title ?? instance.name.replaceAll("_", " ")) : "none";
   };
@@ -63,7 +68,7 @@ export function SchematicPanel() {
     <section className={styles.panel} aria-label="The loop">
       {/* biome-ignore lint/a11y/useSemanticElements: boxes of a drawing */}
       <svg
-        viewBox="0 0 340 200"
+        viewBox="0 0 340 266"
         className={styles.drawing}
         role="group"
         aria-label="Signal flow from the reference around the loop"
@@ -132,7 +137,7 @@ export function SchematicPanel() {
             y={box.y + 56}
             textAnchor="end"
             className={styles.value}
-            ref={box.id === "diagnosis" ? undefined : live(box.id)}
+            ref={box.id in shown ? live(box.id) : undefined}
           >
             {box.id === "diagnosis" ? verdict : ""}
           </text>

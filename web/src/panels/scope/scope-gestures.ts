@@ -4,6 +4,8 @@ export interface ScopeGestures {
   /** The span moved under the hand; ticks. */
   onSpan(start: number, end: number): void;
   onLive(): void;
+  /** Pressed and let go in one place. */
+  onClick?(tick: number): void;
 }
 
 interface Span {
@@ -12,6 +14,8 @@ interface Span {
 }
 
 const WHEEL_STEP = 1.2;
+/** Pixels a hand moves without meaning to. */
+const STILL_PX = 3;
 
 /** Drag pans, wheel zooms about the pointer, two fingers pinch, double click goes live. Returns how to stop. */
 export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, span: () => Span): () => void {
@@ -20,6 +24,7 @@ export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, sp
   const pointers = new Map<number, number>();
   let grabbed: Span | undefined;
   let grabbedAt: number[] = [];
+  let moved = false;
 
   const tickAt = (x: number, s: Span) => s.start + (x / over.clientWidth) * (s.end - s.start);
   const grab = () => {
@@ -33,6 +38,7 @@ export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, sp
       if (event.button !== 0) return;
       over.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event.offsetX);
+      moved = pointers.size > 1;
       grab();
     },
     { signal },
@@ -43,7 +49,8 @@ export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, sp
       if (!grabbed || !pointers.has(event.pointerId)) return;
       pointers.set(event.pointerId, event.offsetX);
       const xs = [...pointers.values()];
-      if (xs.length === 1 && Math.abs(xs[0] - grabbedAt[0]) < 3) return;
+      if (!moved && xs.length === 1 && Math.abs(xs[0] - grabbedAt[0]) < STILL_PX) return;
+      moved = true;
       if (xs.length >= 2) {
         const zoom = Math.max(10, Math.abs(grabbedAt[1] - grabbedAt[0])) / Math.max(10, Math.abs(xs[1] - xs[0]));
         const next = zoomSpan(grabbed.start, grabbed.end, tickAt((grabbedAt[0] + grabbedAt[1]) / 2, grabbed), zoom);
@@ -60,7 +67,14 @@ export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, sp
     if (pointers.size) grab();
     else grabbed = undefined;
   };
-  over.addEventListener("pointerup", release, { signal });
+  over.addEventListener(
+    "pointerup",
+    (event) => {
+      release(event);
+      if (!moved && event.button === 0) gestures.onClick?.(tickAt(event.offsetX, span()));
+    },
+    { signal },
+  );
   over.addEventListener("pointercancel", release, { signal });
   over.addEventListener(
     "wheel",

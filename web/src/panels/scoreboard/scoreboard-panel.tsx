@@ -1,3 +1,4 @@
+import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent } from "../../ui/format";
@@ -9,7 +10,14 @@ export function ScoreboardPanel() {
   const scores = useBench((s) => s.scores);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const blind = useView((s) => s.blind);
   const entries = Object.entries(scores);
+  if (blind)
+    return (
+      <EmptyState title="Hidden while you look for the fault">
+        Scores tell the truth; they come back with your answer.
+      </EmptyState>
+    );
   if (entries.length === 0)
     return (
       <EmptyState title="No score yet">A diagnoser is scored from its first sample on; this bench has none.</EmptyState>

@@ -1,0 +1,155 @@
+"""Requests nobody thought of, made up from the OpenAPI document: never a failure of the server, one error shape.
+
+Schemathesis makes them, one by one for each operation and in sequences that follow what earlier answers gave. Names a
+guess would never hit (of scenarios, faults, benches) are put in now and then, so that requests get beyond the door.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from schemathesis.checks import CheckContext, not_a_server_error
+from schemathesis.core.failures import Failure
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from tests.server.conftest import TOKEN, Live, serving
+from tests.server.runs.test_runs import wait
+
+SCENARIO = "first-look"
+HEADERS = {"Authorization": f"Bearer {TOKEN}"}
+KNOWN: dict[str, Any] = {
+    "scenario": SCENARIO,
+    "set": {"samples": 300},
+    "sweep": {"schema": 1, "scenario": SCENARIO, "set": {"samples": 200}, "seeds": {"count": 2}},
+    "only": "ch3-mrac-spring*",
+    "fault": "added_mass",
+    "severity": 0.05,
+    "controller": "pid",
+    "values": {"sensor.noise_um": 0.06},
+    "when": "plant.displacement > 0.1",
+}
+
+
+def one_error_shape(_context: CheckContext, response: Any, _case: Any) -> None:
+    """Whatever is refused says so in the one shape, in one line."""
+    if response.status_code < 400:
+        return
+    found = json.loads(response.content)
+    is_shaped = set(found) == {"error"} and set(found["error"]) == {"code", "message", "field", "hint"}
+    if not is_shaped or not found["error"]["message"] or "\n" in found["error"]["message"]:
+        raise Failure(operation="error", title="Another error shape", message=response.text[:500])
+
+
+CHECKS = [
+    not_a_server_error,
+    one_error_shape,
+    status_code_conformance,
+    content_type_conformance,
+    response_schema_conformance,
+]
+EASY = settings(
+    max_examples=6,
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+
+
+@pytest.fixture(scope="module")
+def target(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """A server of its own with small limits: what is made up here is not to keep the machine busy."""
+    small = {"max_run_ticks": 5000, "max_sweep_runs": 10, "max_recording_ticks": 5000, "history_ticks": 2000}
+    with serving(tmp_path_factory.mktemp("fuzz"), max_benches=16, **small) as live:
+        yield live
+
+
+def known(context: Any, body: Any) -> Any:
+    """Put names that exist where the document says no more than text; two times in three."""
+    if isinstance(body, dict) and len(json.dumps(body, default=str)) % 3:
+        return {name: KNOWN.get(name, value) if value is not None else None for name, value in body.items()}
+    return body
+
+
+@pytest.fixture(scope="module")
+def things(target: Live) -> dict[str, str]:
+    """One of each thing that a path may name."""
+    bench = target.bench(SCENARIO, paused=True, set={"samples": 5000})
+    path = f"/api/v1/benches/{bench['id']}"
+    assert target.command(bench["id"], "step", ticks=500).status_code == 200
+    recording = target.http.post(f"{path}/recordings", json={"past_ticks": 400, "ticks": 0}).json()
+    snapshot = target.http.post(f"{path}/snapshots", json={"name": "here"}).json()
+    run = wait(
+        target, target.http.post("/api/v1/runs", json={"scenario": SCENARIO, "set": {"samples": 300}}).json()["id"]
+    )
+    sweep = target.http.post("/api/v1/sweeps", json={"sweep": KNOWN["sweep"]}).json()
+    return {
+        "bench_id": bench["id"],
+        "recording_id": recording["id"],
+        "snapshot_id": snapshot["id"],
+        "run_id": run["id"],
+        "sweep_id": sweep["id"],
+        "scenario_id": SCENARIO,
+    }
+
+
+@pytest.fixture(scope="module")
+def api(target: Live, things: dict[str, str]) -> Any:
+    schema = schemathesis.openapi.from_dict(target.http.get("/api/v1/openapi.json").json())
+    schema.config.update(base_url=target.address)
+
+    def there(context: Any, parameters: Any) -> Any:
+        """Name what is there, two times in three; deleting it is left to the sequences."""
+        if (
+            not parameters
+            or context.operation.method == "delete"
+            or not sum(map(len, map(str, parameters.values()))) % 3
+        ):
+            return parameters
+        return {name: things.get(name, value) for name, value in parameters.items()}
+
+    schema.hooks.hook("map_body")(known)
+    schema.hooks.hook("map_path_parameters")(there)
+    return schema
+
+
+def accepted(operation: Any) -> int:
+    """Ask in many ways; return how many of the requests were accepted."""
+    good = 0
+
+    @EASY
+    @given(case=operation.as_strategy())
+    def ask(case: Any) -> None:
+        nonlocal good
+        response = case.call(headers=HEADERS, timeout=60)
+        case.validate_response(response, checks=CHECKS)
+        good += response.status_code < 300
+
+    ask()
+    return good
+
+
+def test_no_request_brings_a_failure(api: Any) -> None:
+    counts = {found.ok().label: accepted(found.ok()) for found in api.get_all_operations()}
+    assert len(counts) > 50
+    assert sum(map(bool, counts.values())) > 0.7 * len(counts), "too few get beyond the door"
+
+
+def test_no_sequence_of_requests_brings_a_failure(api: Any) -> None:
+    class Sequence(api.as_state_machine()):  # type: ignore[misc]
+        def get_call_kwargs(self, case: Any) -> dict[str, Any]:
+            return {"headers": HEADERS, "timeout": 60}
+
+        def validate_response(self, response: Any, case: Any, **more: Any) -> None:
+            case.validate_response(response, checks=CHECKS)
+
+    Sequence.run(settings=settings(EASY, max_examples=12, stateful_step_count=20))

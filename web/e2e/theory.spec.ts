@@ -1,0 +1,38 @@
+import { expect, test } from "./lab";
+import { seriousViolations } from "./serious-violations";
+
+test("a typed transfer function is judged, an input is weighed, and the MIT rule has its map", async ({
+  page,
+  openBench,
+}) => {
+  await openBench();
+  await page.keyboard.press("t");
+  const real = page.getByRole("region", { name: "Positive real" });
+  const typed = real.getByRole("textbox", { name: "G(s)" });
+  await expect(real.getByText("Strictly positive real", { exact: true })).toBeVisible();
+  // no resonator of relative degree two is positive real
+  await typed.fill("1/(s^2 + 0.2s + 1)");
+  await expect(real.getByText("Not positive real", { exact: true })).toBeVisible();
+  await typed.fill("1/(s^2 + 0.2s + 1");
+  await expect(real.getByText("a bracket is not closed")).toBeVisible();
+  await typed.fill("1/s");
+  await expect(real.getByText("Positive real, but not strictly", { exact: true })).toBeVisible();
+  await expect(real.getByRole("img", { name: /^Real part over frequency/ })).toBeVisible();
+
+  const excitation = page.getByRole("region", { name: "Persistent excitation" });
+  await excitation.getByRole("button", { name: "One tone" }).click();
+  await expect(excitation.getByText(/^Not persistently exciting/)).toBeVisible();
+  await excitation.getByRole("button", { name: "Four tones" }).click();
+  await expect(excitation.getByText(/^Persistently exciting/)).toBeVisible();
+
+  const map = page.getByRole("region", { name: "Instability map" });
+  await expect(
+    map.getByRole("img", { name: /^MIT rule: growth over frequency and gain; \d+ % unstable/ }),
+  ).toBeVisible();
+  await expect(map.getByText(/Under a constant it is beyond 0\.200/)).toBeVisible(); // b1/b2 over the gains
+  await seriousViolations(page).then((found) => expect(found).toEqual([]));
+
+  await page.keyboard.press("Escape");
+  await page.getByRole("button", { name: "Bench", exact: true }).click();
+  await expect(page.getByRole("region", { name: /^Scope/ }).first()).toBeVisible();
+});

@@ -1,0 +1,82 @@
+import { Button } from "@mantine/core";
+import { useMemo, useRef, useState } from "react";
+import { openVariant } from "../../app/open-variant";
+import { showError } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+import { useFeed } from "../../stream/use-feed";
+import styles from "./adaptation.module.css";
+import { meterShare } from "./meter-share";
+
+const EVERY_MS = 150;
+const USUAL_LEAST = 1e-5;
+
+/** How much the input tells: the smallest eigenvalue of the windowed Gram matrix of the regressor, against the least that will do. */
+export function ExcitationMeter() {
+  const signals = useBench((s) => s.bench?.signals);
+  const parameters = useBench((s) => s.bench?.parameters);
+  const [busy, setBusy] = useState(false);
+  const source = signals?.find((s) => s.name.endsWith(".excitation_relative"))?.name.split(".")[0];
+  const section = (parameters?.identifiers as Record<string, { least_excitation?: number }> | undefined)?.[
+    source ?? ""
+  ];
+  const least = section?.least_excitation ?? USUAL_LEAST;
+  const fill = useRef<HTMLDivElement>(null);
+  const words = useRef<HTMLElement>(null);
+  const last = useRef(0);
+  const subscription = useMemo(
+    () =>
+      source
+        ? {
+            mode: "roll" as const,
+            signals: [`${source}.excitation_relative`, `${source}.excitation`, `${source}.identifiable`],
+            window_ms: 0.5,
+            width: 2,
+          }
+        : undefined,
+    [source],
+  );
+  useFeed(subscription, (frame) => {
+    const now = performance.now();
+    if (now - last.current < EVERY_MS || !fill.current || !words.current) return;
+    last.current = now;
+    const [relative, , identifiable] = frame.latest;
+    fill.current.style.setProperty("--share", `${100 * meterShare(relative)}%`);
+    fill.current.dataset.enough = String(identifiable > 0);
+    words.current.textContent = `${relative > 0 ? relative.toExponential(1).replace("-", "−") : "0"}: ${
+      identifiable > 0 ? "tells all parameters apart" : "the parameters cannot be told apart from this input"
+    }`;
+  });
+
+  if (!source) {
+    const add = () => {
+      setBusy(true);
+      openVariant(
+        { "identifiers.excitation": { kind: "excitation" } },
+        "The bench begins again with an excitation monitor.",
+      )
+        .catch(showError)
+        .finally(() => setBusy(false));
+    };
+    return (
+      <p className={styles.nometer}>
+        Nothing on this bench measures how much the input tells.{" "}
+        <Button size="compact-xs" variant="light" loading={busy} onClick={add}>
+          Begin again with an excitation monitor
+        </Button>
+      </p>
+    );
+  }
+  return (
+    <div className={styles.meter}>
+      <span>Excitation</span>
+      <div
+        ref={fill}
+        className={styles.gauge}
+        style={{ "--least": `${100 * meterShare(least)}%` } as React.CSSProperties}
+      >
+        <i title={`least that will do: ${least}`} />
+      </div>
+      <b ref={words} />
+    </div>
+  );
+}

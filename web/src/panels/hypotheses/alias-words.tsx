@@ -1,0 +1,42 @@
+import type { AliasReport } from "../../api/types";
+import { formatNumber, formatSi } from "../../ui/format";
+import styles from "./hypotheses.module.css";
+
+const SHOWN = 4;
+
+/** The closest pairs in numbers, and what one parameter is worth in the other. */
+export function AliasWords({ report }: { report: AliasReport }) {
+  const { pairs, responses, stiffness_per_mass: worth, tones_hz: tones } = report.map;
+  const noise = report.sensor_noise_um;
+  const likenesses = responses.flatMap(({ name, equivalents }) =>
+    Object.entries(equivalents).map(([factor, value]) => ({ name, factor, value })),
+  );
+  return (
+    <div className={styles.words}>
+      <table className={styles.table}>
+        <caption>Closest pairs at {tones.map((f) => formatSi(f, "Hz", 3)).join(", ")}</caption>
+        <tbody>
+          {pairs.slice(0, SHOWN).map(({ first, second, distance_um: distance, coincident }) => (
+            <tr key={`${first} ${second}`} data-alias={coincident}>
+              <th scope="row">
+                {first} and {second}
+              </th>
+              <td>{formatSi(distance, "um", 3)}</td>
+              <td>{coincident ? "aliases" : noise > 0 ? `${formatNumber(distance / noise, 1)} × noise` : ""}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      <p>
+        {tones.length === 1
+          ? `At this one tone 1 % of mass moves like ${formatNumber(worth, 2)} % of stiffness; a second tone parts them.`
+          : "Several tones: mass and stiffness cannot stand for one another at all of them."}
+      </p>
+      {likenesses.slice(0, SHOWN).map(({ name, factor, value }) => (
+        <p key={`${name} ${factor}`}>
+          {name} moves exactly like a device with {formatNumber((value - 1) * 100, 1)} % of {factor} alone.
+        </p>
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,139 @@
+import { Button, NativeSelect } from "@mantine/core";
+import { IconPlus } from "@tabler/icons-react";
+import { useState } from "react";
+import { api } from "../../api/api";
+import { useAsked } from "../../api/use-asked";
+import { useCatalog } from "../../api/use-catalog";
+import { openVariant } from "../../app/open-variant";
+import { showError } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { AliasPlot } from "./alias-plot";
+import { AliasWords } from "./alias-words";
+import { another, type Hypothesis, MOST, refusal } from "./draft";
+import styles from "./hypotheses.module.css";
+import { HypothesisTable } from "./hypothesis-table";
+
+type Banks = Record<string, { kind?: string; hypotheses?: Hypothesis[] }>;
+
+/** The hypotheses of a bank: edit them, see which coincide under the drive, begin again with the new list. */
+export function HypothesesPanel() {
+  const bench = useBench((s) => s.bench?.id);
+  const parameters = useBench((s) => s.bench?.parameters);
+  const { blocks } = useCatalog();
+  const banks = Object.entries((parameters?.diagnosers ?? {}) as Banks).filter(([, { hypotheses }]) => hypotheses);
+  const [wanted, setWanted] = useState<string | undefined>(undefined);
+  const [drafts, setDrafts] = useState<Record<string, Hypothesis[]>>({});
+  const [busy, setBusy] = useState(false);
+  const [id, bank] = banks.find(([name]) => name === wanted) ?? banks[0] ?? [];
+  const key = `${bench} ${id}`;
+  const list = drafts[key] ?? bank?.hypotheses ?? [];
+  const wrong = refusal(list);
+  const { answer, refusal: refused } = useAsked(
+    bench && id && !wrong ? `${key} ${JSON.stringify(list)} ${JSON.stringify(parameters?.reference)}` : undefined,
+    () => api.aliases(bench ?? "", id ?? "", { hypotheses: list.map(whole) }),
+  );
+  if (!bench || !id || !bank)
+    return (
+      <EmptyState title="No bank on this bench">
+        Open a scenario of chapter 5 from New bench; its list of hypotheses can be edited here.
+      </EmptyState>
+    );
+
+  const changed = JSON.stringify(list) !== JSON.stringify(bank.hypotheses);
+  const begin = (set: Record<string, unknown>, said: string) => {
+    setBusy(true);
+    openVariant(set, said)
+      .catch(showError)
+      .finally(() => setBusy(false));
+  };
+  const kinds = blocks.filter((b) => b.family === "diagnose" && b.parameters.some((p) => p.name === "hypotheses"));
+  return (
+    <section className={styles.panel} aria-label="Hypotheses">
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          aria-label="Bank"
+          value={id}
+          data={banks.map(([name]) => ({ value: name, label: name.replaceAll("_", " ") }))}
+          onChange={(e) => setWanted(e.currentTarget.value)}
+        />
+        <Button
+          size="compact-sm"
+          variant="light"
+          leftSection={<IconPlus size={14} />}
+          disabled={list.length >= MOST}
+          onClick={() => setDrafts({ ...drafts, [key]: [...list, another(list)] })}
+        >
+          Hypothesis
+        </Button>
+        {changed && (
+          <Button
+            size="compact-sm"
+            variant="default"
+            onClick={() => {
+              const { [key]: _, ...rest } = drafts;
+              setDrafts(rest);
+            }}
+          >
+            As it was
+          </Button>
+        )}
+        <Button
+          size="compact-sm"
+          loading={busy}
+          disabled={!changed || wrong !== undefined}
+          onClick={() => begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench begins again with the new list.")}
+        >
+          Begin again with this list
+        </Button>
+        <NativeSelect
+          size="xs"
+          aria-label="Let another method race on the same list"
+          value=""
+          disabled={busy || wrong !== undefined}
+          data={[
+            { value: "", label: "Race another method…" },
+            ...kinds
+              .filter((b) => !(b.name in Object.fromEntries(banks)))
+              .map((b) => ({ value: b.name, label: b.title })),
+          ]}
+          onChange={(e) => {
+            const kind = e.currentTarget.value;
+            if (kind)
+              begin(
+                { [`diagnosers.${kind}`]: { kind, hypotheses: list } },
+                "The bench begins again with another method.",
+              );
+          }}
+        />
+      </div>
+      {wrong && (
+        <p role="alert" className={styles.wrong}>
+          {wrong}
+        </p>
+      )}
+      <HypothesisTable list={list} onChange={(next) => setDrafts({ ...drafts, [key]: next })} />
+      <h2 className={styles.heading}>Which of them coincide under this drive?</h2>
+      {refused && (
+        <p role="alert" className={styles.wrong}>
+          {refused.body.message}. {refused.body.hint}
+        </p>
+      )}
+      {answer && !refused && (
+        <>
+          <AliasPlot report={answer} />
+          <AliasWords report={answer} />
+        </>
+      )}
+    </section>
+  );
+}
+
+const whole = ({ name, mass = 1, stiffness = 1, damping = 1, gain = 1 }: Hypothesis) => ({
+  name,
+  mass,
+  stiffness,
+  damping,
+  gain,
+});

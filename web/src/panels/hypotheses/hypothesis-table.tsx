@@ -1,0 +1,72 @@
+import { ActionIcon } from "@mantine/core";
+import { IconX } from "@tabler/icons-react";
+import { useScheme } from "../../app/use-scheme";
+import { NumberField } from "../../ui/number-field";
+import { hypothesisStyle, traceColour } from "../../ui/trace-style";
+import { FACTORS, type Hypothesis, LEAST, withFactor } from "./draft";
+import styles from "./hypotheses.module.css";
+
+/** The list as it can be edited: each factor in percent beside nominal. */
+export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChange(list: Hypothesis[]): void }) {
+  const scheme = useScheme();
+  const put = (index: number, next: Hypothesis) => onChange(list.map((h, i) => (i === index ? next : h)));
+  return (
+    <div className={styles.scroll}>
+      <table className={styles.table}>
+        <thead>
+          <tr>
+            <th scope="col">Hypothesis</th>
+            {FACTORS.map((factor) => (
+              <th key={factor} scope="col">
+                {factor}
+              </th>
+            ))}
+            <th />
+          </tr>
+        </thead>
+        <tbody>
+          {list.map((hypothesis, i) => (
+            // biome-ignore lint/suspicious/noArrayIndexKey: a hypothesis is known by its place, its name can change
+            <tr key={i}>
+              <th scope="row">
+                <span className={styles.name}>
+                  <i style={{ background: traceColour(hypothesisStyle(i), scheme) }} />
+                  <input
+                    aria-label={`Name of hypothesis ${i + 1}`}
+                    value={hypothesis.name}
+                    maxLength={24}
+                    spellCheck={false}
+                    onChange={(e) => put(i, { ...hypothesis, name: e.currentTarget.value })}
+                  />
+                </span>
+              </th>
+              {FACTORS.map((factor) => (
+                <td key={factor}>
+                  <NumberField
+                    label={`${factor} of ${hypothesis.name}`}
+                    unit="%"
+                    value={Number((((hypothesis[factor] ?? 1) - 1) * 100).toPrecision(6))}
+                    minimum={-99}
+                    maximum={9900}
+                    onCommit={(percent) => put(i, withFactor(hypothesis, factor, percent))}
+                  />
+                </td>
+              ))}
+              <td>
+                <ActionIcon
+                  size={26}
+                  variant="subtle"
+                  disabled={list.length <= LEAST}
+                  aria-label={`Leave out ${hypothesis.name}`}
+                  onClick={() => onChange(list.filter((_, j) => j !== i))}
+                >
+                  <IconX size={14} />
+                </ActionIcon>
+              </td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}

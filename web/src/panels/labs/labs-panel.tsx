@@ -1,0 +1,111 @@
+import { Button, NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import { useCatalog } from "../../api/use-catalog";
+import { actions } from "../../app/actions";
+import { send } from "../../app/send";
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatNumber, formatPercent } from "../../ui/format";
+import { Knob } from "../../ui/knob";
+import { type LabKnob, labsOf, memorySamples } from "./lab-knobs";
+import styles from "./labs.module.css";
+
+/** Noise lab and lambda lab: make a diagnoser's assumptions wrong on purpose and watch what it costs. */
+export function LabsPanel() {
+  const parameters = useBench((s) => s.bench?.parameters);
+  const diagnosers = useBench((s) => s.bench?.diagnosers);
+  const { block } = useCatalog();
+  const [wanted, setWanted] = useState<string | undefined>(undefined);
+  const own = (parameters?.diagnosers ?? {}) as Record<string, unknown>;
+  const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length && id in own ? [id] : []));
+  const id = ids.find((name) => name === wanted) ?? ids[0];
+  if (!parameters || !id)
+    return (
+      <EmptyState title="No diagnoser on this bench">
+        The labs turn what a diagnoser assumes away from what is true. Open a scenario of chapter 5 from New bench.
+      </EmptyState>
+    );
+  const labs = labsOf({ parameters }, id, block);
+  return (
+    <section className={styles.panel} aria-label="Labs">
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          aria-label="Diagnoser"
+          value={id}
+          data={ids.map((name) => ({ value: name, label: name.replaceAll("_", " ") }))}
+          onChange={(e) => setWanted(e.currentTarget.value)}
+        />
+        <Button size="compact-sm" variant="default" onClick={actions.reset} title="Reset the bench; the values stay">
+          Count afresh
+        </Button>
+      </div>
+      <Outcome id={id} />
+      <div className={styles.labs}>
+        {labs.map((lab) => (
+          <section key={lab.name} aria-label={lab.name}>
+            <h2>{lab.name}</h2>
+            <p>{lab.advice}</p>
+            {lab.knobs.map((knob) => (
+              <Turn key={knob.path} knob={knob} />
+            ))}
+          </section>
+        ))}
+      </div>
+    </section>
+  );
+}
+
+function Turn({ knob }: { knob: LabKnob }) {
+  const { path, log, value, ...rest } = knob;
+  const memory = path.endsWith(".forgetting") ? memorySamples(value) : undefined;
+  return (
+    <Knob
+      {...rest}
+      log={log}
+      step={0}
+      value={value}
+      {...(memory === undefined
+        ? {}
+        : { note: Number.isFinite(memory) ? `remembers ${formatNumber(memory, 1)} samples` : "remembers everything" })}
+      onChange={(next) => void send({ kind: "set", values: { [path]: next } }, `Set ${rest.label}`)}
+    />
+  );
+}
+
+/** What the assumptions cost: read while turning. */
+function Outcome({ id }: { id: string }) {
+  const score = useBench((s) => s.scores[id]);
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const blind = useView((s) => s.blind);
+  if (!score || blind) return null;
+  const found = score.delays.filter((d) => d !== null);
+  const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
+  return (
+    <dl className={styles.outcome}>
+      <div>
+        <dt>correct</dt>
+        <dd>{formatPercent(score.correct_fraction, 2)}</dd>
+      </div>
+      <div>
+        <dt>mean delay</dt>
+        <dd>{found.length ? `${formatNumber(mean * dtMs, 2)}\u00a0ms` : "–"}</dd>
+      </div>
+      <div>
+        <dt>false switches</dt>
+        <dd>{score.false_switches}</dd>
+      </div>
+      <div>
+        <dt>residuals against assumed</dt>
+        <dd data-off={score.nis !== null && (score.nis > OFF || score.nis < 1 / OFF)}>
+          {score.nis === null ? "–" : formatNumber(score.nis, 2)}
+          <small>1 if the assumptions are true</small>
+        </dd>
+      </div>
+    </dl>
+  );
+}
+
+/** Mean normalised residual beyond which the assumptions are plainly wrong. */
+const OFF = 1.5;

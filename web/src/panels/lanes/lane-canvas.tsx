@@ -1,0 +1,120 @@
+import { useEffect, useMemo, useRef } from "react";
+import { useBench } from "../../stream/bench-store";
+import type { PanelFrame } from "../../stream/panel-frame";
+import { stream } from "../../stream/stream";
+import { useFeed } from "../../stream/use-feed";
+import { hover } from "../../ui/hover";
+import { usePanelVisible } from "../../ui/panel-visible";
+import { useCanvas } from "../../ui/use-canvas";
+import { scopeConfig } from "../scope/scope-config";
+import { listenForGestures } from "../scope/scope-gestures";
+import { scopeSubscription } from "../scope/time-window";
+import styles from "./lanes.module.css";
+import type { LaneTime } from "./use-lane-time";
+
+export interface LanePainting {
+  frame: PanelFrame;
+  span: { start: number; end: number };
+  width: number;
+  height: number;
+  hover: number | undefined;
+}
+
+interface LaneCanvasProps {
+  label: string;
+  signals: string[];
+  time: LaneTime;
+  /** CSS pixels left free beside the field of time. */
+  left: number;
+  right: number;
+  /** Draws in CSS pixels; a new function draws anew. */
+  paint(ctx: CanvasRenderingContext2D, painting: LanePainting): void;
+  /** A sample was clicked. */
+  onPick?(tick: number): void;
+}
+
+/** Signals over time on a canvas that shares its window with others: pans, zooms, and says what was clicked. */
+export function LaneCanvas({ label, signals, time, left, right, paint, onPick }: LaneCanvasProps) {
+  const dtMs = useBench((s) => s.bench?.dt_ms);
+  const visible = usePanelVisible();
+  const over = useRef<HTMLDivElement>(null);
+  const frame = useRef<PanelFrame | undefined>(undefined);
+  const shown = useRef({ start: 0, end: 1 });
+  const dirty = useRef(true);
+  const pick = useRef(onPick);
+  pick.current = onPick;
+  const { canvas, size } = useCanvas();
+  const { windowMs, view } = time;
+
+  const subscription = useMemo(() => {
+    const pixels = size.width - left - right;
+    if (!dtMs || pixels < 40) return undefined;
+    return scopeSubscription(scopeConfig(signals, { windowMs }), view, pixels, dtMs);
+  }, [signals, dtMs, size, left, right, windowMs, view]);
+
+  useFeed(subscription, (picture) => {
+    const held = time.held();
+    if (picture.frozen !== (held !== undefined)) return;
+    frame.current = picture;
+    shown.current = held ?? { start: picture.startTick, end: picture.endTick };
+    dirty.current = true;
+  });
+
+  useEffect(() => {
+    const moved = () => {
+      shown.current = time.held() ?? shown.current;
+      dirty.current = true;
+    };
+    const stops = [time.listen(moved), hover.listen(moved)];
+    return () => {
+      for (const stop of stops) stop();
+    };
+  }, [time]);
+
+  useEffect(() => {
+    if (!over.current) return;
+    return listenForGestures(
+      over.current,
+      { onSpan: time.look, onLive: time.goLive, onClick: (tick) => pick.current?.(Math.floor(tick)) },
+      () => shown.current,
+    );
+  }, [time]);
+
+  useEffect(() => {
+    if (!visible) return;
+    dirty.current = true;
+    return stream.loop.add(() => {
+      const ctx = canvas.current?.getContext("2d");
+      if (!dirty.current || !ctx || !frame.current || size.width < 80) return;
+      dirty.current = false;
+      ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
+      ctx.clearRect(0, 0, size.width, size.height);
+      paint(ctx, {
+        frame: frame.current,
+        span: shown.current,
+        width: size.width,
+        height: size.height,
+        hover: hover.tick,
+      });
+    });
+  }, [visible, canvas, size, paint]);
+
+  const point = (offset: number | undefined) => {
+    const width = over.current?.clientWidth ?? 1;
+    const { start, end } = shown.current;
+    hover.set(offset === undefined ? undefined : start + (offset / width) * (end - start), shown);
+  };
+
+  return (
+    <div className={styles.plot}>
+      <canvas ref={canvas} className={styles.canvas} role="img" aria-label={label} />
+      <div
+        ref={over}
+        className={styles.over}
+        style={{ left, right }}
+        onPointerMove={(e) => point(e.nativeEvent.offsetX)}
+        onPointerLeave={() => point(undefined)}
+      />
+    </div>
+  );
+}

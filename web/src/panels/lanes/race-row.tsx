@@ -1,0 +1,130 @@
+import { useMemo } from "react";
+import { useCatalog } from "../../api/use-catalog";
+import { useScheme } from "../../app/use-scheme";
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { formatNumber, formatPercent } from "../../ui/format";
+import type { Contestant } from "./contestants";
+import type { TruthSwitch } from "./delays";
+import { LaneCanvas, type LanePainting } from "./lane-canvas";
+import { paintRow, rowLayout } from "./paint-race";
+import { pickSample } from "./pick-sample";
+import styles from "./race.module.css";
+import type { LaneTime } from "./use-lane-time";
+
+interface RaceRowProps {
+  contestant: Contestant;
+  time: LaneTime;
+  switches: TruthSwitch[];
+  place: number | undefined;
+  fontSize: number;
+}
+
+const ORDINAL = ["", "1st", "2nd", "3rd"];
+
+/** One diagnoser of the race. */
+export function RaceRow({ contestant, time, switches, place, fontSize }: RaceRowProps) {
+  const { id, names, probabilities, verdict, truth } = contestant;
+  const scheme = useScheme();
+  const blind = useView((s) => s.blind);
+  const picked = useView((s) => s.sample?.tick);
+  const kind = useBench((s) => s.bench?.diagnosers[id]?.kind ?? "");
+  const { block } = useCatalog();
+  const signals = useMemo(
+    () => [...probabilities, verdict, ...(truth ? [`${id}.truth`] : [])],
+    [probabilities, verdict, truth, id],
+  );
+  const paint = useMemo(
+    () => (ctx: CanvasRenderingContext2D, painting: LanePainting) =>
+      paintRow(ctx, {
+        ...painting,
+        layout: rowLayout(painting.width, painting.height, fontSize),
+        scheme,
+        fontSize,
+        names,
+        switches,
+        withTruth: truth,
+        probabilities: probabilities.length,
+        picked,
+        blind,
+      }),
+    [fontSize, scheme, names, switches, truth, probabilities, picked, blind],
+  );
+  return (
+    <section className={styles.row} aria-label={`Diagnosis by ${id}`}>
+      <div className={styles.who}>
+        <button
+          type="button"
+          className={styles.name}
+          title={`${block("diagnose", kind)?.title ?? kind}: equations and parameters`}
+          onClick={() => useView.setState({ card: `diagnosers.${id}` })}
+        >
+          {id.replaceAll("_", " ")}
+        </button>
+        <small>{block("diagnose", kind)?.title ?? kind.replaceAll("_", " ")}</small>
+        <Verdict contestant={contestant} />
+      </div>
+      <div className={styles.field}>
+        <LaneCanvas
+          label={`${id}: ${names.join(", ")} over time`}
+          signals={signals}
+          time={time}
+          left={0}
+          right={0}
+          paint={paint}
+          onPick={truth ? (tick) => pickSample(id, tick) : undefined}
+        />
+      </div>
+      <Figures id={id} switches={switches} place={place} />
+    </section>
+  );
+}
+
+function Verdict({ contestant: { id, names } }: { contestant: Contestant }) {
+  const score = useBench((s) => s.scores[id]);
+  const blind = useView((s) => s.blind);
+  if (!score) return null;
+  return (
+    <strong className={styles.verdict} data-right={!blind && score.winner === score.truth}>
+      {names[score.winner] ?? "–"}
+    </strong>
+  );
+}
+
+/** The row's part of the scoreboard. */
+function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[]; place: number | undefined }) {
+  const score = useBench((s) => s.scores[id]);
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const blind = useView((s) => s.blind);
+  if (!score || blind) return <dl className={styles.figures} />;
+  const last = switches.at(-1);
+  const found = score.delays.filter((d) => d !== null);
+  const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
+  return (
+    <dl className={styles.figures}>
+      <div>
+        <dt>correct</dt>
+        <dd>{formatPercent(score.correct_fraction)}</dd>
+      </div>
+      <div>
+        <dt>last delay</dt>
+        <dd data-place={place}>
+          {last?.delay === undefined
+            ? last?.findable
+              ? "not yet"
+              : "–"
+            : `${formatNumber(last.delay * dtMs, 2)}\u00a0ms`}
+          {place !== undefined && <b>{ORDINAL[place] ?? `${place}th`}</b>}
+        </dd>
+      </div>
+      <div>
+        <dt>mean delay</dt>
+        <dd>{found.length ? `${formatNumber(mean * dtMs, 2)}\u00a0ms` : "–"}</dd>
+      </div>
+      <div>
+        <dt>false switches</dt>
+        <dd>{score.false_switches}</dd>
+      </div>
+    </dl>
+  );
+}

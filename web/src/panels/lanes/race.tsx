@@ -1,0 +1,84 @@
+import { useMemo } from "react";
+import { useScheme } from "../../app/use-scheme";
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { currentEvents } from "../../stream/current-events";
+import { timeUnit } from "../../ui/time-axis";
+import type { Contestant } from "./contestants";
+import { type TruthSwitch, truthSwitches } from "./delays";
+import { LaneCanvas, type LanePainting } from "./lane-canvas";
+import { paintTruth, rowLayout } from "./paint-race";
+import styles from "./race.module.css";
+import { racePlaces } from "./race-places";
+import { RaceRow } from "./race-row";
+import type { LaneTime } from "./use-lane-time";
+
+const NONE: TruthSwitch[] = [];
+
+/** All diagnosers of the bench on one axis of time, under the truth: who finds it first, and who is right longest. */
+export function Race({ contestants, time }: { contestants: Contestant[]; time: LaneTime }) {
+  const scheme = useScheme();
+  const blind = useView((s) => s.blind);
+  const fontSize = useView((s) => (s.large ? 15 : 12));
+  const events = useBench((s) => s.events);
+  const switches = useMemo(() => {
+    const current = blind ? [] : currentEvents(events);
+    return Object.fromEntries(contestants.map(({ id }) => [id, truthSwitches(current, id)]));
+  }, [blind, events, contestants]);
+  const places = useMemo(() => racePlaces(switches), [switches]);
+  const first = contestants.find((c) => c.truth);
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const unit = timeUnit(time.view.kind === "past" ? (time.view.end - time.view.start) * dtMs : time.windowMs).unit;
+  const truthSignals = useMemo(() => (first ? [`${first.id}.truth`] : []), [first]);
+  const paint = useMemo(
+    () => (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
+      const layout = { ...rowLayout(painting.width, painting.height, fontSize), truth: fontSize + 10, axis: 4 };
+      paintTruth(ctx, {
+        ...painting,
+        layout,
+        scheme,
+        fontSize,
+        names: first?.names ?? [],
+        switches: NONE,
+        withTruth: true,
+        probabilities: 0,
+        picked: undefined,
+        blind,
+      });
+    },
+    [scheme, fontSize, first, blind],
+  );
+  return (
+    <div className={styles.race} style={{ "--row": `${fontSize * 6.6}px` } as React.CSSProperties}>
+      {first && (
+        <div className={styles.head}>
+          <span className={styles.truthName}>
+            <i>{unit}</i>
+            truth
+          </span>
+          <div className={styles.field} style={{ height: fontSize * 2 + 18 }}>
+            <LaneCanvas
+              label="The truth over time"
+              signals={truthSignals}
+              time={time}
+              left={0}
+              right={0}
+              paint={paint}
+            />
+          </div>
+          <span className={styles.figuresName}>score</span>
+        </div>
+      )}
+      {contestants.map((contestant) => (
+        <RaceRow
+          key={contestant.id}
+          contestant={contestant}
+          time={time}
+          switches={switches[contestant.id] ?? NONE}
+          place={places[contestant.id]}
+          fontSize={fontSize}
+        />
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,45 @@
+import { useEffect, useMemo, useRef } from "react";
+import type { TimeWindow } from "../scope/time-window";
+import { useTimeView } from "../scope/use-time-view";
+
+interface Span {
+  start: number;
+  end: number;
+}
+
+/** One window into time for any number of canvases: those that draw it hear when it moves under the hand. */
+export interface LaneTime {
+  windowMs: number;
+  view: TimeWindow;
+  /** Ticks held while detached from live; undefined while live. */
+  held(): Span | undefined;
+  look(start: number, end: number): void;
+  goLive(): void;
+  listen(moved: () => void): () => void;
+}
+
+export function useLaneTime(windowMs: number, dtMs: number | undefined): LaneTime {
+  const listeners = useRef(new Set<() => void>());
+  const { view, span, look, goLive } = useTimeView(windowMs, dtMs, () => {
+    for (const moved of listeners.current) moved();
+  });
+  useEffect(() => {
+    for (const moved of listeners.current) moved();
+  });
+  return useMemo(
+    () => ({
+      windowMs,
+      view,
+      held: () => span.current,
+      look,
+      goLive,
+      listen: (moved) => {
+        listeners.current.add(moved);
+        return () => {
+          listeners.current.delete(moved);
+        };
+      },
+    }),
+    [windowMs, view, span, look, goLive],
+  );
+}

@@ -1,0 +1,84 @@
+import { Button, NativeSelect } from "@mantine/core";
+import { IconPlus, IconX } from "@tabler/icons-react";
+import { useState } from "react";
+import { useCatalog } from "../../api/use-catalog";
+import { openVariant } from "../../app/open-variant";
+import { showError } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+import { twinsOf } from "./boards";
+import styles from "./twins.module.css";
+
+const MOST = 3;
+const WORTH_SEEING = ["mrac", "stvsc", "pid", "indirect_mrac", "self_sliding"];
+
+/** Choose what else should meet the same reference, noise and faults. */
+export function TwinsForm({ chosen }: { chosen: string[] }) {
+  const controllers = useBench((s) => s.bench?.controllers) ?? [];
+  const own = useBench((s) => s.bench?.controller);
+  const { block } = useCatalog();
+  const [kinds, setKinds] = useState(
+    chosen.length ? chosen : WORTH_SEEING.filter((name) => controllers.includes(name) && name !== own).slice(0, 2),
+  );
+  const [busy, setBusy] = useState(false);
+  const begin = (twins: string[]) => {
+    setBusy(true);
+    openVariant(
+      { twins: twinsOf(twins) },
+      twins.length ? "The bench begins again with its twins." : "The twins are gone.",
+    )
+      .catch(showError)
+      .finally(() => setBusy(false));
+  };
+  const options = controllers.map((name) => ({
+    value: name,
+    label: block("control", name)?.title ?? name.replaceAll("_", " "),
+  }));
+  return (
+    <div className={styles.form}>
+      {kinds.map((kind, i) => (
+        // biome-ignore lint/suspicious/noArrayIndexKey: a twin is known by its place until it has its name
+        <span key={i} className={styles.choice}>
+          <NativeSelect
+            size="xs"
+            aria-label={`Controller of twin ${i + 1}`}
+            value={kind}
+            data={options}
+            onChange={(e) => {
+              const next = e.currentTarget.value;
+              setKinds(kinds.map((k, j) => (j === i ? next : k)));
+            }}
+          />
+          <Button
+            size="compact-sm"
+            variant="subtle"
+            aria-label={`Leave out twin ${i + 1}`}
+            onClick={() => setKinds(kinds.filter((_, j) => j !== i))}
+          >
+            <IconX size={14} />
+          </Button>
+        </span>
+      ))}
+      {kinds.length < MOST && (
+        <Button
+          size="compact-sm"
+          variant="light"
+          leftSection={<IconPlus size={14} />}
+          disabled={controllers.length === 0}
+          onClick={() =>
+            setKinds([...kinds, controllers.find((name) => name !== own && !kinds.includes(name)) ?? controllers[0]])
+          }
+        >
+          Twin
+        </Button>
+      )}
+      <Button
+        size="compact-sm"
+        loading={busy}
+        disabled={kinds.length === 0 && chosen.length === 0}
+        onClick={() => begin(kinds)}
+      >
+        {kinds.length === 0 ? "Begin again alone" : "Begin again with these"}
+      </Button>
+    </div>
+  );
+}

@@ -1,0 +1,68 @@
+import { useMemo, useState } from "react";
+import { useScheme } from "../../app/use-scheme";
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { signalsOf } from "../adaptation/adaptation-strips";
+import { AXIS_PX, gutter, paintStrips, RIGHT_PX } from "../adaptation/paint-strips";
+import { LaneCanvas, type LanePainting } from "../lanes/lane-canvas";
+import { LaneTools } from "../lanes/lane-tools";
+import { useLaneTime } from "../lanes/use-lane-time";
+import { boardsOf, comparison } from "./boards";
+import { TwinFigures } from "./twin-figures";
+import styles from "./twins.module.css";
+import { TwinsForm } from "./twins-form";
+
+const EACH_PX = 92;
+
+/** The same device, noise and faults under different controllers: tracking, effort and gains over one another. */
+export function TwinsPanel() {
+  const id = useBench((s) => s.bench?.id);
+  const parameters = useBench((s) => s.bench?.parameters);
+  const controller = useBench((s) => s.bench?.controller);
+  const signals = useBench((s) => s.bench?.signals);
+  const dtMs = useBench((s) => s.bench?.dt_ms);
+  const scheme = useScheme();
+  const fontSize = useView((s) => (s.large ? 15 : 12));
+  const [windowMs, setWindowMs] = useState(4);
+  const time = useLaneTime(windowMs, dtMs);
+  const boards = useMemo(
+    () => (parameters && controller ? boardsOf({ parameters, controller }) : []),
+    [parameters, controller],
+  );
+  const strips = useMemo(() => (boards.length > 1 ? comparison(boards, signals ?? []) : []), [boards, signals]);
+  const names = useMemo(() => strips.flatMap(signalsOf), [strips]);
+  const paint = useMemo(() => {
+    const columnOf = new Map(names.map((name, i) => [name, i]));
+    return (ctx: CanvasRenderingContext2D, painting: LanePainting) =>
+      paintStrips(ctx, painting, strips, columnOf, scheme, fontSize, EACH_PX);
+  }, [names, strips, scheme, fontSize]);
+  if (!id || boards.length === 0) return <EmptyState title="No bench yet">Twins begin with a bench.</EmptyState>;
+  const form = <TwinsForm key={id} chosen={boards.slice(1).map((b) => b.controller)} />;
+  if (boards.length === 1)
+    return (
+      <EmptyState title="No twins on this bench" action={form}>
+        A twin is a second board that meets the same reference, noise and faults, tick by tick, under another
+        controller. Choose up to three; the bench begins again at tick 0 with them beside it.
+      </EmptyState>
+    );
+  return (
+    <section className={styles.panel} aria-label="Twins">
+      <div className={styles.bar}>
+        {form}
+        <LaneTools time={time} onWindow={setWindowMs} />
+      </div>
+      <TwinFigures boards={boards} />
+      <div className={styles.strips} style={{ height: strips.length * EACH_PX + AXIS_PX }}>
+        <LaneCanvas
+          label={`${boards.map((b) => b.name).join(", ")}: ${strips.map((s) => s.title).join(", ")} over time`}
+          signals={names}
+          time={time}
+          left={gutter(fontSize)}
+          right={RIGHT_PX}
+          paint={paint}
+        />
+      </div>
+    </section>
+  );
+}

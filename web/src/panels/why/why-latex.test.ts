@@ -1,0 +1,47 @@
+import { expect, it } from "vitest";
+import type { Account } from "../../api/types";
+import { densityLatex, floorLatex, posteriorLatex, texNumber } from "./why-latex";
+
+const model = (name: string, residual: number, prior: number, posterior: number) => ({
+  name,
+  residual_um: residual,
+  covariance_um2: 0.01,
+  log_likelihood: -0.5 * (residual ** 2 / 0.01 + Math.log(2 * Math.PI * 0.01)),
+  prior,
+  posterior,
+  recorded: posterior,
+});
+const account: Account = {
+  kind: "mmae",
+  tick: 7,
+  time_ms: 0.07,
+  floor: 0.01,
+  // exp(-r^2/2psi): 1 and exp(-2)
+  models: [model("healthy", 0, 0.5, 0.8808), model("m+5", -0.2, 0.5, 0.1192)],
+};
+
+it.each([
+  [0.12345, "0.1235"],
+  [-3, "-3.000"],
+  [2.5e-7, "2.500\\cdot10^{-7}"],
+  [Number.NEGATIVE_INFINITY, "-\\infty"],
+])("%s is set as %s", (value, tex) => expect(texNumber(value)).toBe(tex));
+
+it("puts the numbers of the model into the density", () => {
+  const tex = densityLatex("mmae", account.models[1]);
+  expect(tex).toContain("\\frac{(-0.2000)^2}{0.01000}");
+  expect(tex).toMatch(/=-0\.6164$/); // 1.38365 for a residual of 0, less 2
+});
+
+it("works out Bayes' rule: 0.5 against 0.5 exp(-2)", () => {
+  expect(posteriorLatex(account, 0)).toMatch(/=0\.8808$/);
+  expect(posteriorLatex(account, 1)).toMatch(/\\cdot0\.5000}{0\.5677}=0\.1192$/);
+});
+
+it("has nothing to work out before the first residual, and no floor where there is none", () => {
+  const blank = { ...account, models: account.models.map((m) => ({ ...m, log_likelihood: null })) };
+  expect(posteriorLatex(blank, 0)).toBeUndefined();
+  expect(densityLatex("mmae", blank.models[0])).toBeUndefined();
+  expect(floorLatex({ ...account, floor: 0 }, 0)).toBeUndefined();
+  expect(floorLatex(account, 1)).toMatch(/=0\.1192$/);
+});

@@ -1,0 +1,58 @@
+import type { Account, ModelAccount } from "../../api/types";
+
+/** A number for an equation: four digits, a power of ten where it needs one. */
+export function texNumber(value: number, digits = 4): string {
+  if (!Number.isFinite(value)) return value < 0 ? "-\\infty" : "\\infty";
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-3 || size >= 1e5)) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+    return `${mantissa}\\cdot10^{${Number(exponent)}}`;
+  }
+  return value.toPrecision(digits);
+}
+
+const bracketed = (value: number) => (value < 0 ? `(${texNumber(value)})` : texNumber(value));
+
+/** Whether the density of a residual is the normal one; the lock-in bank weighs the tone in its residuals instead. */
+export const isGaussian = (kind: string): boolean => kind !== "lock_in";
+
+/** The density of a model's residual with its numbers put in. */
+export function densityLatex(kind: string, model: ModelAccount): string | undefined {
+  const { residual_um: r, covariance_um2: psi, log_likelihood: log } = model;
+  if (log === null) return undefined;
+  if (!isGaussian(kind) || psi === null) return `\\ln f=-\\frac{T}{2N}=${texNumber(log)}`;
+  return (
+    "\\ln f=-\\tfrac12\\Bigl(\\frac{r^2}{\\psi}+\\ln 2\\pi\\psi\\Bigr)" +
+    `=-\\tfrac12\\Bigl(\\frac{${bracketed(r)}^2}{${texNumber(psi)}}+\\ln(2\\pi\\cdot${texNumber(psi)})\\Bigr)` +
+    `=${texNumber(log)}`
+  );
+}
+
+/**
+ * Bayes' rule for one model with its numbers put in.
+ *
+ * Densities are divided by that of the likeliest model, which changes no probability and keeps the numbers readable.
+ */
+export function posteriorLatex(account: Account, index: number): string | undefined {
+  const logs = account.models.map((m) => m.log_likelihood);
+  if (logs.some((log) => log === null)) return undefined;
+  const best = Math.max(...logs.map(Number));
+  const weights = account.models.map((m, i) => Math.exp(Number(logs[i]) - best) * m.prior);
+  const total = weights.reduce((sum, w) => sum + w, 0);
+  const own = account.models[index];
+  return (
+    "p=\\frac{f\\,p^-}{\\sum_j f_j\\,p^-_j}" +
+    `=\\frac{e^{${texNumber(Number(logs[index]))}-${bracketed(best)}}\\cdot${texNumber(own.prior)}}{${texNumber(total)}}` +
+    `=${texNumber(weights[index] / total)}`
+  );
+}
+
+/** What the floor makes of it, if it changes anything that can be seen. */
+export function floorLatex(account: Account, index: number): string | undefined {
+  const { floor, models } = account;
+  if (floor === 0) return undefined;
+  return (
+    `p\\leftarrow\\frac{\\max(p,\\,${texNumber(floor, 2)})}{\\sum_j\\max(p_j,\\,${texNumber(floor, 2)})}` +
+    `=${texNumber(models[index].posterior)}`
+  );
+}

@@ -1,0 +1,146 @@
+import { ActionIcon, Button, NativeSelect } from "@mantine/core";
+import { IconChevronLeft, IconChevronRight } from "@tabler/icons-react";
+import { useState } from "react";
+import { api } from "../../api/api";
+import type { Account } from "../../api/types";
+import { useAsked } from "../../api/use-asked";
+import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
+import { stream } from "../../stream/stream";
+import { EmptyState } from "../../ui/empty-state";
+import { Formula } from "../../ui/formula";
+import { NumberField } from "../../ui/number-field";
+import { formatDeviceTime } from "../../ui/time-axis";
+import { ModelTable } from "./model-table";
+import styles from "./why.module.css";
+import { densityLatex, floorLatex, isGaussian, posteriorLatex } from "./why-latex";
+
+const LAST_TICK = 2 ** 53;
+
+/** Why a diagnoser believed what it did at one sample: residual, density, prior and posterior of every hypothesis. */
+export function WhyPanel() {
+  const bench = useBench((s) => s.bench?.id);
+  const diagnosers = useBench((s) => s.bench?.diagnosers);
+  const sample = useView((s) => s.sample);
+  const {
+    answer: account,
+    refusal,
+    waiting,
+  } = useAsked(bench && sample && `${bench} ${sample.diagnoser} ${sample.tick}`, () =>
+    api.explanation(bench ?? "", sample?.diagnoser ?? "", sample?.tick ?? 0),
+  );
+  const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length ? [id] : []));
+  const pick = (diagnoser: string, tick: number) =>
+    useView.setState({ sample: { diagnoser, tick: Math.max(0, tick) } });
+  const latest = (
+    <Button
+      size="xs"
+      disabled={ids.length === 0}
+      onClick={() => pick(sample?.diagnoser ?? ids[0], stream.client.head.tick - 1)}
+    >
+      Explain the latest sample
+    </Button>
+  );
+  if (!sample || ids.length === 0)
+    return (
+      <EmptyState title="No sample chosen" action={ids.length > 0 && latest}>
+        {ids.length > 0
+          ? "Click anywhere in the lanes of Diagnosis: the numbers behind that sample appear here."
+          : "This bench has no diagnoser that weighs hypotheses."}
+      </EmptyState>
+    );
+
+  return (
+    <section className={styles.panel} aria-label="Why this sample">
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          aria-label="Diagnoser"
+          value={sample.diagnoser}
+          data={ids.map((id) => ({ value: id, label: id.replaceAll("_", " ") }))}
+          onChange={(e) => pick(e.currentTarget.value, sample.tick)}
+        />
+        <span className={styles.step}>
+          <ActionIcon
+            variant="default"
+            size={28}
+            aria-label="Sample before"
+            onClick={() => pick(sample.diagnoser, sample.tick - 1)}
+          >
+            <IconChevronLeft size={16} />
+          </ActionIcon>
+          <NumberField
+            label="Sample"
+            unit=""
+            integer
+            minimum={0}
+            maximum={LAST_TICK}
+            value={sample.tick}
+            onCommit={(tick) => pick(sample.diagnoser, tick)}
+          />
+          <ActionIcon
+            variant="default"
+            size={28}
+            aria-label="Sample after"
+            onClick={() => pick(sample.diagnoser, sample.tick + 1)}
+          >
+            <IconChevronRight size={16} />
+          </ActionIcon>
+        </span>
+        {account && !refusal && <span className={styles.time}>{formatDeviceTime(account.time_ms)} s</span>}
+        <Button size="compact-sm" variant="default" onClick={() => pick(sample.diagnoser, stream.client.head.tick - 1)}>
+          Latest
+        </Button>
+      </div>
+      {refusal && (
+        <EmptyState title={`${refusal.body.message}.`} action={latest}>
+          {refusal.body.hint || "Choose another sample, or another diagnoser."}
+        </EmptyState>
+      )}
+      {account && !refusal && <Explained account={account} waiting={waiting} />}
+    </section>
+  );
+}
+
+function Explained({ account, waiting }: { account: Account; waiting: boolean }) {
+  const [name, setName] = useState<string | undefined>(undefined);
+  const likeliest = account.models.reduce((top, m, i, all) => (m.posterior > all[top].posterior ? i : top), 0);
+  const wanted = account.models.findIndex((m) => m.name === name);
+  const chosen = wanted >= 0 ? wanted : likeliest;
+  const model = account.models[chosen];
+  const density = densityLatex(account.kind, model);
+  const posterior = posteriorLatex(account, chosen);
+  const floor = floorLatex(account, chosen);
+  return (
+    <div className={styles.explained} data-waiting={waiting}>
+      <ModelTable account={account} chosen={chosen} onChoose={(i) => setName(account.models[i].name)} />
+      <h2 className={styles.heading}>{model.name} at this sample, in µm</h2>
+      {density && posterior ? (
+        <ol className={styles.steps}>
+          <li>
+            <span>How well it predicted what was measured{isGaussian(account.kind) ? "" : ", at the tone"}</span>
+            <Formula latex={density} />
+          </li>
+          <li>
+            <span>
+              {account.kind === "imm"
+                ? "Weighed by what was believed before, mixed by switching"
+                : "Weighed by what was believed before"}
+            </span>
+            <Formula latex={posterior} />
+          </li>
+          {floor && (
+            <li>
+              <span>No hypothesis is ever given up</span>
+              <Formula latex={floor} />
+            </li>
+          )}
+        </ol>
+      ) : (
+        <p className={styles.note}>
+          Nothing was learnt from this sample: the residual is zero, so its covariance cannot be read from the record.
+        </p>
+      )}
+    </div>
+  );
+}

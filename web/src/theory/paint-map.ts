@@ -1,0 +1,81 @@
+import type { InstabilityMap } from "../api/types";
+import { fontFor } from "../ui/canvas-font";
+import { formatNumber } from "../ui/format";
+import { CANVAS, type Scheme } from "../ui/palette";
+import { linearTicks } from "../ui/ticks";
+
+/** Room for the axes, CSS pixels. */
+export const FIELD = { left: 44, bottom: 34, right: 8, top: 4 };
+
+/** Growth, 1/time, that counts as none. */
+export const STILL = 1e-7;
+
+const UNSTABLE = { dark: [255, 107, 96], light: [196, 38, 29] };
+const STABLE = { dark: [31, 120, 90], light: [120, 190, 160] };
+
+/** Frequency to the right, gain upward: red where something grows, the deeper the faster. */
+export function paintMap(
+  ctx: CanvasRenderingContext2D,
+  { frequency, gain, growth, critical_gain_constant: critical }: InstabilityMap,
+  width: number,
+  height: number,
+  scheme: Scheme,
+): void {
+  const { left, bottom, right, top } = FIELD;
+  const wide = width - left - right;
+  const tall = height - top - bottom;
+  const fastest = Math.max(1e-9, ...growth.flat());
+  const slowest = Math.min(-1e-9, ...growth.flat());
+  const cellWidth = wide / frequency.length;
+  const cellHeight = tall / gain.length;
+  growth.forEach((row, i) => {
+    row.forEach((rate, j) => {
+      const [r, g, b] = rate > STILL ? UNSTABLE[scheme] : STABLE[scheme];
+      const depth =
+        rate > STILL ? 0.35 + 0.65 * Math.sqrt(rate / fastest) : 0.15 + 0.6 * Math.sqrt(Math.min(0, rate) / slowest);
+      ctx.fillStyle = `rgb(${r} ${g} ${b} / ${depth})`;
+      const x = Math.round(left + i * cellWidth);
+      const y = Math.round(top + tall - (j + 1) * cellHeight);
+      ctx.fillRect(x, y, Math.round(left + (i + 1) * cellWidth) - x, Math.round(top + tall - j * cellHeight) - y);
+    });
+  });
+  const colours = CANVAS[scheme];
+  const highest = gain[gain.length - 1];
+  const first = frequency[0];
+  const last = frequency[frequency.length - 1];
+  ctx.font = fontFor(12, 1);
+  ctx.fillStyle = colours.muted;
+  ctx.textBaseline = "middle";
+  ctx.textAlign = "right";
+  for (const tick of linearTicks(0, highest, 5))
+    ctx.fillText(formatNumber(tick, highest <= 1 ? 1 : 0), left - 6, top + tall - (tick / highest) * tall);
+  ctx.textAlign = "center";
+  for (const tick of linearTicks(first, last, Math.max(2, wide / 70)))
+    ctx.fillText(formatNumber(tick, 1), left + ((tick - first) / (last - first)) * wide, height - bottom + 12);
+  ctx.textAlign = "right";
+  ctx.fillText("drive frequency ω", left + wide, height - 6);
+  ctx.save();
+  ctx.translate(8, top + tall / 2);
+  ctx.rotate(-Math.PI / 2);
+  ctx.textAlign = "center";
+  ctx.fillText("adaptation gain", 0, 0);
+  ctx.restore();
+  if (critical === null) return;
+  const y = top + tall - (critical / highest) * tall;
+  ctx.strokeStyle = colours.text;
+  ctx.setLineDash([6, 4]);
+  ctx.beginPath();
+  ctx.moveTo(left, y);
+  ctx.lineTo(left + wide, y);
+  ctx.stroke();
+  ctx.setLineDash([]);
+}
+
+/** The point of the map under the pointer. */
+export function cellAt(map: InstabilityMap, x: number, y: number, width: number, height: number) {
+  const { left, bottom, right, top } = FIELD;
+  const i = Math.floor(((x - left) / (width - left - right)) * map.frequency.length);
+  const j = Math.floor((1 - (y - top) / (height - top - bottom)) * map.gain.length);
+  const growth = map.growth[i]?.[j];
+  return growth === undefined ? undefined : { frequency: map.frequency[i], gain: map.gain[j], growth };
+}

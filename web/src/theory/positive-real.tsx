@@ -1,0 +1,107 @@
+import { Button, TextInput } from "@mantine/core";
+import { useMemo, useState } from "react";
+import { api } from "../api/api";
+import { useAsked } from "../api/use-asked";
+import { formatNumber } from "../ui/format";
+import { Formula } from "../ui/formula";
+import { RealPart } from "./real-part";
+import styles from "./theory.module.css";
+import { highestFirst, NotRational, parseTransferFunction, transferLatex } from "./transfer-function";
+
+const EXAMPLES = [
+  "(s+1)/(s^2+5s+6)",
+  "1/(s^2+0.2s+1)",
+  "(s+3)/((s+1)(s+2))",
+  "(s+2)/((s+1)(s+0.5))",
+  "1/s",
+  "(s-1)/(s+2)",
+];
+
+/** Type a transfer function: is it positive real, and where is its real part least. */
+export function PositiveReal() {
+  const [text, setText] = useState(EXAMPLES[0]);
+  const parsed = useMemo(() => read(text), [text]);
+  const [last, setLast] = useState(parsed.found);
+  if (parsed.found && parsed.found !== last) setLast(parsed.found);
+  const numerator = last ? highestFirst(last.numerator) : [1];
+  const denominator = last ? highestFirst(last.denominator) : [1];
+  const { answer, refusal, waiting } = useAsked(JSON.stringify([numerator, denominator]), () =>
+    api.positiveReal(numerator, denominator),
+  );
+  return (
+    <section className={styles.card} aria-label="Positive real">
+      <h2>Is it positive real?</h2>
+      <p className={styles.advice}>
+        A transfer function in s. Lyapunov's rule needs it strictly positive real; then it cannot be fooled by the sign
+        of the error.
+      </p>
+      <TextInput
+        size="sm"
+        label="G(s)"
+        spellCheck={false}
+        value={text}
+        error={parsed.why ?? refusal?.body.message}
+        onChange={(e) => setText(e.currentTarget.value)}
+      />
+      <div className={styles.examples}>
+        {EXAMPLES.map((example) => (
+          <Button key={example} size="compact-xs" variant="default" onClick={() => setText(example)}>
+            {example}
+          </Button>
+        ))}
+      </div>
+      {last && <Formula latex={transferLatex(last)} />}
+      {answer && (
+        <div className={styles.answer} data-waiting={waiting || parsed.why !== undefined}>
+          <p className={styles.verdict} data-good={answer.strictly_positive_real}>
+            {answer.strictly_positive_real
+              ? "Strictly positive real"
+              : answer.positive_real
+                ? "Positive real, but not strictly"
+                : "Not positive real"}
+          </p>
+          {answer.reasons.length > 0 && (
+            <ul className={styles.reasons}>
+              {answer.reasons.map((reason) => (
+                <li key={reason}>{reason}</li>
+              ))}
+            </ul>
+          )}
+          <dl className={styles.facts}>
+            <div>
+              <dt>poles to the left</dt>
+              <dd>{answer.hurwitz ? "yes" : "no"}</dd>
+            </div>
+            <div>
+              <dt>zeros to the left</dt>
+              <dd>{answer.minimum_phase ? "yes" : "no"}</dd>
+            </div>
+            <div>
+              <dt>relative degree</dt>
+              <dd>{answer.relative_degree}</dd>
+            </div>
+            <div>
+              <dt>least Re G(jω)</dt>
+              <dd>
+                {answer.least_real === null
+                  ? "unbounded"
+                  : Number(answer.least_real.toPrecision(4)).toString().replace("-", "−")}
+                {answer.at === null ? " at infinity" : ` at ω = ${formatNumber(answer.at, 3)}`}
+              </dd>
+            </div>
+          </dl>
+          <RealPart found={answer} />
+        </div>
+      )}
+    </section>
+  );
+}
+
+function read(text: string) {
+  try {
+    return { found: parseTransferFunction(text), why: undefined };
+  } catch (error) {
+    if (!(error instanceof NotRational)) throw error;
+    return { found: undefined, why: error.message };
+  }
+}
