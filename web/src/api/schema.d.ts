@@ -5684,6 +5684,7 @@ export interface operations {
                 };
                 content: {
                     "text/csv; charset=utf-8": unknown;
+                    "application/vnd.apache.parquet": unknown;
                 };
             };
             /** @description Refused or failed */

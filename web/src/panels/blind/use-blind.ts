@@ -85,7 +85,7 @@ export function commit(
     hidden: undefined,
     last: attempt,
     attempts: [...attempts, attempt],
-    faultTick: came ? hidden.tick : undefined,
+    faultTick: came,
   });
   reveal();
 }
