@@ -31,7 +31,9 @@ H, RATE, SIGN, GAIN, WEIGHT_OUTPUT, LEAKAGE, BOUND, REACH, FILTERS, POLE = range
 LEAD, DECAY, FILL, RATIO, FIRST_ORDER = range(10, 15)
 MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(15, 22)
 MOVING = MODEL_FILTER + MODEL_FILTER_SIZE
-THETA, W1, W2, LAST, OWN, AUXILIARY, MOTION, SIZE = 0, 4, 5, 6, 7, 8, 10, 10 + STATES
+THETA, W1, W2, LAST, OWN, AUXILIARY, MOTION, SIZE = 0, 4, 5, 6, 10, 11, 13, 13 + STATES
+"""LAST: the regressor of the sample before, y last."""
+LAST_Y = LAST + 3
 VELOCITY, MODEL_VELOCITY = len(INPUTS), len(INPUTS) + 1
 FIRST_TRUTH = len(INPUTS) + len(VELOCITY_INPUTS)
 OWN_VOLTAGE = FIRST_TRUTH + len(TRUTH)
@@ -80,8 +82,7 @@ def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
     advance_model(p, MODEL_FILTER, s, AUXILIARY, s[OWN] - u)
     if p[FILTERS] != 0.0:
         s[W1] = settled(p[DECAY] * s[W1] + p[FILL] * u)
-        s[W2] = settled(p[DECAY] * s[W2] + p[FILL] * s[LAST])
-    s[LAST] = y
+        s[W2] = settled(p[DECAY] * s[W2] + p[FILL] * s[LAST_Y])
     e = y - (w[io[MODEL]] + p[LEAD] * w[io[MODEL_VELOCITY]] / p[RATE])
     own = settled(e + p[RATIO] * (s[AUXILIARY] + p[LEAD] * s[AUXILIARY + 1]))
 
@@ -96,7 +97,10 @@ def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
     )
     weight = p[WEIGHT_OUTPUT]
     # the step of an implicit method: a sample changes the error by REACH times the change of voltage
-    size = r * r + s[W1] * s[W1] + weight * (s[W2] * s[W2] + y * y)
+    # along the regressor of the sample before, which is the one in the error: with that of now a voltage that turns
+    # at every sample, as in chatter, would turn the sign of the law
+    size = s[LAST] * s[LAST] + s[LAST + 1] * s[LAST + 1]
+    size += weight * (s[LAST + 2] * s[LAST + 2] + s[LAST_Y] * s[LAST_Y])
     rate = p[H] * p[GAIN] * own / (1.0 + p[H] * p[GAIN] * p[REACH] * size)
     lyapunov = 0.0
     voltage = 0.0
@@ -104,11 +108,12 @@ def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
         regressor = r if i == 0 else s[W1] if i == 1 else s[W2] if i == 2 else y
         g = 1.0 if i < 2 else weight
         theta = s[THETA + i]
-        theta += -p[SIGN] * rate * g * regressor - p[H] * p[LEAKAGE] * p[GAIN] * theta
+        theta += -p[SIGN] * rate * g * s[LAST + i] - p[H] * p[LEAKAGE] * p[GAIN] * theta
         if p[BOUND] > 0.0:
             bound = p[BOUND] * math.sqrt(g)
             theta = min(max(theta, -bound), bound)
         s[THETA + i] = theta
+        s[LAST + i] = regressor
         voltage += theta * regressor
         w[t + i] = theta
         missing = theta - w[ideal + i]
@@ -182,7 +187,7 @@ class MracVelocity(Block):
             "nominal", "gains at the start: those that match the nominal device, or none", live=False
         )
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
-        gain_bound: float = parameter(0.0, "bound of the gains (projection), 0 for none", ge=0)
+        gain_bound: float = parameter(30.0, "bound of the gains (projection), 0 for none", ge=0)
         velocity: Source = velocity_source()
 
     @classmethod

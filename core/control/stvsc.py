@@ -47,6 +47,8 @@ OWN_VOLTAGE = FIRST_TRUTH + len(TRUTH)
 TAPS = OWN_VOLTAGE + 1
 ESTIMATES = TAPS + len(SLIDING_TAPS)
 LABELS = ("gain", "a2", "a1")
+HUGE = 1e9
+"""What an estimate that runs away without its normaliser is kept below, so that it stays a number."""
 
 
 def stvsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -72,9 +74,11 @@ def stvsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
     gradient = p[ESTIMATOR_GAIN] * error / den
     gain = s[THETA] - p[TIME_STEP] * gradient * u_filtered
     floor = p[FLOOR] * abs(p[PLANT_GAIN])
-    s[THETA] = p[SIGN] * max(p[SIGN] * gain, floor)
-    s[THETA + 1] += p[TIME_STEP] * gradient * weight * y_filtered
-    s[THETA + 2] += p[TIME_STEP] * gradient * weight * rate_filtered
+    s[THETA] = p[SIGN] * min(max(p[SIGN] * gain, floor), HUGE)
+    spring = s[THETA + 1] + p[TIME_STEP] * gradient * weight * y_filtered
+    damping = s[THETA + 2] + p[TIME_STEP] * gradient * weight * rate_filtered
+    s[THETA + 1] = min(max(spring, -HUGE), HUGE)
+    s[THETA + 2] = min(max(damping, -HUGE), HUGE)
 
     v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u) / p[RATE]
     w[io[OWN_VOLTAGE]] = slide(

@@ -18,6 +18,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from core.errors import InputError
 from scenarios.traces import packing
 
 PART, EVENTS = ".arrows", ".events"
@@ -92,14 +93,24 @@ def rescue(path: Path) -> int:
         if path.with_suffix(PART).exists():
             return convert(path)
         return int(pq.read_metadata(path).num_rows)
+    except pa.ArrowInvalid:  # not even what it is about has reached the disk
+        path.with_suffix(PART).unlink(missing_ok=True)
+        return 0
     except (OSError, pa.ArrowException):
         return 0
 
 
 def first_tick(path: Path) -> int:
-    """Return the first tick of a recording that has some."""
-    batch = next(pq.ParquetFile(path).iter_batches(1, columns=["tick"]))
-    return int(batch.column(0)[0].as_py())
+    """Return the first tick of a recording.
+
+    Raises
+    ------
+    InputError
+        When it has none.
+    """
+    for batch in pq.ParquetFile(path).iter_batches(1, columns=["tick"]):
+        return int(batch.column(0)[0].as_py())
+    raise InputError("is empty", "recording")
 
 
 def events_of(path: Path) -> list[dict[str, Any]]:

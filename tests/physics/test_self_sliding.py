@@ -60,7 +60,7 @@ def test_first_order_laws_are_the_loop_of_the_equations(kind):
     trace = trace_of(REGULATOR, {**(SLIDING if kind == "self_sliding" else MRAC), "adaptation_gain": 1.0}, 3000)
     h, x, m, theta = 1e-3, 0.0, 0.0, np.zeros(3)
     grow, decay = math.exp(0.2 * h), math.exp(-h)
-    u, found = 0.0, []
+    u, found, before = 0.0, [], np.zeros(3)
     for i in range(3000):
         if i:
             x = grow * x + (grow - 1) / 0.2 * u
@@ -72,7 +72,8 @@ def test_first_order_laws_are_the_loop_of_the_equations(kind):
         else:
             w = np.array([2.0, x, 0.0])
             # an implicit step: the error after it is e + (1 - e^-h) w'(theta+ - theta)
-            theta = theta - h * e * w / (1 + h * (1 - decay) * (w @ w))
+            theta = theta - h * e * before / (1 + h * (1 - decay) * (before @ before))
+            before = w
         u = theta @ w
         found.append((x, u))
     np.testing.assert_allclose(trace["plant.displacement"], [x for x, _ in found], atol=1e-7)
