@@ -16,5 +16,16 @@ for (const colorScheme of ["dark", "light"] as const) {
       await expect(page.getByRole("dialog")).toBeVisible();
       await seriousViolations(page).then((found) => expect(found).toEqual([]));
     });
+
+    test(`axe finds nothing serious on the pages around the bench in ${colorScheme}`, async ({ page, server }) => {
+      await page.request.get(server.url);
+      await page.goto(`${server.origin}/?page=gallery`);
+      await expect(page.getByRole("heading", { name: "First look" })).toBeVisible();
+      await seriousViolations(page).then((found) => expect(found).toEqual([]));
+      await page.goto(`${server.origin}/?page=runs`);
+      await page.getByText("Campaign", { exact: true }).click();
+      await expect(page.getByRole("button", { name: /^Start 1 run/ })).toBeVisible();
+      await seriousViolations(page).then((found) => expect(found).toEqual([]));
+    });
   });
 }

@@ -87,6 +87,11 @@ export const cssVariables: CSSVariablesResolver = () => {
     "--mantine-color-default-border": "var(--line)",
     "--mantine-color-placeholder": "var(--muted)",
     "--mantine-color-error": "var(--alarm)",
+    // White reads on these in both schemes.
+    "--mantine-color-accent-filled": "var(--accent-fill)",
+    "--mantine-color-accent-filled-hover": "color-mix(in srgb, var(--accent-fill), #000 12%)",
+    "--mantine-color-alarm-filled": "var(--alarm-fill)",
+    "--mantine-color-alarm-filled-hover": "color-mix(in srgb, var(--alarm-fill), #000 12%)",
     "--mantine-color-accent-light": "var(--accent-soft)",
     "--mantine-color-accent-light-hover": "var(--accent-hover)",
     "--mantine-color-accent-light-color": "var(--accent)",
