@@ -146,6 +146,19 @@ def test_three_ways_at_every_noise(noise, first):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize(("noise", "middle"), [(0.02, (2, 13, 26, 7)), (0.3, (3, math.inf, 33, 22))])
+def test_middle_of_100_runs(noise, middle):
+    banks = {"kalman": KALMAN, "shorter": fixed(0.8), "longer": fixed(0.9), "direct": adaptive("direct")}
+    done = medians(range(70_000, 70_100), noise, 0.9, **banks)
+    assert [float(np.median(values)) for values in done.values()] == pytest.approx(middle, abs=3)
+    assert np.mean(done["kalman"] <= done["direct"]) > 0.95
+    assert np.mean(done["direct"] < done["shorter"]) > 0.95
+    # at much noise 0.8 has become too ragged to stay above 0.9
+    assert (np.mean(np.isinf(done["shorter"])) > 0.5) == (noise == 0.3)
+
+
+@pytest.mark.slow
 def test_fixed_senses_earlier_only_when_it_has_become_ragged():
     """The text: fixed senses earlier, adaptive rises sharper. True at much noise, the reverse at little."""
 

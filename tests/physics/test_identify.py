@@ -330,6 +330,18 @@ def test_as_printed_it_does_not_look_at_the_data():
     assert trace[-1] > 1.05
 
 
+def test_ratio_of_the_innovations_is_their_mean_over_the_memory():
+    own = {"kind": "adaptive_forgetting", "reading": "step", "innovation_um": 0.05, "step_size": 0.01}
+    trace = play(bench(own, ONE, {"sensor.noise_um": 0.02, "sample_rate_khz": 20}), 800)
+    square, factor, ratio = (trace["x.residual"] / 0.05) ** 2, trace["x.forgetting"], trace["x.innovation_ratio"]
+    first = int(np.flatnonzero(ratio)[0])
+    memory = np.concatenate([[1.0], factor[first:-1]])
+    for i in (first, first + 1, first + 40, 799):
+        weight = np.append(np.cumprod(memory[i - first : 0 : -1])[::-1], 1.0)
+        assert ratio[i] == pytest.approx(weight @ square[first : i + 1] / weight.sum(), rel=1e-9)
+    assert factor.min() < 0.8
+
+
 def test_it_forgets_when_the_device_changes_and_only_then():
     values = {"sensor.noise_um": 0.02, "sample_rate_khz": 20}
     board = bench({"kind": "adaptive_forgetting", "initial_covariance": 1.0}, FOUR, values)
