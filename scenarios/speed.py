@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -17,11 +18,14 @@ from core.board import program
 from core.board.board import CHUNK, Board
 from core.device.oscillator import transition
 from core.device.response import held_response
+from scenarios.campaign_speed import scaling
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
+from scenarios.side_by_side import DIAGNOSERS, SAMPLES, seven_steps, side_by_side
 
 REPEATS = 7
+CAMPAIGN_RUNS = 400
 SECOND = 100_000
 """Samples of 1 s at 100 kHz."""
 SAMPLE_NS = 10_000.0
@@ -84,11 +88,11 @@ ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive
 """Blocks that keep every signal moving: with frozen inputs a block is not doing its usual work."""
 
 
-def block_costs(board: Board, only: str | None = None) -> dict[str, float]:
-    """Return the cost of each block of a board, ns per tick, the dispatch included: a tick with it run once more."""
+def block_costs(board: Board, *only: str) -> dict[str, float]:
+    """Return the cost of some blocks or all, ns per tick, the dispatch included: a tick with it run once more."""
     candidates = {"": partial(loop_cost, board, [*ALIVE], 50_000)}
     for instance in board.wiring.instances:
-        if only in (None, instance.key):
+        if not only or instance.key in only:
             candidates[instance.key] = partial(loop_cost, board, [*ALIVE, instance.key], 50_000)
     ns = interleaved(candidates)
     return {key: round(value - ns[""], 1) for key, value in ns.items() if key}
@@ -238,6 +242,8 @@ def speed() -> dict[str, Any]:
     estimating = _board({"plant.drive_noise_v": 0.01, **identifiers})
     gain = Board(GAIN)
     gain.advance(CHUNK)
+    beside = build(side_by_side())
+    beside.advance(CHUNK)
     plane = Board(PLANAR)
     plane.advance(CHUNK)
     device = bench.spec.context().device
@@ -251,6 +257,7 @@ def speed() -> dict[str, Any]:
         "plant_3_controllers_bank": lambda: loop_cost(bench, hot),
         "controllers": lambda: loop_cost(bench, controllers),
         "bank": lambda: loop_cost(bench, ["kalman"]),
+        "seven_steps": seven_steps(cpu_ns),
         "mrac_loop": lambda: loop_cost(loop, ["plant", "effects", "sensor", "reference", "model", "mrac", "drive"]),
         "planar": lambda: loop_cost(plane, [*ALIVE], 2_000),
         "plant_record": lambda: cpu_ns(lambda: held_response(device, sine, 0.01), SECOND),
@@ -281,6 +288,9 @@ def speed() -> dict[str, Any]:
         ),
         _figure(f"all {len(controllers)} controllers, per sample", ns["controllers"] / 1e3, "us", most=0.6),
         _figure("6-model bank, per step", ns["bank"] / 1e3, "us", most=0.15),
+        _figure(
+            f"seven steps, {SAMPLES} samples, {len(DIAGNOSERS)} diagnosers", ns["seven_steps"] / 1e6, "ms", most=10.0
+        ),
         _figure(
             "planar plant with noise at 0.25 us, of real time at 100 kHz", SAMPLE_NS / ns["planar"], "x", least=1.0
         ),
@@ -315,10 +325,14 @@ def speed() -> dict[str, Any]:
                 least=700.0,
             )
         )
+    if (os.cpu_count() or 1) > 1:
+        share, most = scaling(CAMPAIGN_RUNS)
+        figures.append(_figure("campaign of seven-step runs: two processes over twice one", share, "x", least=0.9))
+        figures.append(_figure("campaign of seven-step runs, two processes", most, "/s"))
     return {
         "figures": figures,
         "ns": {name: round(value, 1) for name, value in ns.items()},
-        "blocks_ns": block_costs(estimating) | block_costs(gain, "gain_adaptation"),
+        "blocks_ns": block_costs(estimating) | block_costs(gain, "gain_adaptation") | block_costs(beside, *DIAGNOSERS),
         "missing": "; ".join(missing),
         "ok": all(figure["ok"] for figure in figures),
     }

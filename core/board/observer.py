@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray
+from core.block import FloatArray, IntArray, kernel
 from core.board.spec import Spec
 from core.board.wiring import Wiring, scored
 from core.diagnose.aliases import equivalents
@@ -15,6 +15,23 @@ from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
 from core.diagnose.regions import REGIONS
 
 Finding = dict[str, Any]
+
+
+@kernel
+def follow(outputs: FloatArray, taps: FloatArray, columns: IntArray, last: FloatArray, found: IntArray) -> int:
+    """Write down where a column is not what it was a row before, as far as there is room, and return how often."""
+    count = 0
+    width = outputs.shape[1]
+    for i in range(len(outputs)):
+        for k in range(len(columns)):
+            value = outputs[i, columns[k]] if columns[k] < width else taps[i, columns[k] - width]
+            if value != last[k]:
+                if count < len(found):
+                    found[count, 0] = columns[k]
+                    found[count, 1] = i
+                count += 1
+                last[k] = value
+    return count
 
 
 class Observer:
@@ -38,67 +55,78 @@ class Observer:
             if f"{name}.verdict" in known:
                 labels = self._names[name]
                 self._consistent[name] = [signals.index(f"{name}.consistent.{label}") for label in labels]
-        self._last: dict[int, float] = {column: 0.0 for _, _, column in self._said}
-        for truth, delay in self._scored.values():
-            self._last[truth], self._last[delay] = -2.0, -1.0
-        self._warnings = [
-            (signals.index(f"{instance.prefix}.{port.name}") - signals.outputs, f"{instance.key}: {port.warning}")
+        self._warnings = {
+            signals.index(f"{instance.prefix}.{port.name}"): f"{instance.key}: {port.warning}"
             for instance in wiring.instances
             for port in instance.block.taps
             if port.warning
-        ]
-        self._warned = [0.0] * len(self._warnings)
+        }
+        start = {column: 0.0 for _, _, column in self._said} | dict.fromkeys(self._warnings, 0.0)
+        for truth, delay in self._scored.values():
+            start[truth], start[delay] = -2.0, -1.0
+        # followed all at once: most of the time nothing changes
+        self._columns = np.array(sorted(start), dtype=np.int64)
+        self._last = np.array([start[column] for column in self._columns.tolist()])
+        self._found = np.zeros((64, 2), dtype=np.int64)
 
     def look(self, spec: Spec, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
         """Return what happened in some rows of a bench as it is now, as the fields of log entries."""
-        found: list[Finding] = []
         if not len(outputs):
-            return found
-        for which, (at, text) in enumerate(self._warnings):
-            flag = taps[:, at]
-            if self._warned[which] != 0.0 or flag.any():
-                rises = np.flatnonzero(np.diff(flag, prepend=self._warned[which]) > 0.0).tolist()
-                found += [{"kind": "warning", "text": text, "tick": first_tick + row} for row in rises]
-                self._warned[which] = float(flag[-1])
+            return []
+        changes = self._changes(outputs, taps)
+        if not changes:
+            return []
 
         def column(index: int) -> FloatArray:
             width = outputs.shape[1]
             return outputs[:, index] if index < width else taps[:, index - width]
 
+        found: list[Finding] = []
+        for at, text in self._warnings.items():
+            rises = [row for row in changes.get(at, ()) if column(at)[row] > 0.0]
+            found += [{"kind": "warning", "text": text, "tick": first_tick + row} for row in rises]
         for name, (truth_at, delay_at) in self._scored.items():
-            truth, delay = column(truth_at), column(delay_at)
-            moved, found_now = self._changes(truth_at, truth), self._changes(delay_at, delay)
-            if moved is not None or found_now is not None:
-                rows = np.union1d(moved if moved is not None else [], found_now if found_now is not None else [])
-                found += self._recognised(name, rows.astype(int), moved, found_now, truth, delay, first_tick)
+            turned, found_now = changes.get(truth_at, ()), changes.get(delay_at, ())
+            if turned or found_now:
+                truth, delay = column(truth_at), column(delay_at)
+                found += self._recognised(name, turned, found_now, truth, delay, first_tick)
         for name, port, at in self._said:
-            values = column(at)
-            changes = self._changes(at, values)
-            for i in changes if changes is not None else ():
-                text = self._text(spec, name, port, int(values[i]), int(i), column)
-                found.append({"kind": port, "text": f"{name}: {text}", "tick": first_tick + int(i), "new": text})
+            for i in changes.get(at, ()):
+                value = int(column(at)[i])
+                text = self._text(spec, name, port, value, i, column)
+                found.append({"kind": port, "text": f"{name}: {text}", "tick": first_tick + i, "new": text})
         return sorted(found, key=lambda finding: int(finding["tick"]))
 
-    def _changes(self, at: int, values: FloatArray) -> Any:
-        """Return the rows in which a signal is not what it was before, none if it never is."""
-        last = self._last[at]
-        if values[0] == last and values[-1] == last and (values == last).all():
-            return None
-        self._last[at] = values[-1]
-        return np.flatnonzero(np.diff(values, prepend=last) != 0)
+    def _changes(self, outputs: FloatArray, taps: FloatArray) -> dict[int, list[int]]:
+        """Return the rows in which each watched signal is not what it was before."""
+        last = self._last.copy()
+        count = follow(outputs, taps, self._columns, self._last, self._found)
+        if count > len(self._found):
+            self._found, self._last = np.zeros((count, 2), dtype=np.int64), last
+            follow(outputs, taps, self._columns, self._last, self._found)
+        changes: dict[int, list[int]] = {}
+        for at, row in self._found[:count].tolist():
+            changes.setdefault(at, []).append(row)
+        return changes
 
     def _recognised(
-        self, name: str, rows: Any, moved: Any, found_now: Any, truth: FloatArray, delay: FloatArray, first_tick: int
+        self,
+        name: str,
+        turned: Sequence[int],
+        found_now: Sequence[int],
+        truth: FloatArray,
+        delay: FloatArray,
+        first_tick: int,
     ) -> list[Finding]:
         labels = self._names[name]
         found: list[Finding] = []
-        for i in rows:
-            tick = first_tick + int(i)
+        for i in sorted({*turned, *found_now}):
+            tick = first_tick + i
             label = labels[int(truth[i])] if truth[i] >= 0 else "none of the hypotheses"
-            if moved is not None and i in moved:
+            if i in turned:
                 text = f"{name}: the truth is {label}"
                 found.append({"kind": "truth_changed", "text": text, "tick": tick, "new": label})
-            if found_now is not None and i in found_now and delay[i] >= 0:
+            if i in found_now and delay[i] >= 0:
                 samples = int(delay[i])
                 text = f"{name} found {label} after {samples} samples ({samples * self._dt_ms:.3g} ms)"
                 found.append({"kind": "recognised", "text": text, "tick": tick, "old": samples, "new": label})

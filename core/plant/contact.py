@@ -6,7 +6,7 @@ from typing import Any
 
 from core.block import Context, kernel, parameter
 from core.device.geometry import drawn
-from core.plant.shuttle import OWN, ShuttleParams
+from core.plant.shuttle import OWN, ShuttleParams, wall
 
 (
     GAP,
@@ -60,18 +60,10 @@ class ContactParams(ShuttleParams):
 @kernel
 def touch(p: Any, eta: float, rate: float) -> float:
     """Return the force of a stator on fingers that are ``eta`` off their centre, uN."""
-    over = abs(eta) - p[TOUCH]
-    if over <= 0.0:
-        return 0.0
-    push = p[TOUCH_STIFFNESS] * over
-    return float((-push if eta > 0.0 else push) - p[TOUCH_DAMPING] * rate)
+    return wall(p[TOUCH], p[TOUCH_STIFFNESS], p[TOUCH_DAMPING], eta, rate)
 
 
 @kernel
 def stop(p: Any, x: float, v: float) -> float:
     """Return the force of the end stops, uN."""
-    over = abs(x) - p[STOP]
-    if over <= 0.0:
-        return 0.0
-    push = p[STOP_STIFFNESS] * over
-    return float((-push if x > 0.0 else push) - p[STOP_DAMPING] * v)
+    return wall(p[STOP], p[STOP_STIFFNESS], p[STOP_DAMPING], x, v)

@@ -56,21 +56,31 @@ SCALES = np.array([1e-5, 1e-6, 1e-8])
 """Steps of the numerical stiffness along x, y and theta."""
 
 
+def jacobian(function: Callable[[FloatArray], FloatArray], at: FloatArray, scales: FloatArray) -> FloatArray:
+    """Return the Jacobian of a function, by central differences over the steps given."""
+    steps = np.diag(scales[: len(at)])
+    return np.column_stack([(function(at + h) - function(at - h)) / (2.0 * h.sum()) for h in steps])
+
+
 def stiffness(force: Force, q: FloatArray, right: float, left: float) -> FloatArray:
-    """Return minus the Jacobian of the force, by central differences."""
-    columns = []
-    for i in range(len(q)):
-        step = np.zeros(len(q))
-        step[i] = SCALES[i]
-        columns.append((force(q - step, right, left) - force(q + step, right, left)) / (2.0 * SCALES[i]))
-    return np.column_stack(columns)
+    """Return minus the Jacobian of the force."""
+    return -jacobian(lambda place: force(place, right, left), q, SCALES)
+
+
+def is_minimum(k: FloatArray) -> bool:
+    """Say whether a stiffness holds in every direction: its least eigenvalue, scaled by its diagonal, is positive."""
+    size = np.sqrt(np.abs(np.diag(k))) + 1e-300
+    return bool(np.linalg.eigvalsh(0.5 * (k + k.T) / np.outer(size, size))[0] > 0.0)
 
 
 def is_stable(force: Force, q: FloatArray, right: float, left: float) -> bool:
     """Say whether the energy has a minimum there."""
-    k = stiffness(force, q, right, left)
-    size = np.sqrt(np.abs(np.diag(k))) + 1e-300
-    return bool(np.linalg.eigvalsh(0.5 * (k + k.T) / np.outer(size, size))[0] > 0.0)
+    return is_minimum(stiffness(force, q, right, left))
+
+
+def squared(stators: tuple[float, float], v: float) -> tuple[float, float]:
+    """Return the squared voltages at both combs under a voltage on the shuttle."""
+    return (stators[0] - v) * (stators[0] - v), (stators[1] - v) * (stators[1] - v)
 
 
 def rest_at(force: Force, start: FloatArray, right: float, left: float) -> FloatArray | None:
@@ -98,19 +108,12 @@ def voltage_at(
     unknowns = np.append(q[1:], v)
 
     def residual(z: FloatArray) -> FloatArray:
-        place = np.append([x], z[:-1])
-        return force(place, (stators[0] - z[-1]) * (stators[0] - z[-1]), (stators[1] - z[-1]) * (stators[1] - z[-1]))
+        return force(np.append([x], z[:-1]), *squared(stators, float(z[-1])))
 
     scales = np.append(SCALES[1 : len(q)], 1e-5)
     for _ in range(40):
-        f = residual(unknowns)
-        columns = []
-        for i, h in enumerate(scales):
-            step = np.zeros(len(scales))
-            step[i] = h
-            columns.append((residual(unknowns + step) - residual(unknowns - step)) / (2.0 * h))
         try:
-            move = np.linalg.solve(np.column_stack(columns), f)
+            move = np.linalg.solve(jacobian(residual, unknowns, scales), residual(unknowns))
         except np.linalg.LinAlgError:
             return None
         unknowns = unknowns - move
@@ -163,8 +166,8 @@ def folds(
     step: float = 0.05,
 ) -> list[Fold]:
     """Return the folds to either side, as far as there are any; arguments as for `fold`."""
-    rest = rest_at(force, np.zeros(size), stators[0] * stators[0], stators[1] * stators[1])
-    if rest is None or not is_stable(force, rest, stators[0] * stators[0], stators[1] * stators[1]):
+    rest = rest_at(force, np.zeros(size), *squared(stators, 0.0))
+    if rest is None or not is_stable(force, rest, *squared(stators, 0.0)):
         return [Fold(0.0, 0.0, 0.0)]
     found = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
     return [entry for entry in found if entry is not None]
@@ -184,8 +187,7 @@ def _one_side(
         if held is None:
             return False, near
         q, v = held
-        right, left = (stators[0] - v) * (stators[0] - v), (stators[1] - v) * (stators[1] - v)
-        return is_stable(force, q, right, left), np.append(q, v)
+        return is_stable(force, q, *squared(stators, v)), np.append(q, v)
 
     last = np.append(rest, 0.0)
     x, pace = float(rest[0]), step

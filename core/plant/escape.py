@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.block import FloatArray
-from core.plant.equilibrium import SCALES, Force, rest_at, stiffness
+from core.plant.equilibrium import SCALES, Force, is_minimum, rest_at, stiffness
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,7 @@ def _along(force: Force, x: float, near: FloatArray, right: float, left: float) 
         if len(q) == 1:
             break
         block = stiffness(force, q, right, left)[1:, 1:]
-        size = np.sqrt(np.abs(np.diag(block))) + 1e-300
-        if np.linalg.eigvalsh(0.5 * (block + block.T) / np.outer(size, size))[0] <= 0.0:
+        if not is_minimum(block):
             return None
         move = np.linalg.solve(block, force(q, right, left)[1:])
         q[1:] += move

@@ -10,8 +10,6 @@ from core.block import TICK, Context, Equation, FloatArray, settled
 from core.device.oscillator import transition
 from core.plant.shuttle import (
     ACCELERATION,
-    DAMPING,
-    DAMPING_SCALE,
     DISPLACEMENT,
     DRIVE_GAIN,
     DRIVE_OFFSET,
@@ -19,13 +17,9 @@ from core.plant.shuttle import (
     END,
     FIRST_OWN_INPUT,
     FRICTION,
-    MASS,
-    MASS_SCALE,
     MIDDLE,
     SHORT,
     SHORTED,
-    STIFFNESS,
-    STIFFNESS_SCALE,
     V0,
     VELOCITY,
     VOLTAGE,
@@ -33,6 +27,7 @@ from core.plant.shuttle import (
     Shuttle,
     ShuttleParams,
     at_rest_sideways,
+    coefficients,
     comb_force,
     drive_noise,
     dry_friction,
@@ -51,9 +46,7 @@ def linear_step(p: Any, s: Any, w: Any, io: Any) -> None:
         w[io[X_OUT]] = p[X0]
         w[io[V_OUT]] = p[V0]
         return
-    m = p[MASS] * w[io[MASS_SCALE]]
-    b = p[DAMPING] * w[io[DAMPING_SCALE]]
-    k = p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
+    m, b, k = coefficients(p, w, io)
     if m != s[0] or b != s[1] or k != s[2] or p[DT] != s[3]:
         s[0], s[1], s[2], s[3] = m, b, k, p[DT]
         s[4], s[5], s[6], s[7] = transition(m, b, k, p[DT])

@@ -10,31 +10,27 @@ import numpy as np
 from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter, settled
 from core.plant.shuttle import (
     ACCELERATION,
-    DAMPING,
-    DAMPING_SCALE,
     DISPLACEMENT,
     DT,
     FIRST_OWN_INPUT,
     FRICTION,
-    MASS,
-    MASS_SCALE,
     OWN,
     SHORT,
     SHORTED,
-    STIFFNESS,
-    STIFFNESS_SCALE,
     V0,
     VELOCITY,
     X0,
     Shuttle,
     ShuttleParams,
     at_rest_sideways,
+    coefficients,
     comb_force,
     comb_voltage_parabola,
     drive_noise,
     dry_friction,
     joined,
     thermal_force,
+    wall,
 )
 
 CUBIC, SMOOTHED, SLIP, STOP, STOP_STIFFNESS, STOP_DAMPING, SUBSTEPS = range(OWN, OWN + 7)
@@ -47,11 +43,7 @@ X_OUT, V_OUT, SHORT_OUT = FIRST_OUTPUT + DISPLACEMENT, FIRST_OUTPUT + VELOCITY, 
 def acceleration(p: Any, m: float, b: float, k: float, cubic: float, x: float, v: float, force: float) -> float:
     """Return the acceleration at one point, um/ms^2."""
     total = force - b * v - k * x - cubic * x * x * x - p[SMOOTHED] * math.tanh(v / p[SLIP])
-    over = abs(x) - p[STOP]
-    if over > 0.0:
-        push = p[STOP_STIFFNESS] * over
-        total -= (push if x > 0.0 else -push) + p[STOP_DAMPING] * v
-    return float(total / m)
+    return float((total + wall(p[STOP], p[STOP_STIFFNESS], p[STOP_DAMPING], x, v)) / m)
 
 
 def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -62,9 +54,7 @@ def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
         w[io[X_OUT]] = p[X0]
         w[io[V_OUT]] = p[V0]
         return
-    m = p[MASS] * w[io[MASS_SCALE]]
-    b = p[DAMPING] * w[io[DAMPING_SCALE]]
-    k = p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
+    m, b, k = coefficients(p, w, io)
     cubic = p[CUBIC] + w[io[CUBIC_IN]]
     tick = w[TICK] - 1.0
     u0, rise, bend = comb_voltage_parabola(w, io)

@@ -145,6 +145,22 @@ def comb_voltage(v: float, short: float, comb: int) -> float:
     return 0.0 if int(short) & comb else v
 
 
+@inlined
+def coefficients(p: Any, w: Any, io: Any) -> tuple[float, float, float]:
+    """Return mass, damping and stiffness as faults and environment have made them."""
+    return p[MASS] * w[io[MASS_SCALE]], p[DAMPING] * w[io[DAMPING_SCALE]], p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
+
+
+@kernel
+def wall(at: float, stiffness: float, damping: float, x: float, v: float) -> float:
+    """Return the force of a wall to either side at the distance ``at``, a spring with a damper, uN."""
+    over = abs(x) - at
+    if over <= 0.0:
+        return 0.0
+    push = stiffness * over
+    return (-push if x > 0.0 else push) - damping * v
+
+
 @kernel
 def joined(first: float, second: float) -> float:
     """Return the combs that are shorted by one or the other."""

@@ -11,22 +11,22 @@ from core.device.oscillator import held
 from core.noise import key, normal
 from core.plant.shuttle import (
     ACCELERATION,
-    DAMPING_SCALE,
     DISPLACEMENT,
     DRIVE_GAIN,
     DRIVE_OFFSET,
     END,
     FIRST_OWN_INPUT,
-    MASS_SCALE,
     MIDDLE,
-    STIFFNESS_SCALE,
+    STIFFNESS,
     VELOCITY,
     VOLTAGE,
     Shuttle,
     at_rest_sideways,
+    coefficients,
 )
 
-MASS, DAMPING, STIFFNESS, FORCE, DT, X0, V0, NOISE, NOISE_KEY = range(9)
+FORCE, DT, X0, V0, NOISE, NOISE_KEY = range(STIFFNESS + 1, STIFFNESS + 7)
+"""Packed parameters behind mass, damping and stiffness."""
 X_OUT, V_OUT = FIRST_OWN_INPUT + DISPLACEMENT, FIRST_OWN_INPUT + VELOCITY
 KEPT, PHI11, PHI12, PHI21, PHI22, REACH, PUSH = 0, 3, 4, 5, 6, 7, 8
 
@@ -38,9 +38,7 @@ def transfer_function_step(p: Any, s: Any, w: Any, io: Any) -> None:
         w[io[X_OUT]] = p[X0]
         w[io[V_OUT]] = p[V0]
         return
-    m = p[MASS] * w[io[MASS_SCALE]]
-    b = p[DAMPING] * w[io[DAMPING_SCALE]]
-    k = p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
+    m, b, k = coefficients(p, w, io)
     if m != s[KEPT] or b != s[KEPT + 1] or k != s[KEPT + 2]:
         s[KEPT], s[KEPT + 1], s[KEPT + 2] = m, b, k
         s[PHI11], s[PHI12], s[PHI21], s[PHI22], s[REACH], s[PUSH] = held(m, b, k, p[DT])

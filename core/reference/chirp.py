@@ -8,7 +8,7 @@ from typing import Any, Self
 from pydantic import model_validator
 
 from core.block import Context, Equation, kernel, parameter
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
+from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing, sine_of
 
 
 @kernel
@@ -16,8 +16,7 @@ def chirp(p: Any, t: float) -> float:
     """Linear sweep over the duration, then again from the start."""
     sweep = p[FIRST + 2]
     tau = t - sweep * math.floor(t / sweep)
-    cycles = p[FIRST] * tau + 0.5 * (p[FIRST + 1] - p[FIRST]) * tau * tau / sweep
-    return math.sin(2.0 * math.pi * (cycles - math.floor(cycles)))
+    return sine_of(p[FIRST] * tau + 0.5 * (p[FIRST + 1] - p[FIRST]) * tau * tau / sweep)
 
 
 class Chirp(Waveform):

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from core.block import BlockParams, Context, Equation, kernel, parameter
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing
+from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing, sine_of
 
 
 class Tone(BlockParams):
@@ -23,8 +22,7 @@ def tones(p: Any, t: float) -> float:
     total = 0.0
     for i in range(int(p[FIRST])):
         base = FIRST + 1 + 3 * i
-        cycles = p[base] * t + p[base + 2]
-        total += p[base + 1] * math.sin(2.0 * math.pi * (cycles - math.floor(cycles)))
+        total += p[base + 1] * sine_of(p[base] * t + p[base + 2])
     return total
 
 

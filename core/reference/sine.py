@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from core.block import Context, Equation, kernel, parameter
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing
+from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing, sine_of
 
 
 @kernel
 def sine(p: Any, t: float) -> float:
-    """Sine of a phase kept below one cycle, so that it is as exact after hours as at the start."""
-    cycles = p[FIRST] * t + p[FIRST + 1]
-    return math.sin(2.0 * math.pi * (cycles - math.floor(cycles)))
+    """Sine of frequency and phase."""
+    return sine_of(p[FIRST] * t + p[FIRST + 1])
 
 
 class Sine(Waveform):

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from core.block import TICK, Block, BlockParams, Context, FloatArray, Port, Step, parameter
+from core.block import TICK, Block, BlockParams, Context, FloatArray, Port, Step, kernel, parameter
 from core.errors import InputError
 
 DT, ANALOGUE, SCALE, OFFSET, FIRST = range(5)
@@ -37,6 +37,12 @@ class ReferenceParams(BlockParams):
         if context.device.static_gain == 0.0:
             raise InputError("needs a device that moves; these stators give no force", "reference.amplitude_um")
         return self.amplitude_um / context.device.static_gain
+
+
+@kernel
+def sine_of(cycles: float) -> float:
+    """Sine of a phase in cycles, kept below one, so that it is as exact after hours as at the start."""
+    return math.sin(2.0 * math.pi * (cycles - math.floor(cycles)))
 
 
 class Waveform(Block):

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.block import TICK, Context, Equation, FloatArray, Port, parameter, settled
 from core.noise import key, normal
-from core.sense.grating import GratingParams, level, pack_grating, slope
+from core.sense.grating import GratingParams, pack_grating, series
 from core.sense.sensor import Sensor
 
 NOISE, KEY, DT, DECAY, GRATING = range(5)
@@ -20,10 +20,11 @@ STARTED, LAST, SUM = range(3)
 def doppler_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Read the apparent velocity and integrate it."""
     x = w[io[TRUE]]
-    signal = slope(p, GRATING, x) * w[io[VELOCITY]] + p[NOISE] * normal(p[KEY], w[TICK])
+    height, slope, _ = series(p, GRATING, x)
+    signal = slope * w[io[VELOCITY]] + p[NOISE] * normal(p[KEY], w[TICK])
     if s[STARTED] == 0.0:
         s[STARTED] = 1.0
-        s[SUM] = level(p, GRATING, x) - p[GRATING]
+        s[SUM] = height - p[GRATING]
         s[LAST] = signal
     if math.isfinite(signal):
         s[SUM] = settled(p[DECAY] * s[SUM] + 0.5 * p[DT] * (s[LAST] + signal))

@@ -115,18 +115,30 @@ def level(p: Any, at: int, x: float) -> float:
 
 
 @kernel
-def slope(p: Any, at: int, x: float) -> float:
-    """Return the derivative of the series packed at ``at`` by displacement, 1/um."""
+def series(p: Any, at: int, x: float) -> tuple[float, float, float]:
+    """Return value, slope and curvature by displacement of the series packed at ``at``."""
     if not math.isfinite(x):
-        return math.nan
+        return math.nan, math.nan, math.nan
     angle = p[at + WAVE] * (x - p[at + OFFSET])
-    twice = 2.0 * math.cos(angle)
-    now = math.sin(angle)
-    before = 0.0
-    total = float(p[at + FIRST] * now)
-    for m in range(1, int(p[at + COUNT])):
-        after = twice * now - before
-        before = now
-        now = after
-        total += (m + 1.0) * p[at + FIRST + m] * now
-    return float(-p[at + WAVE] * total)
+    c1 = math.cos(angle)
+    s1 = math.sin(angle)
+    c0 = 1.0
+    s0 = 0.0
+    twice = 2.0 * c1
+    value = float(p[at + MEAN])
+    first = 0.0
+    second = 0.0
+    for i in range(int(p[at + COUNT])):
+        m = i + 1.0
+        a = p[at + FIRST + i]
+        value += a * c1
+        first -= m * a * s1
+        second -= m * m * a * c1
+        c2 = twice * c1 - c0
+        s2 = twice * s1 - s0
+        c0 = c1
+        c1 = c2
+        s0 = s1
+        s1 = s2
+    wave = p[at + WAVE]
+    return value, wave * first, wave * wave * second

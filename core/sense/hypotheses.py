@@ -11,7 +11,7 @@ from typing import Any
 
 from core.block import kernel
 from core.sense import tracker
-from core.sense.grating import COUNT, FIRST, MEAN, OFFSET, WAVE
+from core.sense.grating import OFFSET, WAVE, series
 from core.sense.tracker import FILTER, P11, V, X, correct
 
 NOISE, FORGET, PENALTY, DROP, NEAR, SAME_X, SAME_V, MODEL = range(8)
@@ -23,34 +23,6 @@ SCORE, USED, WIDTH = FILTER, FILTER + 1, FILTER + 2
 NO, YES, NEW = 0.0, 1.0, 2.0
 STARTED, BEST, CHANGES, OWN = range(4)
 """State: whether it has run, the best hypothesis, how often that changed, the hypotheses."""
-
-
-@kernel
-def light(p: Any, x: float) -> tuple[float, float, float]:
-    """Return the intensity, its slope and its curvature by displacement."""
-    angle = p[GRATING + WAVE] * (x - p[GRATING + OFFSET])
-    c1 = math.cos(angle)
-    s1 = math.sin(angle)
-    c0 = 1.0
-    s0 = 0.0
-    twice = 2.0 * c1
-    value = float(p[GRATING + MEAN])
-    first = 0.0
-    second = 0.0
-    for i in range(int(p[GRATING + COUNT])):
-        m = i + 1.0
-        a = p[GRATING + FIRST + i]
-        value += a * c1
-        first -= m * a * s1
-        second -= m * m * a * c1
-        c2 = twice * c1 - c0
-        s2 = twice * s1 - s0
-        c0 = c1
-        c1 = c2
-        s0 = s1
-        s1 = s2
-    wave = p[GRATING + WAVE]
-    return value, wave * first, wave * wave * second
 
 
 @kernel
@@ -90,7 +62,7 @@ def mirror(p: Any, s: Any, b: int, extreme: float) -> None:
 @kernel
 def follow(p: Any, s: Any, b: int, z: float) -> None:
     """Correct one hypothesis, which has been predicted, and score it."""
-    value, first, second = light(p, s[b + X])
+    value, first, second = series(p, GRATING, s[b + X])
     # to second order: near an extreme of the light the slope is nothing and the curvature is all
     bend = 0.5 * second * s[b + P11]
     gain = correct(s, b, z - value - bend, first, p[NOISE] + 2.0 * bend * bend)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Context, Equation, FloatArray, Oscillator, Port
+from core.block import Context, Equation, FloatArray, Port
 from core.sense import tracker
 from core.sense.dual_beam import DualBeam
 from core.sense.sensor import (
@@ -16,12 +16,11 @@ from core.sense.sensor import (
     RECOVERED_PORT,
     SLIPS_PORT,
     TRUE_PORT,
-    Sensor,
     begin_at,
     calibrated,
     slips,
 )
-from core.sense.tracker import APPLIED_PORT, MOTION, TrackerParams, X, correct, predict
+from core.sense.tracker import APPLIED_PORT, MOTION, Tracker, TrackerParams, X, correct, predict
 
 PITCH, OFFSET, NOISE, MODEL = range(4)
 LAST, TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(8)
@@ -47,7 +46,7 @@ def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
     w[io[SLIPS]] = slips(error, p[PITCH])
 
 
-class QuadratureKalman(Sensor):
+class QuadratureKalman(Tracker):
     r"""The phase of two beams through a Kalman filter on :math:`(x,\dot x,f)`, unwrapped about its prediction (6.3).
 
     The filter knows the nominal device and the voltage; what the model lacks goes into the slow force :math:`f`.
@@ -80,11 +79,6 @@ class QuadratureKalman(Sensor):
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of the phase as displacement; the filter's own error is smaller but not white."""
         return calibrated(context, "dual_beam", DualBeam.Params).phase_noise_um
-
-    @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what its model cannot be."""
-        return tracker.unsuited(device)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

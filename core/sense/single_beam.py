@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Context, Equation, FloatArray, Oscillator, Port, parameter
+from core.block import Context, Equation, FloatArray, Port, parameter
 from core.sense import tracker
 from core.sense.grating import WAVE
 from core.sense.hypotheses import (
@@ -31,13 +31,12 @@ from core.sense.sensor import (
     RECOVERED_PORT,
     SLIPS_PORT,
     TRUE_PORT,
-    Sensor,
     begin_at,
     calibrated,
     slips,
 )
 from core.sense.through_wafer import ThroughWafer
-from core.sense.tracker import APPLIED_PORT, FILTER, MOTION, TrackerParams, V, X, predict
+from core.sense.tracker import APPLIED_PORT, FILTER, MOTION, Tracker, TrackerParams, V, X, predict
 
 LAST, LIGHT, APPLIED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(10)
 
@@ -71,7 +70,7 @@ def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
     w[io[SLIPS]] = slips(error, pitch)
 
 
-class SingleBeam(Sensor):
+class SingleBeam(Tracker):
     r"""Displacement from one beam by several extended Kalman filters that know the device and the voltage.
 
     The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`. So whenever a hypothesis
@@ -122,11 +121,6 @@ class SingleBeam(Sensor):
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of a pair of beams of the same quality; the filter's own error is close to it."""
         return calibrated(context, "through_wafer", ThroughWafer.Params).phase_noise_um
-
-    @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what its model cannot be."""
-        return tracker.unsuited(device)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:

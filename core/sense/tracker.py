@@ -12,7 +12,7 @@ from typing import Any
 
 from core.block import Context, Equation, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
-from core.sense.sensor import SensorParams
+from core.sense.sensor import Sensor, SensorParams
 
 PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, FORCE1, FORCE2, WALK, MODEL = range(10)
 """Layout of a packed model, and its length."""
@@ -35,9 +35,13 @@ class TrackerParams(SensorParams):
     force_rate_per_ms: float = parameter(4.0, "how fast that force may wander", "1/ms", gt=0, le=1e4)
 
 
-def unsuited(device: Oscillator) -> str:
-    """Say why a device cannot be tracked by a model of mass and spring."""
-    return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
+class Tracker(Sensor):
+    """A sensor with a model of the shuttle."""
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse what the model of mass and spring cannot be."""
+        return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
 
 def pack_model(params: TrackerParams, context: Context) -> list[float]:

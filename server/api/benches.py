@@ -125,10 +125,13 @@ async def list_events(
 
 @router.get("/{bench_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
-    """Return what happened as a scenario in TOML; run headless it gives the same bits."""
-    document = await service.engine.call(session.document)
+    """Return what happened as a scenario in TOML; run headless it gives the same bits, whose digest it begins with."""
+    document, tick, digest = await service.engine.call(
+        lambda: (session.document(), session.board.tick, session.board.digest())
+    )
     name = f'attachment; filename="{document["id"]}.toml"'
-    return Response(Scenario.load(document).toml(), media_type="text/plain", headers={"Content-Disposition": name})
+    text = f"# {tick} ticks, digest {digest}\n{Scenario.load(document).toml()}"
+    return Response(text, media_type="text/plain", headers={"Content-Disposition": name})
 
 
 @router.get("/{bench_id}/digest")

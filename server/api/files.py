@@ -22,7 +22,7 @@ FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 
 PIECE = 1 << 16
-HTML = "text/html"
+HTML, PYTHON = "text/html", "text/x-python"
 
 
 def file_name(name: str, kind: str) -> str:

@@ -9,11 +9,12 @@ from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from scenarios.report import campaign_report, results_table
+from scenarios.script import campaign_script
 from scenarios.sweep import Sweep
 from scenarios.tally import PointTally, tally
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.api.files import HTML, report_response, table_response
+from server.api.files import HTML, PYTHON, file_name, report_response, table_response
 from server.errors import ApiError
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
@@ -103,3 +104,12 @@ async def get_sweep_report(sweep_id: str, service: ServiceDep) -> Response:
     sweep, outcomes = await service.sweeps.outcomes(sweep_id)
     text = await asyncio.to_thread(lambda: campaign_report(sweep, tally(sweep, outcomes)))
     return report_response(text, sweep.head.id)
+
+
+@router.get("/{sweep_id}/script", response_class=Response, responses={200: {"content": {PYTHON: {}}}})
+async def get_sweep_script(sweep_id: str, service: ServiceDep) -> Response:
+    """Download a Python script that repeats a campaign over REST."""
+    document = await service.sweeps.document(sweep_id)
+    name = file_name(str(document.get("id", "sweep")), "py")
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    return Response(campaign_script(document, name), media_type=PYTHON, headers=headers)

@@ -139,6 +139,10 @@ class Sweeps:
         await asyncio.wait([task], timeout=10.0)
         return await self.get(sweep_id)
 
+    async def document(self, sweep_id: str) -> dict[str, Any]:
+        """Return a campaign as it was asked for."""
+        return (await self._known(sweep_id)).document
+
     async def outcomes(self, sweep_id: str) -> tuple[Sweep, dict[str, Outcome]]:
         """Return a campaign with the results that are there."""
         row = await self._known(sweep_id)

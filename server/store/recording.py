@@ -18,6 +18,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from core.errors import InputError
 from scenarios.traces import packing
 
 PART, EVENTS = ".arrows", ".events"
@@ -97,9 +98,16 @@ def rescue(path: Path) -> int:
 
 
 def first_tick(path: Path) -> int:
-    """Return the first tick of a recording that has some."""
-    batch = next(pq.ParquetFile(path).iter_batches(1, columns=["tick"]))
-    return int(batch.column(0)[0].as_py())
+    """Return the first tick of a recording.
+
+    Raises
+    ------
+    InputError
+        When it has none.
+    """
+    for batch in pq.ParquetFile(path).iter_batches(1, columns=["tick"]):
+        return int(batch.column(0)[0].as_py())
+    raise InputError("is empty", "recording")
 
 
 def events_of(path: Path) -> list[dict[str, Any]]:

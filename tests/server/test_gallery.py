@@ -50,24 +50,46 @@ def test_a_card_has_its_claim_before_its_run_and_its_figures_after(live: Any) ->
     assert live.http.get("/api/v1/runs/none/thumbnail").status_code == 404
 
 
+def execute(live: Any, path: Path, text: str) -> subprocess.CompletedProcess[str]:
+    path.write_text(text)
+    environment = {**os.environ, "COMBBENCH_TOKEN": TOKEN}
+    command = [sys.executable, "-S", str(path), live.address]
+    return subprocess.run(command, cwd=path.parent, env=environment, capture_output=True, text=True, timeout=120)
+
+
 def test_the_script_of_a_run_repeats_it(live: Any, tmp_path: Path) -> None:
     body = {"scenario": "ch5-seven-step", "set": {"samples": 1200}, "seeds": [4, 6]}
     found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
     answer = live.http.get(f"/api/v1/runs/{found['id']}/script")
     assert 'filename="ch5-seven-step.py"' in answer.headers["content-disposition"]
     path = tmp_path / "again.py"
-
-    def execute(text: str) -> subprocess.CompletedProcess[str]:
-        path.write_text(text)
-        environment = {**os.environ, "COMBBENCH_TOKEN": TOKEN}
-        command = [sys.executable, "-S", str(path), live.address]
-        return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
-
-    done = execute(answer.text)
+    done = execute(live, path, answer.text)
     assert done.returncode == 0, done.stderr
     assert f"digest {found['summary']['digest']}" in done.stdout
     assert len((tmp_path / "again.csv").read_text().splitlines()) == 1201
     # the run is the same one, not a second
     assert [one["id"] for one in live.http.get("/api/v1/runs").json()["runs"]].count(found["id"]) == 1
-    other = execute(answer.text.replace(found["summary"]["digest"], "0" * 64))
+    other = execute(live, path, answer.text.replace(found["summary"]["digest"], "0" * 64))
     assert other.returncode == 1 and "other bits" in other.stderr
+
+
+def test_the_script_of_a_campaign_repeats_it(live: Any, tmp_path: Path) -> None:
+    sweep = {
+        "schema": 1,
+        "id": "again",
+        "scenario": "ch5-seven-step",
+        "set": {"samples": 1200},
+        "seeds": {"first": 3, "count": 2},
+        "grid": {"sensor.noise_um": [0.05, 0.1]},
+    }
+    found = live.http.post("/api/v1/sweeps", json={"sweep": sweep}).json()
+    answer = live.http.get(f"/api/v1/sweeps/{found['id']}/script")
+    assert 'filename="again.py"' in answer.headers["content-disposition"]
+    done = execute(live, tmp_path / "again.py", answer.text)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("of 2 runs as expected") == 2
+    rows = (tmp_path / "again.csv").read_text().splitlines()
+    assert len(rows) == 5 and "sensor.noise_um" in rows[0]
+    assert "<h2>Points</h2>" in (tmp_path / "again.html").read_text()
+    # it is the same campaign, not a second
+    assert [one["id"] for one in live.http.get("/api/v1/sweeps").json()["sweeps"]].count(found["id"]) == 1

@@ -32,6 +32,6 @@ test("a list of hypotheses is edited, its aliases are seen, and the bench begins
   await panel.getByRole("textbox", { name: "Name of hypothesis 7" }).fill("soft");
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
   await panel.getByRole("button", { name: "Begin again with this list" }).click();
-  await page.getByRole("tab", { name: "Diagnosis" }).click();
+  await page.getByRole("tab", { name: "Diagnosis", exact: true }).click();
   await expect(page.getByRole("img", { name: /^Probability of .*, soft over time$/ })).toBeVisible();
 });

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from core.sense.grating import BeamParams, level, pack_grating, slope
+from core.sense.grating import BeamParams, level, pack_grating, series
 from tests.core.sense.bench import TICKS, make
 from tests.lab import play
 
@@ -41,11 +41,15 @@ def test_series_is_the_convolution_of_bars_and_beam(spot):
     np.testing.assert_allclose([level(p, 0, at) for at in x], smoothed(x, spot, 0.7), atol=1e-8)
 
 
-def test_slope_is_the_derivative_of_the_level():
+def test_slope_and_curvature_are_the_derivatives_of_the_level():
     params = BeamParams(spot_um=0.8, opening=0.4)
     p = np.array(pack_grating(params.mean, 4.0, 0.3, params.harmonics))
     for x in np.linspace(-5, 5, 23):
-        assert slope(p, 0, x) == pytest.approx((level(p, 0, x + 1e-5) - level(p, 0, x - 1e-5)) / 2e-5, abs=1e-8)
+        before, now, after = (level(p, 0, x + h) for h in (-1e-4, 0.0, 1e-4))
+        value, slope, curvature = series(p, 0, x)
+        assert value == now
+        assert slope == pytest.approx((after - before) / 2e-4, abs=1e-6)
+        assert curvature == pytest.approx((after - 2.0 * now + before) / 1e-8, abs=1e-6)
 
 
 def test_third_harmonic_is_below_three_percent():

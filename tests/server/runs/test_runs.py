@@ -168,3 +168,17 @@ def test_a_server_may_refuse_runs(serve: Any) -> None:
     with serve(run_workers=0) as live:
         answer = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step"})
         assert answer.status_code == 409 and answer.json()["error"]["code"] == "runs_disabled"
+
+
+def test_a_study_is_a_run_too(live: Any) -> None:
+    """Detection delay at equal false alarms and its characteristic, by the interface."""
+    few = {"study.runs": 4, "study.healthy_samples": 40_000, "study.signals": ["glr100.tone.healthy", "cusum.sum.m+5"]}
+    body = {"scenario": "ch5-detectors", "set": {**few, "expect": []}, "seed": 3}
+    found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
+    assert found["state"] == "done", found
+    expected = run(with_values(get("ch5-detectors"), body["set"]), 3).metrics
+    metrics = found["summary"]["metrics"]
+    assert metrics == json.loads(json.dumps(expected))
+    for signal in few["study.signals"]:
+        assert 0.5 < metrics[f"roc.{signal}.area"] <= 1.0 and metrics[f"detectors.{signal}.missed"] <= 1.0
+    assert metrics["detectors.glr100.tone.healthy.delay"] > 0

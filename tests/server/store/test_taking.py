@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -86,6 +87,8 @@ def test_a_condition_that_never_comes_can_be_called_off(live: Any) -> None:
     armed = live.http.post(recordings(bench), json={"when": "plant.displacement > 1e6"}).json()
     answer = live.http.post(f"{recordings(bench)}/{armed['id']}/stop")
     assert answer.status_code == 200 and answer.json()["ticks"] == 0
+    empty = live.http.post(f"/api/v1/recordings/{armed['id']}/replay", json={})
+    assert empty.status_code == 409 and "empty" in empty.text
     wrong = live.http.post(recordings(bench), json={"when": "plant.displacment > 1"})
     assert wrong.status_code == 422 and "plant.displacement" in wrong.text
     empty = live.http.post(recordings(bench), json={"ticks": 0})
@@ -203,9 +206,14 @@ def test_a_replay_seeks_and_loops(live: Any) -> None:
     assert live.command(replay, "loop", start_tick=2000, end_tick=2200).status_code == 200
     live.command(replay, "time_scale", value=0.1)  # 200 ticks of 20 us are played in 40 ms
     live.command(replay, "start")
-    seen = set()
-    until(lambda: seen.add(live.get(replay)["tick"]) or len(seen) > 12)  # type: ignore[func-returns-value]
-    assert live.get(replay)["state"] == "running" and all(2000 <= tick <= 2200 for tick in seen)
+    seen: list[int] = []
+
+    def turned_back() -> bool:
+        seen.append(live.get(replay)["tick"])
+        return sum(later < earlier for earlier, later in pairwise(seen)) > 3
+
+    until(turned_back)
+    assert live.get(replay)["state"] == "running" and all(2000 <= tick <= 2200 for tick in seen[1:])
     live.command(replay, "loop")
     until(lambda: live.get(replay)["tick"] == 3000 and live.get(replay)["state"] == "paused")
     assert live.command(bench["id"], "seek", tick=0).status_code in (409, 422)

@@ -285,7 +285,7 @@ export interface paths {
         };
         /**
          * Save Scenario
-         * @description Return what happened as a scenario in TOML; run headless it gives the same bits.
+         * @description Return what happened as a scenario in TOML; run headless it gives the same bits, whose digest it begins with.
          */
         get: operations["save_scenario_api_v1_benches__bench_id__scenario_get"];
         put?: never;
@@ -916,6 +916,26 @@ export interface paths {
          * @description Download the report, one HTML file that needs nothing else.
          */
         get: operations["get_sweep_report_api_v1_sweeps__sweep_id__report_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/script": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sweep Script
+         * @description Download a Python script that repeats a campaign over REST.
+         */
+        get: operations["get_sweep_script_api_v1_sweeps__sweep_id__script_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -5716,6 +5736,37 @@ export interface operations {
                 };
                 content: {
                     "text/html": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sweep_script_api_v1_sweeps__sweep_id__script_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/x-python": unknown;
                 };
             };
             /** @description Refused or failed */

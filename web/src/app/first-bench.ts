@@ -18,7 +18,7 @@ export async function startAgain(scenario: string): Promise<void> {
 
 /** Open the bench this browser had last, else one that runs, or start the showpiece. */
 export async function openAnyBench(): Promise<void> {
-  const benches = await api.benches();
+  const benches = (await api.benches()).filter((b) => !b.replay_of);
   const mine = benches.find((b) => b.id === lastBench() && b.state !== "tripped");
   const running = mine ?? benches.find((b) => b.state === "running");
   if (running) return openBench(running.id, true);

@@ -3,6 +3,7 @@ import { IconRulerMeasure } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { Device, ScenarioSummary } from "../api/types";
+import { byChapter } from "../gallery/chapters";
 import { EmptyState } from "../ui/empty-state";
 import styles from "./dialogs.module.css";
 import { openBench } from "./open-bench";
@@ -45,7 +46,9 @@ function Gallery() {
     }
   };
 
-  const found = scenarios?.filter((s) => `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()));
+  const found = scenarios
+    ?.filter((s) => `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()))
+    .sort(byChapter);
   return (
     <>
       <Button

@@ -12,6 +12,7 @@ import { usePageVisible } from "../ui/use-page-visible";
 import { actions } from "./actions";
 import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";
+import { PanelBody } from "./panel-body";
 import { PANELS } from "./panels";
 import styles from "./phone.module.css";
 import { useView } from "./view-store";
@@ -92,9 +93,7 @@ function Extra() {
       />
       {panel && (
         <div className={styles.panel}>
-          <ErrorFence key={kind} name={panel.title}>
-            <panel.component params={{}} setParams={() => undefined} />
-          </ErrorFence>
+          <PanelBody key={kind} kind={panel} params={{}} setParams={() => undefined} />
         </div>
       )}
     </div>

@@ -10,12 +10,11 @@ import {
 } from "dockview-react";
 import { type FunctionComponent, useEffect, useState } from "react";
 import { useBench } from "../stream/bench-store";
-import { EmptyState } from "../ui/empty-state";
-import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible } from "../ui/panel-visible";
 import { usePageVisible } from "../ui/use-page-visible";
 import "./dock.css";
 import { addPanel, addScope, attachDock } from "./layouts";
+import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind } from "./panels";
 import { SCOPE_PRESETS } from "./scope-presets";
 
@@ -47,19 +46,9 @@ function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
       const subscription = api.onDidVisibilityChange((event) => setShown(event.isVisible));
       return () => subscription.dispose();
     }, [api]);
-    const replay = useBench((s) => s.bench?.replay_of);
-    const Panel = kind.component;
     return (
       <PanelVisible value={shown && page}>
-        <ErrorFence name={kind.title}>
-          {replay && kind.changes ? (
-            <EmptyState title="The past cannot be changed">
-              A recording is played here; what was done then stands under Events. Leave the replay to go on.
-            </EmptyState>
-          ) : (
-            <Panel params={params} setParams={(next) => api.updateParameters(next)} />
-          )}
-        </ErrorFence>
+        <PanelBody kind={kind} params={params} setParams={(next) => api.updateParameters(next)} />
       </PanelVisible>
     );
   };

@@ -26,6 +26,10 @@ export function chaptersOf(cards: readonly GalleryCard[]): string[] {
   return [...new Set(cards.map((card) => chapterOf(card.id)))].sort((a, b) => rank(a) - rank(b));
 }
 
+/** The order of the book, then by id. */
+export const byChapter = (a: { id: string }, b: { id: string }): number =>
+  rank(chapterOf(a.id)) - rank(chapterOf(b.id)) || a.id.localeCompare(b.id);
+
 /** How a chapter is called. */
 export function chapterName(chapter: string): string {
   if (chapter === "live") return "Live benches";
@@ -42,5 +46,5 @@ export function chosen(cards: readonly GalleryCard[], filter: GalleryFilter): Ga
     const text = `${card.id} ${card.title} ${card.summary} ${card.claim} ${card.source}`.toLowerCase();
     return words.every((word) => text.includes(word));
   });
-  return left.sort((a, b) => rank(chapterOf(a.id)) - rank(chapterOf(b.id)) || a.id.localeCompare(b.id));
+  return left.sort(byChapter);
 }

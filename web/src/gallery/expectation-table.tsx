@@ -37,7 +37,11 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
             <tr key={entry.metric} title={`${entry.metric}${entry.note ? `: ${entry.note}` : ""}`}>
               <th scope="row">
                 {metricName(entry.metric)}
-                {entry.verdict !== verdict && <Verdict verdict={entry.verdict} />}
+                {entry.verdict !== verdict && (
+                  <div>
+                    <Verdict verdict={entry.verdict} />
+                  </div>
+                )}
                 {all && entry.note && <small>{entry.note}</small>}
               </th>
               <td>{entry.published || "–"}</td>

@@ -1,5 +1,5 @@
 import { Button, MultiSelect } from "@mantine/core";
-import { IconFileText } from "@tabler/icons-react";
+import { IconBrandPython, IconFileText } from "@tabler/icons-react";
 import { useCallback, useState } from "react";
 import { api } from "../api/api";
 import type { PointTally, SweepRun } from "../api/types";
@@ -55,6 +55,17 @@ export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
               title="One HTML file that needs nothing else"
             >
               Report
+            </Button>
+            <Button
+              component="a"
+              href={`${files}/script`}
+              download
+              size="xs"
+              variant="default"
+              leftSection={<IconBrandPython size={15} />}
+              title="A script that repeats this campaign over REST"
+            >
+              Repeat as Python script
             </Button>
             <span>
               All runs <Downloads href={(format) => `${files}/runs?format=${format}`} formats={["csv", "parquet"]} />

@@ -83,7 +83,7 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
               {stateText(job)}
             </span>
             <time dateTime={job.created}>{new Date(job.created).toLocaleTimeString([], { timeStyle: "short" })}</time>
-            {job.isActive && (
+            {job.state === "running" && (
               <Progress value={job.progress * 100} size="sm" w="100%" aria-label={`Progress of ${job.title}`} />
             )}
           </button>

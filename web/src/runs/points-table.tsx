@@ -2,6 +2,7 @@ import { useState } from "react";
 import type { PointTally } from "../api/types";
 import { formatSi } from "../ui/format";
 import { metricName } from "../ui/metric-name";
+import { labelText } from "./points";
 import styles from "./runs.module.css";
 
 interface Column {
@@ -21,9 +22,9 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
     ...axes.map(
       (axis): Column => ({
         id: axis,
-        title: axis,
+        title: axis.split(".").at(-1)?.replaceAll("_", " ") ?? axis,
         of: (p) => p.labels[axis],
-        say: (p) => (typeof p.labels[axis] === "number" ? formatSi(p.labels[axis], "") : (p.labels[axis] ?? "")),
+        say: (p) => labelText(p.labels[axis] ?? ""),
       }),
     ),
     { id: "runs", title: "runs", of: (p) => p.runs, say: (p) => String(p.runs) },

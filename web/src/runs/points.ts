@@ -4,13 +4,14 @@ import type { ChartLine } from "../ui/line-chart";
 /** Figures shown before anybody chooses. */
 const USUAL = [/\.correct_fraction$/, /\.mean_delay_samples$/, /\.false_switches$/, /^control\.rms_error_um$/];
 
-/** A point's number, cut to what can be told apart. */
-const say = (value: string | number) => (typeof value === "number" ? String(Number(value.toPrecision(4))) : value);
+/** A value a point differs by; a number cut to what can be told apart. */
+export const labelText = (value: string | number) =>
+  typeof value === "number" ? String(Number(value.toPrecision(4))) : value;
 
 /** What a point is called: the values it differs by. */
 export function pointName(labels: PointTally["labels"]): string {
   const parts = Object.entries(labels).map(([path, value]) =>
-    path === "variant" ? say(value) : `${path.split(".").at(-1)?.replaceAll("_", " ")} ${say(value)}`,
+    path === "variant" ? labelText(value) : `${path.split(".").at(-1)?.replaceAll("_", " ")} ${labelText(value)}`,
   );
   return parts.join(", ") || "all runs";
 }

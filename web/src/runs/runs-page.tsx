@@ -1,4 +1,4 @@
-import { useCallback } from "react";
+import { useCallback, useEffect, useRef } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/use-answer";
 import { EmptyState } from "../ui/empty-state";
@@ -25,6 +25,11 @@ export function RunsPage() {
   );
   const [chosen, choose] = useChosen();
   const job = value?.find((one) => one.kind === chosen?.kind && one.id === chosen.id);
+  const detail = useRef<HTMLElement>(null);
+  // Where the result stands below the list it comes into view when it is chosen.
+  useEffect(() => {
+    if (chosen?.id) detail.current?.scrollIntoView({ block: "nearest" });
+  }, [chosen?.id]);
   const started = useCallback(
     (next: Parameters<typeof choose>[0]) => {
       choose(next);
@@ -50,7 +55,7 @@ export function RunsPage() {
           )
         )}
       </section>
-      <section className={styles.detail} aria-label="Result">
+      <section ref={detail} className={styles.detail} aria-label="Result">
         {job?.kind === "run" ? (
           <RunDetail key={job.id} run={job.run} />
         ) : job?.kind === "campaign" ? (

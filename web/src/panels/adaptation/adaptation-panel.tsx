@@ -19,6 +19,7 @@ import { AXIS_PX, gutter, paintStrips, RIGHT_PX, STRIP_PX } from "./paint-strips
 export function AdaptationPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const controller = useBench((s) => s.bench?.controller);
+  const controllers = useBench((s) => s.bench?.controllers);
   const parameters = useBench((s) => s.bench?.parameters);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const { blocks } = useCatalog();
@@ -34,7 +35,8 @@ export function AdaptationPanel() {
   const unit =
     units.find((u) => u.block === wanted) ??
     units.find((u) => u.block === controller) ??
-    units.find((u) => u.strips[0]);
+    units.find((u) => controllers?.includes(u.block)) ??
+    units[0];
   const names = useMemo(() => unit?.strips.flatMap(signalsOf) ?? [], [unit]);
   const paint = useMemo(() => {
     const columnOf = new Map(names.map((name, i) => [name, i]));

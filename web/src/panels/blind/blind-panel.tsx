@@ -1,5 +1,5 @@
 import { Button, Radio, Slider } from "@mantine/core";
-import { useEffect, useState } from "react";
+import { useState } from "react";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent } from "../../ui/format";
@@ -19,9 +19,6 @@ export function BlindPanel() {
   const { hidden, last, attempts } = useGame();
   const [seed, setSeed] = useState(1);
   const list = Object.values((parameters?.diagnosers ?? {}) as Banks).find((bank) => bank.hypotheses)?.hypotheses;
-  useEffect(() => {
-    if (hidden && bench && hidden.bench !== bench) giveUp();
-  }, [hidden, bench]);
   if (!bench || !list)
     return (
       <EmptyState title="Nothing to find on this bench">
@@ -111,9 +108,9 @@ function Outcome() {
       </p>
       <p className={styles.advice}>
         You said {last.said} with {formatPercent(last.confidence, 0)}
-        {last.tookMs > 0
+        {last.tookMs !== null
           ? `, ${formatNumber(last.tookMs, 1)} ms of device time after the fault`
-          : ", before any fault came"}
+          : ", and no fault had come"}
         .{" "}
         {Object.entries(last.verdicts)
           .map(([id, verdict]) => `${id.replaceAll("_", " ")} said ${verdict}`)

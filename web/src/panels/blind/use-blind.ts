@@ -1,6 +1,7 @@
 import { create } from "zustand";
 import { send } from "../../app/send";
 import { useView } from "../../app/view-store";
+import { useBench } from "../../stream/bench-store";
 import { liftVeil, stream } from "../../stream/stream";
 import { veil } from "../../stream/veil";
 import { jump } from "../../ui/jump";
@@ -13,15 +14,23 @@ export interface Attempt {
   confidence: number;
   truth: string;
   points: number;
-  /** Device time from the fault to the answer; 0 for none hidden. */
-  tookMs: number;
+  /** Device time from the fault to the answer; null if none had come. */
+  tookMs: number | null;
   /** What the diagnosers said at that moment. */
   verdicts: Record<string, string>;
 }
 
+interface Hidden {
+  seed: number;
+  bench: string;
+  hypothesis: Hypothesis;
+  /** When it is to come, and when it came. */
+  dueTick: number;
+  came?: number;
+}
+
 interface Game {
-  /** What is hidden now, and when it comes. */
-  hidden: { seed: number; bench: string; answer: string; dueTick: number; came: number | undefined } | undefined;
+  hidden: Hidden | undefined;
   last: Attempt | undefined;
   attempts: Attempt[];
   faultTick: number | undefined;
@@ -30,35 +39,41 @@ interface Game {
 export const useGame = create<Game>(() => ({ hidden: undefined, last: undefined, attempts: [], faultTick: undefined }));
 
 const LOOK_MS = 50;
+/** A page that is loaded again goes on with the game. */
+const STORED = "combbench.hidden";
 let waiting: ReturnType<typeof setInterval> | undefined;
 
 /** Heal the device, draw the veil, and let the seed's fault come when nobody expects it. */
 export async function hide(bench: string, seed: number, hypotheses: Hypothesis[], dtMs: number): Promise<void> {
   const names = hypotheses.map((h) => h.name);
   const { answer, delayTicks } = hiddenFault(seed, names, dtMs);
-  const chosen = hypotheses.find((h) => h.name === answer);
-  if (!chosen || !(await send({ kind: "heal", faults: "all" }))) return;
-  veil.drop();
-  useView.setState({ blind: true, sample: undefined });
-  const dueTick = stream.client.head.tick + delayTicks;
-  useGame.setState({
-    hidden: { seed, bench, answer, dueTick, came: undefined },
-    last: undefined,
-    faultTick: undefined,
-  });
+  const hypothesis = hypotheses.find((h) => h.name === answer);
+  if (!hypothesis || !(await send({ kind: "heal", faults: "all" }))) return;
   jump.to("live");
-  clearInterval(waiting);
-  waiting = setInterval(() => stream.client.head.tick >= dueTick && void come(chosen), LOOK_MS);
+  begin({ seed, bench, hypothesis, dueTick: stream.client.head.tick + delayTicks });
   await send({ kind: "start" });
 }
 
-/** Let the hidden fault act. */
-async function come(hypothesis: Hypothesis): Promise<void> {
+function begin(hidden: Hidden): void {
+  veil.drop();
+  useView.setState({ blind: true, sample: undefined });
+  useGame.setState({ hidden, last: undefined, faultTick: undefined });
+  sessionStorage.setItem(STORED, JSON.stringify(hidden));
   clearInterval(waiting);
-  const tick = stream.client.head.tick;
-  for (const command of faultsOf(hypothesis)) if (!(await send(command))) return giveUp();
-  const { hidden } = useGame.getState();
-  if (hidden) useGame.setState({ hidden: { ...hidden, came: tick } });
+  if (hidden.came !== undefined) return;
+  waiting = setInterval(() => {
+    if (stream.client.head.tick >= hidden.dueTick) void come(hidden);
+  }, LOOK_MS);
+}
+
+/** Let the hidden fault act. */
+async function come(hidden: Hidden): Promise<void> {
+  clearInterval(waiting);
+  const now = { ...hidden, came: stream.client.head.tick };
+  for (const command of faultsOf(hidden.hypothesis)) if (!(await send(command))) return giveUp();
+  if (!useGame.getState().hidden) return;
+  useGame.setState({ hidden: now });
+  sessionStorage.setItem(STORED, JSON.stringify(now));
 }
 
 /** Take an answer, lift the veil and count. */
@@ -71,21 +86,21 @@ export function commit(
   if (!hidden) return;
   const { came } = hidden;
   const healthy = hypotheses.find((h) => faultsOf(h).length === 0)?.name ?? "none of these";
-  const truth = came === undefined ? healthy : hidden.answer;
+  const truth = came === undefined ? healthy : hidden.hypothesis.name;
   const attempt: Attempt = {
     seed: hidden.seed,
     said,
     confidence,
     truth,
     points: points(said === truth, confidence, hypotheses.length),
-    tookMs: came === undefined ? 0 : (stream.client.head.tick - came) * dtMs,
+    tookMs: came === undefined || truth === healthy ? null : (stream.client.head.tick - came) * dtMs,
     verdicts,
   };
   useGame.setState({
     hidden: undefined,
     last: attempt,
     attempts: [...attempts, attempt],
-    faultTick: came ? hidden.tick : undefined,
+    faultTick: truth === healthy ? undefined : came,
   });
   reveal();
 }
@@ -98,6 +113,14 @@ export function giveUp(): void {
 
 function reveal(): void {
   clearInterval(waiting);
+  sessionStorage.removeItem(STORED);
   useView.setState({ blind: false });
   liftVeil();
 }
+
+const stored = sessionStorage.getItem(STORED);
+if (stored) begin(JSON.parse(stored) as Hidden);
+useBench.subscribe(({ bench }) => {
+  const { hidden } = useGame.getState();
+  if (hidden && bench && bench.id !== hidden.bench) giveUp();
+});

@@ -3,6 +3,7 @@ import { IconWaveSine } from "@tabler/icons-react";
 import { useMemo } from "react";
 import type { Signal } from "../../api/types";
 import { addScope } from "../../app/layouts";
+import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { useLiveValues } from "../schematic/use-live-values";
 import styles from "./card.module.css";
@@ -14,7 +15,14 @@ const MOST = 24;
 /** What a block puts out and what goes on inside it, as numbers now. */
 export function LiveValues({ instance }: { instance: Instance }) {
   const signals = useBench((s) => s.bench?.signals);
-  const own = useMemo(() => ownSignals(instance, signals ?? []).slice(0, MOST), [instance, signals]);
+  const blind = useView((s) => s.blind);
+  const own = useMemo(
+    () =>
+      ownSignals(instance, signals ?? [])
+        .filter(({ block }) => !(blind && block.endsWith(".score")))
+        .slice(0, MOST),
+    [instance, signals, blind],
+  );
   const shown = useMemo(() => Object.fromEntries(own.map((s) => [s.name, s.name])), [own]);
   const live = useLiveValues(shown);
   if (own.length === 0) return null;
@@ -36,19 +44,17 @@ export function LiveValues({ instance }: { instance: Instance }) {
           Open in a scope
         </Button>
       </header>
-      <table>
-        <tbody>
-          {own.map((signal) => (
-            <tr key={signal.name} title={signal.name}>
-              <th scope="row">
-                {bare(signal)}
-                <small>{signal.meaning}</small>
-              </th>
-              <td ref={live(signal.name)} />
-            </tr>
-          ))}
-        </tbody>
-      </table>
+      <dl>
+        {own.map((signal) => (
+          <div key={signal.name} title={`${signal.name}: ${signal.meaning}`}>
+            <dt>
+              {bare(signal)}
+              <small>{signal.meaning}</small>
+            </dt>
+            <dd ref={live(signal.name)} />
+          </div>
+        ))}
+      </dl>
     </section>
   );
 }

@@ -63,6 +63,7 @@ export function SensorChoice() {
             <Switch
               key={b.name}
               size="xs"
+              mb={6}
               label={b.title}
               checked={always(b.name)}
               onChange={(event) =>

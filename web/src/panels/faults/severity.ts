@@ -1,5 +1,6 @@
 import type { Parameter } from "../../api/types";
 import { formatNumber } from "../../ui/format";
+import { unitText } from "../../ui/unit-scale";
 
 export interface SeverityScale {
   /** The severity parameter is a share, shown in percent. */
@@ -29,5 +30,8 @@ export function severityScale(parameter: Parameter | undefined, suggested: numbe
 export function severityText(value: number, scale: SeverityScale, unit: string): string {
   const shown = scale.percent ? value * 100 : value;
   const text = formatNumber(shown, Math.abs(shown) < 10 && shown % 1 !== 0 ? 1 : 0);
-  return `${value > 0 ? "+" : ""}${text}\u00a0${scale.percent ? "%" : unit}`;
+  return `${value > 0 ? "+" : ""}${text}\u00a0${scale.percent ? "%" : plural(unitText(unit), shown)}`;
 }
+
+/** Units that are words have a plural. */
+const plural = (unit: string, count: number) => (/^[a-z]{4,}$/.test(unit) && Math.abs(count) !== 1 ? `${unit}s` : unit);

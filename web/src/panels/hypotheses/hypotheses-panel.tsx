@@ -113,19 +113,23 @@ export function HypothesesPanel() {
           {wrong}
         </p>
       )}
-      <HypothesisTable list={list} onChange={(next) => setDrafts({ ...drafts, [key]: next })} />
-      <h2 className={styles.heading}>Which of them coincide under this drive?</h2>
-      {refused && (
-        <p role="alert" className={styles.wrong}>
-          {refused.body.message}. {refused.body.hint}
-        </p>
-      )}
-      {answer && !refused && (
-        <>
-          <AliasPlot report={answer} />
-          <AliasWords report={answer} />
-        </>
-      )}
+      <div className={styles.halves}>
+        <HypothesisTable list={list} onChange={(next) => setDrafts({ ...drafts, [key]: next })} />
+        <div>
+          <h2 className={styles.heading}>Which of them coincide under this drive?</h2>
+          {refused && (
+            <p role="alert" className={styles.wrong}>
+              {refused.body.message}. {refused.body.hint}
+            </p>
+          )}
+          {answer && !refused && (
+            <>
+              <AliasPlot report={answer} />
+              <AliasWords report={answer} />
+            </>
+          )}
+        </div>
+      </div>
     </section>
   );
 }

@@ -24,7 +24,7 @@ it("sets what is true beside what a bank assumes", () => {
   const labs = labsOf({ parameters }, "kalman", block);
   expect(labs.map((l) => l.name)).toEqual(["What is true", "What it assumes"]);
   expect(labs[0].knobs).toMatchObject([{ path: "sensor.noise_um", value: 0.05 }]);
-  expect(labs[1].knobs[0]).toMatchObject({ path: "diagnosers.kalman.assumed_noise_scale", value: 4, original: 1 });
+  expect(labs[1].knobs[0]).toMatchObject({ path: "diagnosers.kalman.assumed_noise_scale", value: 4 });
 });
 
 it("gives one that forgets its factor, and leaves out what cannot change live", () => {

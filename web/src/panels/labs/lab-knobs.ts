@@ -6,7 +6,6 @@ export interface LabKnob {
   label: string;
   unit: string;
   value: number;
-  original: number;
   low: number;
   high: number;
   minimum: number | null;
@@ -68,7 +67,6 @@ export function labsOf(bench: Pick<Bench, "parameters">, id: string, block: Bloc
         ...range,
         unit: parameter.unit,
         value,
-        original: typeof parameter.default === "number" ? parameter.default : value,
         minimum: parameter.minimum,
         maximum: parameter.maximum,
       },

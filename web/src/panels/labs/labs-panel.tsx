@@ -1,21 +1,22 @@
 import { Button, NativeSelect } from "@mantine/core";
-import { useState } from "react";
+import { useRef, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
-import { actions } from "../../app/actions";
 import { send } from "../../app/send";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent } from "../../ui/format";
 import { Knob } from "../../ui/knob";
-import { type LabKnob, labsOf, memorySamples } from "./lab-knobs";
+import { type Lab, type LabKnob, labsOf, memorySamples } from "./lab-knobs";
 import styles from "./labs.module.css";
 
 /** Noise lab and lambda lab: make a diagnoser's assumptions wrong on purpose and watch what it costs. */
 export function LabsPanel() {
   const parameters = useBench((s) => s.bench?.parameters);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
+  const bench = useBench((s) => s.bench?.id);
   const { block } = useCatalog();
+  const began = useRef<{ bench: string | undefined; values: Record<string, number> }>({ bench, values: {} });
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const own = (parameters?.diagnosers ?? {}) as Record<string, unknown>;
   const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length && id in own ? [id] : []));
@@ -27,6 +28,8 @@ export function LabsPanel() {
       </EmptyState>
     );
   const labs = labsOf({ parameters }, id, block);
+  if (began.current.bench !== bench) began.current = { bench, values: {} };
+  for (const { path, value } of labs.flatMap((lab) => lab.knobs)) began.current.values[path] ??= value;
   return (
     <section className={styles.panel} aria-label="Labs">
       <div className={styles.bar}>
@@ -37,7 +40,12 @@ export function LabsPanel() {
           data={ids.map((name) => ({ value: name, label: name.replaceAll("_", " ") }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
-        <Button size="compact-sm" variant="default" onClick={actions.reset} title="Reset the bench; the values stay">
+        <Button
+          size="compact-sm"
+          variant="default"
+          title="Begin again at tick 0; what is set here stays"
+          onClick={() => void send({ kind: "reset", values: kept(labs) }, "Counting afresh")}
+        >
           Count afresh
         </Button>
       </div>
@@ -48,7 +56,7 @@ export function LabsPanel() {
             <h2>{lab.name}</h2>
             <p>{lab.advice}</p>
             {lab.knobs.map((knob) => (
-              <Turn key={knob.path} knob={knob} />
+              <Turn key={knob.path} knob={knob} original={began.current.values[knob.path]} />
             ))}
           </section>
         ))}
@@ -57,7 +65,11 @@ export function LabsPanel() {
   );
 }
 
-function Turn({ knob }: { knob: LabKnob }) {
+/** The values of every knob, to be kept over a reset. */
+const kept = (labs: Lab[]): Record<string, number> =>
+  Object.fromEntries(labs.flatMap((lab) => lab.knobs.map(({ path, value }) => [path, value])));
+
+function Turn({ knob, original }: { knob: LabKnob; original: number }) {
   const { path, log, value, ...rest } = knob;
   const memory = path.endsWith(".forgetting") ? memorySamples(value) : undefined;
   return (
@@ -66,6 +78,7 @@ function Turn({ knob }: { knob: LabKnob }) {
       log={log}
       step={0}
       value={value}
+      original={original}
       {...(memory === undefined
         ? {}
         : { note: Number.isFinite(memory) ? `remembers ${formatNumber(memory, 1)} samples` : "remembers everything" })}

@@ -11,6 +11,8 @@ export interface PhasePicture {
   x: { range: Range; scale: UnitScale; name: string };
   y: { range: Range; scale: UnitScale; name: string };
   points: { x: Float32Array; y: Float32Array };
+  /** The point under the pointer of another panel. */
+  hovered: number | undefined;
   map: UnstableRegion | undefined;
   /** Which parts of the map lie beneath these signals. */
   fits: { folds: boolean; boundary: boolean };
@@ -69,6 +71,13 @@ export function paintPhase(ctx: CanvasRenderingContext2D, picture: PhasePicture)
   ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
   ctx.clip();
   paintTrail(ctx, picture, px, py);
+  if (picture.hovered !== undefined) {
+    ctx.strokeStyle = ink.accent;
+    ctx.lineWidth = 2;
+    ctx.beginPath();
+    ctx.arc(px(picture.points.x[picture.hovered]), py(picture.points.y[picture.hovered]), 6, 0, 2 * Math.PI);
+    ctx.stroke();
+  }
   ctx.restore();
 }
 

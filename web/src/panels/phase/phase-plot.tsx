@@ -7,6 +7,7 @@ import { middles } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
+import { hover } from "../../ui/hover";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
 import { useCanvas } from "../../ui/use-canvas";
@@ -37,6 +38,7 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
   const { canvas, size } = useCanvas();
   const points = useRef({ x: new Float32Array(0), y: new Float32Array(0) });
   const ranges = useRef<{ x: Range | undefined; y: Range | undefined }>({ x: undefined, y: undefined });
+  const shown = useRef<{ start: number; end: number } | undefined>(undefined);
   const dirty = useRef(true);
 
   const subscription = useMemo<Subscription | undefined>(() => {
@@ -46,6 +48,7 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
   }, [names, windowMs, dtMs]);
 
   useFeed(subscription, (frame) => {
+    shown.current = { start: frame.startTick, end: frame.endTick };
     points.current = { x: middles(frame, 0), y: middles(frame, frame.signals - 1) };
     dirty.current = true;
   });
@@ -55,6 +58,14 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
     ranges.current = { x: undefined, y: undefined };
     dirty.current = true;
   }, [x, y, map]);
+
+  useEffect(
+    () =>
+      hover.listen(() => {
+        dirty.current = true;
+      }),
+    [],
+  );
 
   useEffect(() => {
     if (!visible) return;
@@ -82,6 +93,7 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
         x: { range: across, scale: unitScale(first.unit, largest(across)), name: words(first.name) },
         y: { range: up, scale: unitScale(second.unit, largest(up)), name: words(second.name) },
         points: points.current,
+        hovered: hoveredColumn(shown.current, points.current.x.length),
         map,
         fits,
         colour: second.name === "plant.velocity" ? first.colour : second.colour,
@@ -105,3 +117,10 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
 
 const largest = ([low, high]: Range) => Math.max(Math.abs(low), Math.abs(high));
 const words = (name: string) => name.replaceAll("_", " ").replace(".", " ");
+
+/** The column of the tick under the pointer of any panel, if this one shows it. */
+function hoveredColumn(span: { start: number; end: number } | undefined, columns: number): number | undefined {
+  if (!span || hover.tick === undefined) return undefined;
+  const at = Math.floor(((hover.tick - span.start) / (span.end - span.start)) * columns);
+  return at >= 0 && at < columns ? at : undefined;
+}

@@ -1,5 +1,5 @@
 import { ActionIcon, NativeSelect } from "@mantine/core";
-import { IconRuler2 } from "@tabler/icons-react";
+import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { formatSi } from "../../ui/format";
 import styles from "./scope.module.css";
@@ -39,16 +39,18 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
         <button
           type="button"
           className={styles.toggle}
+          aria-label="Trigger"
           aria-pressed={config.mode === "triggered"}
           title={config.mode === "triggered" ? "Let the picture roll again" : "Hold the picture at an edge of a signal"}
           onClick={() => onChange({ ...config, mode: config.mode === "triggered" ? "roll" : "triggered" })}
         >
-          Trigger
+          <IconWaveSquare size={15} aria-hidden="true" />
+          <span>Trigger</span>
         </button>
         <NativeSelect
           size="xs"
           aria-label="Time window"
-          w={84}
+          w={78}
           value={String(config.windowMs)}
           data={windows.map((ms) => ({
             value: String(ms),

@@ -2,7 +2,7 @@ import { ActionIcon, Button, NativeSelect } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
-import type { Account } from "../../api/types";
+import type { Account, ApiErrorBody } from "../../api/types";
 import { useAsked } from "../../api/use-asked";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
@@ -93,7 +93,7 @@ export function WhyPanel() {
         </Button>
       </div>
       {refusal && (
-        <EmptyState title={`${refusal.body.message}.`} action={latest}>
+        <EmptyState title={inWords(refusal.body, sample.tick)} action={latest}>
           {refusal.body.hint || "Choose another sample, or another diagnoser."}
         </EmptyState>
       )}
@@ -101,6 +101,10 @@ export function WhyPanel() {
     </section>
   );
 }
+
+/** A refusal as a sentence: what is said of the tick is said of this sample. */
+const inWords = ({ field, message }: ApiErrorBody, tick: number): string =>
+  field === "tick" ? `Sample ${tick} ${message}.` : `${message.charAt(0).toUpperCase()}${message.slice(1)}.`;
 
 function Explained({ account, waiting }: { account: Account; waiting: boolean }) {
   const [name, setName] = useState<string | undefined>(undefined);
