@@ -46,7 +46,6 @@ FIRST_TRUTH = len(SLIDING_INPUTS)
 OWN_VOLTAGE = FIRST_TRUTH + len(TRUTH)
 TAPS = OWN_VOLTAGE + 1
 ESTIMATES = TAPS + len(SLIDING_TAPS)
-LARGEST = 1e300
 LABELS = ("gain", "a2", "a1")
 HUGE = 1e9
 """What an estimate that runs away without its normaliser is kept below, so that it stays a number."""
@@ -97,9 +96,8 @@ def stvsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
             missing = s[THETA + i] - w[truth + i]
             lyapunov += missing * missing / weight
     w[io[ESTIMATES + 2]] = error
-    # as printed the estimator may run away; its squares leave the range of numbers long before it does itself
-    w[io[ESTIMATES + 3]] = min(lyapunov / p[ESTIMATOR_GAIN], LARGEST)
-    w[io[ESTIMATES + 4]] = max(-2.0 * error * error / den, -LARGEST)
+    w[io[ESTIMATES + 3]] = lyapunov / p[ESTIMATOR_GAIN]
+    w[io[ESTIMATES + 4]] = -2.0 * error * error / den
 
 
 class Stvsc(Block):

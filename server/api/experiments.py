@@ -16,7 +16,6 @@ from core.board.flops import Budget, budget
 from core.device.frequency import response
 from core.device.identification import Identified
 from core.units import UM_PER_M
-from scenarios.design import device_figures
 from scenarios.plant_cost import plant_costs
 from scenarios.sweep_sine import sweep_sine
 from scenarios.unstable_region import unstable_region
@@ -68,7 +67,7 @@ class Identification(BaseModel):
 
     tick: int
     found: Identified
-    nominal: dict[str, float]
+    nominal: dict[str, float] = Field(description="Figures of the device in the air of the catalogue, without faults")
     tones: list[MeasuredTone]
     curve: FittedCurve
 
@@ -160,7 +159,7 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
     sweep = sweep_sine(board, **body.model_dump(), most_ticks=MOST_TICKS)
     force = board.spec.device.signed_force_n_per_v
     sign = 1.0 if force > 0.0 else -1.0
-    found, nominal = sweep.found, device_figures(board.spec)
+    found, nominal = sweep.found, board.spec.device.metrics()
     grid = np.geomspace(sweep.tones[0].frequency_hz, sweep.tones[-1].frequency_hz, CURVE_POINTS)
     unit = abs(force) * UM_PER_M
     own = response(found.mass_kg, found.damping_ns_m, found.stiffness_n_m, grid) * unit

@@ -93,6 +93,9 @@ def rescue(path: Path) -> int:
         if path.with_suffix(PART).exists():
             return convert(path)
         return int(pq.read_metadata(path).num_rows)
+    except pa.ArrowInvalid:  # not even what it is about has reached the disk
+        path.with_suffix(PART).unlink(missing_ok=True)
+        return 0
     except (OSError, pa.ArrowException):
         return 0
 

@@ -25,7 +25,7 @@ test("cursors and figures are those of the sine that is played, and the picture 
   // 25 of 100 of a window of 4 ms
   await expect(figures.getByText("1.000 ms")).toBeVisible();
   await expect(figures.getByText("1.000 kHz")).toBeVisible();
-  await page.keyboard.press(".");
+  await page.getByRole("button", { name: "Pause" }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 

@@ -14,7 +14,7 @@ import pytest
 from scipy.io import loadmat
 
 from server.bench.recorder import Recorder
-from server.store.recording import RecordingFile, convert
+from server.store.recording import RecordingFile, convert, rescue
 from server.store.traces import MEDIA_TYPES, schema_of, table_of, write
 
 DT = 0.01
@@ -90,6 +90,13 @@ def test_what_a_crash_cuts_off_anywhere_is_recovered(tmp_path: Path, share: floa
         return
     assert convert(path) == 3 * whole
     assert pq.read_table(path)["tick"].to_pylist() == list(range(3 * whole))
+
+
+@pytest.mark.parametrize("left", [b"", b"\xff\xff\xff\xff"])
+def test_a_stream_that_says_nothing_is_not_kept_for_ever(tmp_path: Path, left: bytes) -> None:
+    path = tmp_path / "r.parquet"
+    path.with_suffix(".arrows").write_bytes(left)
+    assert rescue(path) == 0 and list(tmp_path.iterdir()) == []
 
 
 class Ends:

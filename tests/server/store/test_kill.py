@@ -96,7 +96,7 @@ def test_a_server_killed_while_it_records_loses_a_second_at_most(tmp_path: Path,
             assert last is not None
             lost.append(check(served, *last, expected))
             rows = served.http.get("/api/v1/recordings").json()["recordings"]
+    print(f"{times} kills, ticks lost at most {max(lost)} of {PER_SECOND} a second")
     assert len(rows) == times == len(lost)
     left = {path.suffix for path in (data / "recordings").iterdir()}
     assert left <= {".parquet"}, "nothing half made is left behind"
-    print(f"{times} kills, ticks lost at most {max(lost)} of {PER_SECOND} a second")

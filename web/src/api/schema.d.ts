@@ -2148,7 +2148,10 @@ export interface components {
             /** Tick */
             tick: number;
             found: components["schemas"]["Identified"];
-            /** Nominal */
+            /**
+             * Nominal
+             * @description Figures of the device in the air of the catalogue, without faults
+             */
             nominal: {
                 [key: string]: number;
             };

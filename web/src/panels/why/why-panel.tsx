@@ -103,8 +103,10 @@ export function WhyPanel() {
 }
 
 /** A refusal as a sentence: what is said of the tick is said of this sample. */
-const inWords = ({ field, message }: ApiErrorBody, tick: number): string =>
-  field === "tick" ? `Sample ${tick} ${message}.` : `${message.charAt(0).toUpperCase()}${message.slice(1)}.`;
+function inWords({ field, message }: ApiErrorBody, tick: number): string {
+  const said = message.replace(`${field}: `, "");
+  return field === "tick" ? `Sample ${tick} ${said}.` : `${said.charAt(0).toUpperCase()}${said.slice(1)}.`;
+}
 
 function Explained({ account, waiting }: { account: Account; waiting: boolean }) {
   const [name, setName] = useState<string | undefined>(undefined);
