@@ -13,7 +13,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from statistics import fmean
 from typing import Any, Protocol
 
-from scenarios.executor import LOST, open_executor
+from scenarios.executor import LOST, open_executor, submit, width_of
 from scenarios.key import code_version
 from scenarios.outcome import outcome
 from scenarios.schema import Scenario
@@ -149,9 +149,9 @@ class Campaign:
         lost: BaseException | None = None
         while (waiting and not self._is_cancelled) or pending:
             try:
-                width = self._width(executor)
+                width = width_of(executor, self._workers)
                 while waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * width:
-                    pending.add(executor.submit(compute, self._batch(waiting, width), code_version()))
+                    pending.add(submit(executor, compute, self._batch(waiting, width), code_version()))
             except LOST as error:
                 lost = error
             done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)
@@ -182,8 +182,3 @@ class Campaign:
         for key, _ in found:
             self._left.pop(key, None)
         self._on_progress(self.done, self.total)
-
-    def _width(self, executor: Executor) -> int:
-        """Return how many batches are computed at once."""
-        client = getattr(executor, "_client", None)
-        return max(1, sum(client.nthreads().values())) if client is not None else self._workers

@@ -8,11 +8,14 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Executor, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from typing import Any, TypeVar
 
 from core.errors import InputError
+
+T = TypeVar("T")
 
 CONNECT_S = 5.0
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
@@ -56,6 +59,39 @@ def _cluster(address: str) -> Iterator[Executor]:
         executor.shutdown(wait=False)
     finally:
         client.close(timeout=CONNECT_S)
+
+
+def width_of(executor: Executor, workers: int) -> int:
+    """Return how many batches are computed at once: the threads of a cluster, or the processes of the pool.
+
+    Raises
+    ------
+    OSError
+        When the scheduler is gone.
+    """
+    client = getattr(executor, "_client", None)
+    if client is None:
+        return workers
+    try:
+        return max(1, int(sum(client.nthreads().values())))
+    except AttributeError as error:  # a client that lost its scheduler has none to ask
+        raise ConnectionError(f"the client of the scheduler is {client.status}") from error
+
+
+def submit(executor: Executor, function: Callable[..., T], *arguments: Any) -> Future[T]:
+    """Hand over a piece of work.
+
+    Raises
+    ------
+    OSError
+        When the scheduler is gone.
+    """
+    try:
+        return executor.submit(function, *arguments)
+    except Exception as error:
+        if type(error).__name__ == "ClosedClientError":  # of a package that is loaded only for a cluster
+            raise ConnectionError(str(error)) from error
+        raise
 
 
 def prepare(niceness: int = 0) -> None:
