@@ -14,8 +14,11 @@ test("a run is started from the page, and its files are offered", async ({ page,
   await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("0.06");
   await page.getByRole("button", { name: "Run", exact: true }).click();
   const result = page.getByRole("region", { name: "Result" });
-  await expect(result.getByText("Expectations")).toBeVisible({ timeout: 60_000 });
+  await expect(page).toHaveURL(/[?&]run=/);
   const id = new URL(page.url()).searchParams.get("run");
+  const state = () => server.ask<{ state: string }>("GET", `/runs/${id}`).then((found) => found.state);
+  await expect.poll(state, { timeout: 60_000 }).toBe("done");
+  await expect(result.getByText("Expectations")).toBeVisible();
   const run = await server.ask<{ summary: { digest: string } }>("GET", `/runs/${id}`);
   await expect(result.getByText(run.summary.digest)).toBeVisible();
   for (const format of ["CSV", "PARQUET", "NPZ", "MAT"]) {
@@ -49,8 +52,8 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   const rows = result.getByRole("table").first().locator("tbody tr");
   await expect(rows).toHaveCount(2);
   await expect(rows.first()).toContainText("0.05");
-  await result.getByRole("button", { name: "sensor.noise_um" }).click();
-  await result.getByRole("button", { name: "sensor.noise_um" }).click();
+  await result.getByRole("button", { name: "noise um" }).click();
+  await result.getByRole("button", { name: "noise um" }).click();
   await expect(rows.first()).toContainText("0.2");
   await expect(result.getByRole("img", { name: /Receiver operating characteristic/ })).toBeVisible();
   await expect(result.getByRole("img", { name: /Detection delay/ })).toBeVisible();
