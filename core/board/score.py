@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from core.block import TICK, Block, Context, FloatArray, Port
 from core.diagnose.hypothesis import BankParams
+from core.diagnose.weights import likeliest
 
 HELD = 20.0
 """Right verdicts in a row that count as recognised."""
@@ -24,11 +25,9 @@ CONFUSION = DELAYS + STEPS
 def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Name the winner and the truth, and count."""
     n = int(p[COUNT])
-    winner = 0
+    winner = likeliest(w, io[PROBABILITY], n)
     truth = -1
     for i in range(n):
-        if w[io[PROBABILITY] + i] > w[io[PROBABILITY] + winner]:
-            winner = i
         a = FACTORS + 4 * i
         if (
             truth < 0

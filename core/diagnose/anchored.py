@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, kernel, parameter, settled
-from core.diagnose.arx import COUNT, HALF_LOG, LANES, OWN, PROBABILITY, VARIANCE, WIDTH, ArxBank, ArxParams, regress
-from core.diagnose.weights import weigh
+from core.diagnose.arx import COUNT, LANES, OWN, PROBABILITY, WIDTH, ArxBank, ArxParams, judge, regress
+from core.diagnose.weights import floored, weigh
 
 FORGETTING, ANCHOR, FLOOR, LOG_FLOOR = range(4)
 """Parameters of its own."""
 H, INFORMATION, TARGET, FACTOR, RIGHT, LOG = OWN, OWN + 4, OWN + 14, OWN + 18, OWN + 28, OWN + 32
 """State: regressor, sums of h h' and of h z, factors of the matrix, a right-hand side; then logarithms."""
-RESIDUAL_TAP, NIS_TAP = PROBABILITY + 1, PROBABILITY + 2
 
 
 @kernel
@@ -69,12 +68,7 @@ def anchored_step(p: Any, s: Any, w: Any, io: Any) -> None:
         pull = s[RIGHT] * p[at] + s[RIGHT + 1] * p[at + n]
         pull += s[RIGHT + 2] * p[at + 2 * n] + s[RIGHT + 3] * p[at + 3 * n]
         residual = common - anchor * pull
-        nis = residual * residual / p[LANES + VARIANCE * n + i]
-        w[io[RESIDUAL_TAP] + i] = residual
-        w[io[NIS_TAP] + i] = nis
-        log = s[LOG + i] - 0.5 * nis - p[LANES + HALF_LOG * n + i]
-        s[LOG + n + i] = log
-        best = max(best, log)
+        best = max(best, judge(p, s, w, io, LOG, i, n, residual))
     weigh(s, LOG, LOG + n, w, io[PROBABILITY], n, best, p[own + FLOOR], p[own + LOG_FLOOR])
     forgetting = p[own + FORGETTING]
     for i in range(4):
@@ -111,8 +105,7 @@ class Anchored(ArxBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
-        own = [params.forgetting, params.anchor, floor, math.log(floor) if floor > 0 else 0.0]
+        own = [params.forgetting, params.anchor, *floored(params.probability_floor)]
         return np.array(cls.equations_of(params, context) + own)
 
     @classmethod

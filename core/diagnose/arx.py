@@ -21,7 +21,7 @@ THETA, VARIANCE, HALF_LOG, WIDTH = 0, 4, 5, 6
 """Lanes of the parameters: the four coefficients, the variance of the equation error, half its logarithm."""
 LAST_CHARGE, U1, U2, Z1, Z2, OWN = range(6)
 """State of every bank: the charge, and the two samples before of voltage and measurement, behind the filter."""
-MEASURED, MIDDLE, CHARGE, PROBABILITY = range(4)
+MEASURED, MIDDLE, CHARGE, PROBABILITY, RESIDUAL_TAP, NIS_TAP = range(6)
 """Ports of every bank."""
 SIZE = 4
 """Number of coefficients."""
@@ -66,6 +66,26 @@ def said(p: Any, s: Any, h: int, i: int, n: int) -> float:
     """Return what hypothesis i makes of the regressor."""
     at = LANES + i
     return float(s[h] * p[at] + s[h + 1] * p[at + n] + s[h + 2] * p[at + 2 * n] + s[h + 3] * p[at + 3 * n])
+
+
+@kernel
+def unexplained(s: Any, z: float, h: int, theta: int) -> float:
+    """Return what coefficients kept at ``theta`` of the state do not explain of ``z``."""
+    residual = z
+    for j in range(SIZE):
+        residual -= s[h + j] * s[theta + j]
+    return float(residual)
+
+
+@kernel
+def judge(p: Any, s: Any, w: Any, io: Any, log: int, i: int, n: int, residual: float) -> float:
+    """Show the residual of hypothesis i; write and return the logarithm it leaves it with, from that at ``log``."""
+    nis = residual * residual / p[LANES + VARIANCE * n + i]
+    w[io[RESIDUAL_TAP] + i] = residual
+    w[io[NIS_TAP] + i] = nis
+    left = s[log + i] - 0.5 * nis - p[LANES + HALF_LOG * n + i]
+    s[log + n + i] = left
+    return float(left)
 
 
 class ArxParams(BankParams):

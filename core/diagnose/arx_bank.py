@@ -10,22 +10,20 @@ import numpy as np
 from core.block import Context, Equation, FloatArray, parameter
 from core.diagnose.arx import (
     COUNT,
-    HALF_LOG,
     LANES,
     OWN,
     PROBABILITY,
-    VARIANCE,
     WIDTH,
     ArxBank,
     ArxParams,
+    judge,
     regress,
     said,
 )
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, weigh
 
 FLOOR, LOG_FLOOR = range(2)
 H, LOG = OWN, OWN + 4
-RESIDUAL_TAP, NIS_TAP = PROBABILITY + 1, PROBABILITY + 2
 
 
 def arx_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -36,12 +34,7 @@ def arx_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
     best = -math.inf
     for i in range(n):
         residual = z - said(p, s, H, i, n)
-        nis = residual * residual / p[LANES + VARIANCE * n + i]
-        w[io[RESIDUAL_TAP] + i] = residual
-        w[io[NIS_TAP] + i] = nis
-        log = s[LOG + i] - 0.5 * nis - p[LANES + HALF_LOG * n + i]
-        s[LOG + n + i] = log
-        best = max(best, log)
+        best = max(best, judge(p, s, w, io, LOG, i, n, residual))
     weigh(s, LOG, LOG + n, w, io[PROBABILITY], n, best, p[own + FLOOR], p[own + LOG_FLOOR])
 
 
@@ -65,8 +58,7 @@ class FixedBank(ArxBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
-        return np.array([*cls.equations_of(params, context), floor, math.log(floor) if floor > 0 else 0.0])
+        return np.array([*cls.equations_of(params, context), *floored(params.probability_floor)])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

@@ -6,6 +6,7 @@ from typing import Any
 
 from core.block import kernel, settled
 from core.diagnose.kalman import INVERSE, MEMORY, OWN, RESIDUAL
+from core.diagnose.weights import likeliest
 
 LEAST_INFORMATION = 1e-3
 """Nats per sample below which thousands of samples do not repay the odds of a probability floor."""
@@ -21,10 +22,7 @@ def nearest_rival(p: Any, s: Any, separation: int, n: int, w: Any, probability: 
     mean is taken over the shuttle's own memory. Both have the same measurement, so the difference of their residuals
     is that of their predictions.
     """
-    winner = 0
-    for i in range(1, n):
-        if w[probability + i] > w[probability + winner]:
-            winner = i
+    winner = likeliest(w, probability, n)
     own = s[OWN + RESIDUAL * n + winner]
     nearest = 1e300
     for i in range(n):

@@ -11,25 +11,25 @@ from core import estimation
 from core.block import Context, Equation, FloatArray, parameter
 from core.diagnose.arx import (
     COUNT,
-    HALF_LOG,
     LANES,
     OWN,
     PROBABILITY,
+    RESIDUAL_TAP,
     SIZE,
-    VARIANCE,
     WIDTH,
     ArxBank,
     ArxParams,
+    judge,
     regress,
+    unexplained,
 )
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, likeliest, weigh
 
 FORGETTING, WINNER_ONLY, LIMIT, FLOOR, LOG_FLOOR = range(5)
 H, PRODUCT, LOG = OWN, OWN + 4, OWN + 8
 """State: regressor, scratch; then two lanes of logarithms, and an estimator for each bank."""
 DEPTH = 14
 """Numbers of one estimator: four coefficients, half a covariance."""
-RESIDUAL_TAP, NIS_TAP = PROBABILITY + 1, PROBABILITY + 2
 
 
 def free_banks_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -41,21 +41,10 @@ def free_banks_step(p: Any, s: Any, w: Any, io: Any) -> None:
     best = -math.inf
     for i in range(n):
         theta = first + DEPTH * i
-        residual = z
-        for j in range(SIZE):
-            residual -= s[H + j] * s[theta + j]
-        nis = residual * residual / p[LANES + VARIANCE * n + i]
-        w[io[RESIDUAL_TAP] + i] = residual
-        w[io[NIS_TAP] + i] = nis
-        log = s[LOG + i] - 0.5 * nis - p[LANES + HALF_LOG * n + i]
-        s[LOG + n + i] = log
-        best = max(best, log)
+        best = max(best, judge(p, s, w, io, LOG, i, n, unexplained(s, z, H, theta)))
     at = io[PROBABILITY]
     weigh(s, LOG, LOG + n, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
-    winner = 0
-    for i in range(1, n):
-        if w[at + i] > w[at + winner]:
-            winner = i
+    winner = likeliest(w, at, n)
     forgetting = p[own + FORGETTING]
     for i in range(n):
         if p[own + WINNER_ONLY] == 0.0 or i == winner:
@@ -100,9 +89,8 @@ class FreeBanks(ArxBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
-        own = [params.forgetting, float(params.adapting == "winner"), params.trace_limit, floor]
-        return np.array([*cls.equations_of(params, context), *own, math.log(floor) if floor > 0 else 0.0])
+        own = [params.forgetting, float(params.adapting == "winner"), params.trace_limit]
+        return np.array([*cls.equations_of(params, context), *own, *floored(params.probability_floor)])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

@@ -120,6 +120,13 @@ def filter_step(p: Any, s: Any, i: int, n: int, u: float, z: float, first: bool,
     return float(residual * residual * inverse)
 
 
+@kernel
+def hand_over(s: Any, n: int, source: int, target: int) -> None:
+    """Let a filter go on from where another is: its state and its covariance."""
+    for lane in (X1, X2, P11, P12, P22):
+        s[OWN + lane * n + target] = s[OWN + lane * n + source]
+
+
 class FilterParams(BlockParams):
     """Assumptions of a Kalman filter."""
 

@@ -26,7 +26,7 @@ from core.diagnose.kalman import (
     driven,
     filter_step,
 )
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, weigh
 
 FLOOR, LOG_FLOOR, CYCLES, DT, WINDOW, CAPACITY = range(6)
 LOG, LIKELIHOOD, SLIDING = DEPTH, DEPTH + 1, DEPTH + 2
@@ -113,10 +113,8 @@ class LockIn(KalmanBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
         own = [
-            floor,
-            math.log(floor) if floor > 0 else 0.0,
+            *floored(params.probability_floor),
             window.tone_hz(params, context) / 1e3,
             context.dt_ms / context.every,
             float(window.length(params, context)),

@@ -26,7 +26,7 @@ from core.diagnose.kalman import (
     driven,
     filter_step,
 )
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, weigh
 
 LINEAR, FLOOR, LOG_FLOOR = range(3)
 """Parameters of its own."""
@@ -156,8 +156,7 @@ class Mmae(KalmanBank):
     @classmethod
     def weighing(cls, params: Any) -> list[float]:
         """Pack how probabilities are kept."""
-        floor = params.probability_floor
-        return [float(params.arithmetic == "linear"), floor, math.log(floor) if floor > 0 else 0.0]
+        return [float(params.arithmetic == "linear"), *floored(params.probability_floor)]
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

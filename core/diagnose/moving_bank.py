@@ -16,20 +16,16 @@ from core.diagnose.kalman import (
     LANES,
     MEASURED,
     OWN,
-    P11,
-    P12,
-    P22,
     PROBABILITY,
     RESIDUAL,
     STARTED,
     WIDTH,
-    X1,
-    X2,
     FilterParams,
     KalmanBank,
     applied_voltage,
     driven,
     filter_step,
+    hand_over,
 )
 from core.diagnose.weights import weigh
 
@@ -72,8 +68,7 @@ def moving_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
         # the one that comes in starts where its neighbour is
         new = centre + 2 * step
         edge = centre + step
-        for lane in (X1, X2, P11, P12, P22):
-            s[OWN + lane * n + new] = s[OWN + lane * n + edge]
+        hand_over(s, n, edge, new)
         s[OWN + LOG * n + new] = p[own + LOG_FLOOR]
         s[OWN + CENTRE * n] = centre + step
 

@@ -11,19 +11,19 @@ from core import estimation
 from core.block import TICK, Context, Equation, FloatArray, parameter, settled
 from core.diagnose.arx import (
     COUNT,
-    HALF_LOG,
     LANES,
     OWN,
     PROBABILITY,
     SIZE,
-    VARIANCE,
     WIDTH,
     ArxBank,
     ArxParams,
+    judge,
     regress,
+    unexplained,
 )
 from core.diagnose.hypothesis import assumed_noise
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, weigh
 from core.noise import key, normal
 
 FORGETTING, LIMIT, FLOOR, LOG_FLOOR, NOISE, KEYS = range(6)
@@ -31,7 +31,6 @@ H, G, PRODUCT, LOG = OWN, OWN + 4, OWN + 8, OWN + 12
 """State: regressors of the device and of a record, scratch; then two lanes of logarithms, and the banks."""
 CLEAN1, CLEAN2, SEEN1, SEEN2, DEPTH = 14, 15, 16, 17, 18
 """A bank: four coefficients, half a covariance, then its record: two samples as they are, two as measured."""
-RESIDUAL_TAP, NIS_TAP = PROBABILITY + 1, PROBABILITY + 2
 
 
 def reference_banks_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -44,15 +43,7 @@ def reference_banks_step(p: Any, s: Any, w: Any, io: Any) -> None:
     best = -math.inf
     for i in range(n):
         bank = first + DEPTH * i
-        residual = z
-        for j in range(SIZE):
-            residual -= s[H + j] * s[bank + j]
-        nis = residual * residual / p[LANES + VARIANCE * n + i]
-        w[io[RESIDUAL_TAP] + i] = residual
-        w[io[NIS_TAP] + i] = nis
-        log = s[LOG + i] - 0.5 * nis - p[LANES + HALF_LOG * n + i]
-        s[LOG + n + i] = log
-        best = max(best, log)
+        best = max(best, judge(p, s, w, io, LOG, i, n, unexplained(s, z, H, bank)))
         # its own sub-system under the same voltage, as its own sensor would see it
         at = LANES + i
         clean = (
@@ -63,9 +54,7 @@ def reference_banks_step(p: Any, s: Any, w: Any, io: Any) -> None:
         s[G + 1] = s[H + 1]
         s[G + 2] = -s[bank + SEEN1]
         s[G + 3] = -s[bank + SEEN2]
-        error = seen
-        for j in range(SIZE):
-            error -= s[G + j] * s[bank + j]
+        error = unexplained(s, seen, G, bank)
         estimation.least_squares(s, bank, bank + SIZE, G, PRODUCT, SIZE, error, forgetting, forgetting, p[own + LIMIT])
         s[bank + CLEAN2] = s[bank + CLEAN1]
         s[bank + CLEAN1] = settled(clean)
@@ -98,9 +87,8 @@ class ReferenceBanks(ArxBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
         noise = params.sensor_noise_um or assumed_noise(context)
-        own = [params.forgetting, params.trace_limit, floor, math.log(floor) if floor > 0 else 0.0, noise]
+        own = [params.forgetting, params.trace_limit, *floored(params.probability_floor), noise]
         keys = [key(context.seed, f"diagnose.record.{i}") for i in range(len(params.hypotheses))]
         return np.array(cls.equations_of(params, context) + own + keys)
 

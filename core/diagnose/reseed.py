@@ -15,22 +15,18 @@ from core.diagnose.kalman import (
     LANES,
     MEASURED,
     OWN,
-    P11,
-    P12,
-    P22,
     PROBABILITY,
     RESIDUAL,
     STARTED,
     WIDTH,
-    X1,
-    X2,
     KalmanBank,
     KalmanParams,
     applied_voltage,
     driven,
     filter_step,
+    hand_over,
 )
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, likeliest, weigh
 
 FLOOR, LOG_FLOOR, INTERVAL, SURE, HOPELESS = range(5)
 LOG, LIKELIHOOD, COUNTER = DEPTH, DEPTH + 1, DEPTH + 2
@@ -40,16 +36,12 @@ RESIDUAL_TAP, NIS_TAP = PROBABILITY + 1, PROBABILITY + 2
 @kernel
 def reseed(s: Any, n: int, w: Any, probability: int, sure: float, hopeless: float) -> None:
     """Copy the state of a sure winner into the filters of those without hope."""
-    winner = 0
-    for i in range(1, n):
-        if w[probability + i] > w[probability + winner]:
-            winner = i
+    winner = likeliest(w, probability, n)
     if w[probability + winner] <= sure:
         return
     for i in range(n):
         if w[probability + i] < hopeless:
-            for lane in (X1, X2, P11, P12, P22):
-                s[OWN + lane * n + i] = s[OWN + lane * n + winner]
+            hand_over(s, n, winner, i)
 
 
 def reseed_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -108,8 +100,7 @@ class Reseed(KalmanBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
-        own = [floor, math.log(floor) if floor > 0 else 0.0, float(params.interval), params.sure, params.hopeless]
+        own = [*floored(params.probability_floor), float(params.interval), params.sure, params.hopeless]
         return np.array(cls.filters(params, context) + own)
 
     @classmethod

@@ -29,7 +29,7 @@ from core.diagnose.kalman import (
     driven,
     filter_step,
 )
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, weigh
 
 FLOOR, LOG_FLOOR, VELOCITY_NOISE = range(3)
 LOG, LIKELIHOOD = DEPTH, DEPTH + 1
@@ -128,10 +128,9 @@ class TwoOutput(KalmanBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
         known = getattr(context.sensors.get("velocimeter"), "noise_um_ms", 0.0)
         velocity = max(params.velocity_noise_um_ms or known, 1e-3)
-        own = [floor, math.log(floor) if floor > 0 else 0.0, velocity**2 * params.assumed_noise_scale]
+        own = [*floored(params.probability_floor), velocity**2 * params.assumed_noise_scale]
         return np.array(cls.filters(params, context) + own)
 
     @classmethod

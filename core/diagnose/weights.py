@@ -8,6 +8,21 @@ from typing import Any
 from core.block import kernel
 
 
+def floored(floor: float) -> list[float]:
+    """Pack a floor under probabilities and its logarithm; 0 is none, and then the logarithm is not used."""
+    return [floor, math.log(floor) if floor > 0.0 else 0.0]
+
+
+@kernel
+def likeliest(w: Any, probability: int, n: int) -> int:
+    """Return the hypothesis with the largest probability, the first of equals."""
+    winner = 0
+    for i in range(1, n):
+        if w[probability + i] > w[probability + winner]:
+            winner = i
+    return winner
+
+
 @kernel
 def weigh(
     s: Any, log: int, likelihood: int, w: Any, probability: int, n: int, best: float, floor: float, log_floor: float

