@@ -73,9 +73,8 @@ def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:
     rows = [wiring.row(key) for key in keys]
     table = np.ascontiguousarray(wiring.table[rows])
     table[:, program.ADDRESS] = [program.compiled(wiring.instances[row].block.step).address for row in rows]
-    none = np.zeros(0, dtype=np.int64)
     nothing = np.zeros((ticks, 0))
-    arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io, none, none)
+    arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io)
     trip, watches = wiring.index["guard.trip"], np.zeros((0, 3))
 
     def work() -> None:

@@ -152,8 +152,6 @@ class Board:
             wiring.s,
             wiring.w,
             wiring.io,
-            wiring.output_index,
-            wiring.tap_index,
             self._outputs[at:],
             self._taps[at:],
             wiring.index["guard.trip"],
@@ -173,8 +171,8 @@ class Board:
 
     def _allocate(self) -> None:
         """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""
-        self._outputs = np.zeros((CHUNK, len(self.wiring.output_index)))
-        self._taps = np.zeros((CHUNK, len(self.wiring.tap_index)))
+        self._outputs = np.zeros((CHUNK, self.wiring.signals.outputs))
+        self._taps = np.zeros((CHUNK, len(self.wiring.signals.taps)))
 
     # -- commands
 

@@ -15,9 +15,10 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
+from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
-from core.block import TICK, TIME_MS, FloatArray, IntArray, Step, kernel
+from core.block import RESERVED, TICK, TIME_MS, FloatArray, IntArray, Step, kernel
 
 ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 """Columns of the table, one row per block."""
@@ -29,11 +30,19 @@ _DOUBLES, _INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
 _SIGNATURE = types.void(_DOUBLES, _DOUBLES, _DOUBLES, _INTEGERS)
 
 
+class _Apart(Compiler):
+    """Compiles a step knowing that its parameters, state, signals and ports lie apart, so that it may use vectors."""
+
+    def __init__(self, typing: Any, target: Any, library: Any, args: Any, result: Any, flags: Any, local: Any) -> None:
+        flags.noalias = True
+        super().__init__(typing, target, library, args, result, flags, local)  # type: ignore[no-untyped-call]
+
+
 @cache
 def compiled(step: Step) -> Any:
     """Compile a step to its C function."""
     options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
-    return numba.cfunc(_SIGNATURE, cache=True, **options)(step)
+    return numba.cfunc(_SIGNATURE, cache=True, pipeline_class=_Apart, **options)(step)
 
 
 def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:
@@ -61,8 +70,6 @@ def run(
     s: FloatArray,
     w: FloatArray,
     io: IntArray,
-    output_index: IntArray,
-    tap_index: IntArray,
     outputs: FloatArray,
     taps: FloatArray,
     trip: int,
@@ -70,8 +77,10 @@ def run(
 ) -> tuple[int, int]:
     """Run up to ``n`` ticks; return how many were run and why it stopped.
 
+    Of the signals those reserved come first, then the outputs, then the taps.
     A watch is a row (signal, +1 above or -1 below, threshold).
     """
+    first_tap = RESERVED + outputs.shape[1]
     p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
     w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
     for i in range(n):
@@ -89,10 +98,10 @@ def run(
                     w_address,
                     io_address + 8 * table[b, IO_OFFSET],
                 )
-        for c in range(output_index.shape[0]):
-            outputs[i, c] = w[output_index[c]]
-        for c in range(tap_index.shape[0]):
-            taps[i, c] = w[tap_index[c]]
+        for c in range(outputs.shape[1]):
+            outputs[i, c] = w[RESERVED + c]
+        for c in range(taps.shape[1]):
+            taps[i, c] = w[first_tap + c]
         if w[trip] != 0.0:
             return i + 1, TRIPPED
         for c in range(watches.shape[0]):
@@ -111,14 +120,13 @@ def run_uncompiled(
     s: FloatArray,
     w: FloatArray,
     io: IntArray,
-    output_index: IntArray,
-    tap_index: IntArray,
     outputs: FloatArray,
     taps: FloatArray,
     trip: int,
     watches: FloatArray,
 ) -> tuple[int, int]:
     """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled."""
+    first_tap = RESERVED + outputs.shape[1]
     for i in range(n):
         tick = first_tick + i
         w[TICK] = tick
@@ -126,8 +134,8 @@ def run_uncompiled(
         for step, row in zip(steps, table, strict=True):
             if tick % row[EVERY] == 0:
                 step(p[row[P_OFFSET] :], s[row[S_OFFSET] :], w, io[row[IO_OFFSET] :])
-        outputs[i] = w[output_index]
-        taps[i] = w[tap_index]
+        outputs[i] = w[RESERVED:first_tap]
+        taps[i] = w[first_tap : first_tap + taps.shape[1]]
         if w[trip] != 0.0:
             return i + 1, TRIPPED
         for index, sign, threshold in watches:

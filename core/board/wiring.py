@@ -45,8 +45,6 @@ class Wiring:
     s: FloatArray
     w: FloatArray
     io: IntArray
-    output_index: IntArray
-    tap_index: IntArray
     resting: set[int] = field(default_factory=set)
 
     def row(self, key: str) -> int:
@@ -131,34 +129,31 @@ def _scored(params: BlockParams) -> BlockParams:
 def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     """Lay out the arrays of a bench and connect its ports."""
     order = instances(spec, faults or {})
-    index: dict[str, int] = {}
-    shown: list[tuple[str, Port, Instance, str]] = []
-    size = RESERVED
+    ports: dict[str, list[tuple[Port, Instance]]] = {"output": [], "tap": [], "hidden": []}
     for instance in order:
         # what stands by is worth seeing, but not what the bench puts out
         aside = issubclass(instance.block, (Fault, Sensor))
-        for kind, ports in (("tap" if aside else "output", instance.block.outputs), ("tap", instance.block.taps)):
-            for port in ports:
-                names = [signal_name(instance, name) for name in port.names(instance.params)]
-                index.setdefault(signal_name(instance, port.name), size)
-                for name in names:
-                    index[name] = size
-                    size += 1
-                    if not port.hidden:
-                        shown.append((name, port, instance, kind))
+        for usual, own in (("output", instance.block.outputs), ("tap", instance.block.taps)):
+            for port in own:
+                ports["hidden" if port.hidden else "tap" if aside else usual].append((port, instance))
+    # what is traced lies in the order of the trace, so that a row is copied as it is
+    index: dict[str, int] = {}
+    shown: list[Signal] = []
+    size = RESERVED
+    for kind, entries in ports.items():
+        for port, instance in entries:
+            index.setdefault(signal_name(instance, port.name), size)
+            for name in (signal_name(instance, name) for name in port.names(instance.params)):
+                index[name] = size
+                size += 1
+                if kind != "hidden":
+                    signal = {"name": name, "unit": port.unit, "meaning": port.meaning, "block": instance.key}
+                    shown.append(Signal(**signal, kind=kind, index=len(shown)))
     for name in spec.controllers:
         index[f"{name}.engaged"] = size
         size += 1
     index[NOTHING] = size
     size += 1
-    shown.sort(key=lambda entry: entry[3] != "output")
-    signals = SignalTable(
-        [
-            Signal(name=name, unit=port.unit, meaning=port.meaning, block=instance.key, kind=kind, index=i)
-            for i, (name, port, instance, kind) in enumerate(shown)
-        ]
-    )
-    columns = np.array([index[signal.name] for signal in signals], dtype=np.int64)
     table = np.zeros((len(order), program.COLUMNS), dtype=np.int64)
     p_parts, s_parts, io_parts = [], [], []
     p_size = s_size = io_size = 0
@@ -178,15 +173,13 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     engage(spec, index, w)
     return Wiring(
         instances=order,
-        signals=signals,
+        signals=SignalTable(shown),
         index=index,
         table=table,
         p=np.concatenate(p_parts),
         s=np.concatenate(s_parts),
         w=w,
         io=np.concatenate(io_parts),
-        output_index=columns[: signals.outputs],
-        tap_index=columns[signals.outputs :],
     )
 
 

@@ -12,21 +12,20 @@ from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
 from core.diagnose.kalman import (
     COUNT,
-    COVARIANCE,
     DEPTH,
     LANES,
     MEASURED,
     OWN,
     PROBABILITY,
-    RESIDUAL,
     STARTED,
     WIDTH,
     KalmanBank,
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
 )
+from core.diagnose.lanes import LANE
 
 CYCLES, DT, WINDOW, CAPACITY, POWER_LIMIT, TONE_LIMIT, ALONE_FOR, NONE_FOR = range(8)
 ALONE, ALONE_RUN, NONE_RUN, SLIDING = range(4)
@@ -39,30 +38,27 @@ VERDICTS = ("normal", "detected", "isolated", "ambiguous", "unknown fault")
 def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, test every hypothesis, conclude."""
     n = int(p[COUNT])
-    own = LANES + WIDTH * n
+    own = LANES + WIDTH * LANE
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
-    state = OWN + DEPTH * n
+    state = OWN + DEPTH * LANE
     at = state + SLIDING
     capacity = int(p[own + CAPACITY])
-    place = window.begin(s, at, n, capacity, p[own + WINDOW])
+    place = window.begin(s, at, capacity, p[own + WINDOW])
     turn = window.angle(w, p[own + CYCLES], p[own + DT])
     cosine = math.cos(turn)
     sine = math.sin(turn)
+    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
+    window.push(s, at, n, capacity, place, cosine, sine)
     candidates = 0
     last = -1
     healthy = False
     for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        residual = s[OWN + RESIDUAL * n + i]
-        w[io[RESIDUAL_TAP] + i] = residual
-        w[io[NIS_TAP] + i] = nis
-        window.push(s, at, n, capacity, i, place, residual / math.sqrt(s[OWN + COVARIANCE * n + i]), cosine, sine)
-        power = window.power(s, at, n, i)
-        tone = window.tone(s, at, n, i)
+        power = window.power(s, at, i)
+        tone = window.tone(s, at, i)
         consistent = power <= p[own + POWER_LIMIT] and tone <= p[own + TONE_LIMIT]
         w[io[POWER_TAP] + i] = power
         w[io[TONE_TAP] + i] = tone
@@ -71,7 +67,6 @@ def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
             candidates += 1
             last = i
             healthy = healthy or i == 0
-    window.end(s, at, n, capacity, place, cosine, sine)
     alone = last if candidates == 1 else -1
     s[state + ALONE_RUN] = s[state + ALONE_RUN] + 1.0 if alone == s[state + ALONE] else 1.0
     s[state + ALONE] = alone
@@ -165,7 +160,6 @@ class Consistency(KalmanBank):
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, nothing concluded, the window empty."""
-        n = len(params.hypotheses)
-        return np.array(cls.at_rest(params, context) + [-1.0, 0.0, 0.0] + [0.0] * window.size(n, params.window))
+        return np.array(cls.at_rest(params, context) + [-1.0, 0.0, 0.0] + [0.0] * window.size(params.window))
 
     step = consistency_step

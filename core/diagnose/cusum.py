@@ -14,17 +14,19 @@ from core.diagnose.kalman import (
     HALF_LOG,
     LANES,
     MEASURED,
+    NIS,
     OWN,
     PROBABILITY,
-    RESIDUAL,
     STARTED,
     WIDTH,
     KalmanBank,
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
+    take_logarithms,
 )
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import share_out
 
 THRESHOLD = 0
@@ -36,40 +38,39 @@ RESIDUAL_TAP, NIS_TAP, SUM_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
 def cusum_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, add up, compare with the threshold."""
     n = int(p[COUNT])
-    threshold = p[LANES + WIDTH * n + THRESHOLD]
+    threshold = p[LANES + WIDTH * LANE + THRESHOLD]
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
     evidence = seen and driven(p, s)
+    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+        take_logarithms(s, n)
     healthy = 0.0
     most = 0.0
     for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
-        w[io[NIS_TAP] + i] = nis
-        log = -0.5 * nis - s[OWN + HALF_LOG * n + i]
+        log = -0.5 * s[OWN + NIS * LANE + i] - s[OWN + HALF_LOG * LANE + i]
         if i == 0:
             healthy = log
         elif evidence:
-            s[OWN + SUM * n + i] = max(s[OWN + SUM * n + i] + log - healthy, 0.0)
-            most = max(most, s[OWN + SUM * n + i])
+            s[OWN + SUM * LANE + i] = max(s[OWN + SUM * LANE + i] + log - healthy, 0.0)
+            most = max(most, s[OWN + SUM * LANE + i])
     # a sum far beyond the threshold would not let go when the fault is gone
     over = most - 2.0 * threshold
     best = threshold
-    s[OWN + LIKELIHOOD * n] = threshold
+    s[OWN + LIKELIHOOD * LANE] = threshold
     for i in range(1, n):
-        total = s[OWN + SUM * n + i]
+        total = s[OWN + SUM * LANE + i]
         if over > 0.0:
             total = max(total - over, 0.0)
-            s[OWN + SUM * n + i] = total
-        s[OWN + LIKELIHOOD * n + i] = total
+            s[OWN + SUM * LANE + i] = total
+        s[OWN + LIKELIHOOD * LANE + i] = total
         best = max(best, total)
     for i in range(n):
-        w[io[SUM_TAP] + i] = s[OWN + SUM * n + i]
+        w[io[SUM_TAP] + i] = s[OWN + SUM * LANE + i]
     w[io[ALARM]] = 1.0 if most > threshold else 0.0
-    share_out(s, OWN + LIKELIHOOD * n, w, io[PROBABILITY], n, best)
+    share_out(s, OWN + LIKELIHOOD * LANE, w, io[PROBABILITY], n, best)
 
 
 class Cusum(KalmanBank):
@@ -104,6 +105,6 @@ class Cusum(KalmanBank):
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, all sums 0."""
-        return np.array(cls.at_rest(params, context) + [0.0] * (2 * len(params.hypotheses)))
+        return np.array(cls.at_rest(params, context, (0.0, 0.0)))
 
     step = cusum_step

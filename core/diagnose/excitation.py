@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import kernel, settled
+from core.block import inlined, settled
 from core.diagnose.kalman import INVERSE, MEMORY, OWN, RESIDUAL
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import likeliest
 
 LEAST_INFORMATION = 1e-3
 """Nats per sample below which thousands of samples do not repay the odds of a probability floor."""
 
 
-@kernel
+@inlined
 def nearest_rival(p: Any, s: Any, separation: int, n: int, w: Any, probability: int) -> float:
     r"""Return the evidence per sample against the nearest rival of the winner, in nats.
 
@@ -23,11 +24,11 @@ def nearest_rival(p: Any, s: Any, separation: int, n: int, w: Any, probability: 
     is that of their predictions.
     """
     winner = likeliest(w, probability, n)
-    own = s[OWN + RESIDUAL * n + winner]
+    own = s[OWN + RESIDUAL * LANE + winner]
     nearest = 1e300
     for i in range(n):
-        apart = s[OWN + RESIDUAL * n + i] - own
-        gain = 0.5 * apart * apart * s[OWN + INVERSE * n + i]
+        apart = s[OWN + RESIDUAL * LANE + i] - own
+        gain = 0.5 * apart * apart * s[OWN + INVERSE * LANE + i]
         mean = p[MEMORY] * s[separation + i] + (1.0 - p[MEMORY]) * gain
         s[separation + i] = settled(mean)
         if i != winner and mean < nearest:

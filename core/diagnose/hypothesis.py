@@ -8,6 +8,7 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from core.block import BlockParams, Context, Oscillator, parameter
+from core.diagnose.lanes import LANE
 
 
 class Hypothesis(BlockParams):
@@ -53,7 +54,7 @@ class BankParams(BlockParams):
     hypotheses: list[Hypothesis] = Field(
         SEVEN_STEP,
         min_length=2,
-        max_length=16,
+        max_length=LANE,
         description="the models to choose from",
         json_schema_extra={"unit": "", "live": False, "equation": "5.2.4"},
     )

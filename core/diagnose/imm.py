@@ -7,20 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Context, Equation, FloatArray, Port, kernel, parameter
+from core.block import Context, Equation, FloatArray, Port, inlined, parameter
 from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
 from core.diagnose.kalman import (
     COUNT,
+    COVARIANCE,
     DEPTH,
-    HALF_LOG,
     LANES,
     MEASURED,
+    NIS,
     OWN,
     P11,
     P12,
     P22,
     PROBABILITY,
-    RESIDUAL,
     STARTED,
     WIDTH,
     X1,
@@ -29,17 +29,18 @@ from core.diagnose.kalman import (
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
 )
+from core.diagnose.lanes import LANE
 
 OTHER = 0
 """Parameter of its own."""
-WEIGHT, LIKELIHOOD, SEPARATION = DEPTH, DEPTH + 1, DEPTH + 2
+WEIGHT, SEPARATION = DEPTH, DEPTH + 1
 """Lanes of its own."""
 RESIDUAL_TAP, NIS_TAP, INFORMATION, UNEXCITED = range(PROBABILITY + 1, PROBABILITY + 5)
 
 
-@kernel
+@inlined
 def mix(s: Any, n: int, other: float) -> None:
     r"""Give every filter the mixture of states it may have come from, and its weight before the measurement.
 
@@ -51,36 +52,36 @@ def mix(s: Any, n: int, other: float) -> None:
     x2 = 0.0
     for i in range(n):
         b = OWN + i
-        weight = s[b + WEIGHT * n]
-        x1 += weight * s[b + X1 * n]
-        x2 += weight * s[b + X2 * n]
+        weight = s[b + WEIGHT * LANE]
+        x1 += weight * s[b + X1 * LANE]
+        x2 += weight * s[b + X2 * LANE]
     m11 = 0.0
     m12 = 0.0
     m22 = 0.0
     for i in range(n):
         b = OWN + i
-        weight = s[b + WEIGHT * n]
-        d1 = s[b + X1 * n] - x1
-        d2 = s[b + X2 * n] - x2
-        m11 += weight * (s[b + P11 * n] + d1 * d1)
-        m12 += weight * (s[b + P12 * n] + d1 * d2)
-        m22 += weight * (s[b + P22 * n] + d2 * d2)
+        weight = s[b + WEIGHT * LANE]
+        d1 = s[b + X1 * LANE] - x1
+        d2 = s[b + X2 * LANE] - x2
+        m11 += weight * (s[b + P11 * LANE] + d1 * d1)
+        m12 += weight * (s[b + P12 * LANE] + d1 * d2)
+        m22 += weight * (s[b + P22 * LANE] + d2 * d2)
     for i in range(n):
         b = OWN + i
-        own = keep * s[b + WEIGHT * n]
+        own = keep * s[b + WEIGHT * LANE]
         before = other + own
         own /= before
         rest = other / before
-        d1 = s[b + X1 * n] - x1
-        d2 = s[b + X2 * n] - x2
+        d1 = s[b + X1 * LANE] - x1
+        d2 = s[b + X2 * LANE] - x2
         k1 = own * d1
         k2 = own * d2
-        s[b + X1 * n] = x1 + k1
-        s[b + X2 * n] = x2 + k2
-        s[b + P11 * n] = rest * m11 + own * (s[b + P11 * n] + d1 * d1) - k1 * k1
-        s[b + P12 * n] = rest * m12 + own * (s[b + P12 * n] + d1 * d2) - k1 * k2
-        s[b + P22 * n] = rest * m22 + own * (s[b + P22 * n] + d2 * d2) - k2 * k2
-        s[b + WEIGHT * n] = before
+        s[b + X1 * LANE] = x1 + k1
+        s[b + X2 * LANE] = x2 + k2
+        s[b + P11 * LANE] = rest * m11 + own * (s[b + P11 * LANE] + d1 * d1) - k1 * k1
+        s[b + P12 * LANE] = rest * m12 + own * (s[b + P12 * LANE] + d1 * d2) - k1 * k2
+        s[b + P22 * LANE] = rest * m22 + own * (s[b + P22 * LANE] + d2 * d2) - k2 * k2
+        s[b + WEIGHT * LANE] = before
 
 
 def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -93,27 +94,24 @@ def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
     seen = math.isfinite(z)
     evidence = seen and driven(p, s)
     if evidence and not first:
-        mix(s, n, p[LANES + WIDTH * n + OTHER])
-    best = -math.inf
-    for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
-        w[io[NIS_TAP] + i] = nis
-        log = -0.5 * nis - s[OWN + HALF_LOG * n + i]
-        s[OWN + LIKELIHOOD * n + i] = log
-        best = max(best, log)
+        mix(s, n, p[LANES + WIDTH * LANE + OTHER])
+    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
     if evidence:
+        least = math.inf
+        for i in range(n):
+            least = min(least, s[OWN + NIS * LANE + i])
         total = 0.0
         for i in range(n):
-            share = s[OWN + WEIGHT * n + i] * math.exp(s[OWN + LIKELIHOOD * n + i] - best)
-            s[OWN + WEIGHT * n + i] = share
+            density = math.exp(0.5 * (least - s[OWN + NIS * LANE + i])) / math.sqrt(s[OWN + COVARIANCE * LANE + i])
+            share = s[OWN + WEIGHT * LANE + i] * density
+            s[OWN + WEIGHT * LANE + i] = share
             total += share
         for i in range(n):
-            s[OWN + WEIGHT * n + i] /= total
+            s[OWN + WEIGHT * LANE + i] /= total
     at = io[PROBABILITY]
     for i in range(n):
-        w[at + i] = s[OWN + WEIGHT * n + i]
-    information = nearest_rival(p, s, OWN + SEPARATION * n, n, w, at)
+        w[at + i] = s[OWN + WEIGHT * LANE + i]
+    information = nearest_rival(p, s, OWN + SEPARATION * LANE, n, w, at)
     w[io[INFORMATION]] = information
     w[io[UNEXCITED]] = 1.0 if information < LEAST_INFORMATION else 0.0
 
@@ -168,7 +166,6 @@ class Imm(KalmanBank):
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, all hypotheses alike."""
-        n = len(params.hypotheses)
-        return np.array(cls.at_rest(params, context) + [1.0 / n] * n + [0.0] * (2 * n))
+        return np.array(cls.at_rest(params, context, (1.0 / len(params.hypotheses), 0.0)))
 
     step = imm_step

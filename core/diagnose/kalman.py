@@ -8,18 +8,19 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, BlockParams, Context, Oscillator, Port, kernel, parameter, settled
+from core.block import Block, BlockParams, Context, Oscillator, Port, inlined, kernel, parameter, settled
 from core.device.oscillator import transition
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
+from core.diagnose.lanes import LANE, lanes
 
 COUNT, PROCESS, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(10)
 """Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
-PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI, WIDTH = range(10)
-"""Lanes of the parameters, each as long as there are models."""
+PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI, INVERSE_PSI, WIDTH = range(11)
+"""Lanes of the parameters."""
 STARTED, LAST_CHARGE, LEVEL, OWN = range(4)
 """State of every bank; the lanes of the filters follow, then a bank's own."""
-X1, X2, P11, P12, P22, RESIDUAL, COVARIANCE, INVERSE, HALF_LOG, DEPTH = range(10)
-"""Lanes of the state; the inverse and half the logarithm of the residual covariance are kept while it stays."""
+X1, X2, P11, P12, P22, RESIDUAL, NIS, COVARIANCE, INVERSE, HALF_LOG, DEPTH = range(11)
+"""Lanes of the state; half the logarithm of the residual covariance is kept while it stays."""
 MEASURED, APPLIED, MIDDLE, CHARGE, PROBABILITY = range(5)
 """Ports of every bank."""
 LEAST = 1e-12
@@ -49,82 +50,126 @@ def driven(p: Any, s: Any) -> bool:
     return bool(s[LEVEL] >= p[LEAST_DRIVE])
 
 
-@kernel
-def filter_step(p: Any, s: Any, i: int, n: int, u: float, z: float, first: bool, seen: bool) -> float:
-    r"""Predict one filter, unless this is its first sample; correct it, if there is a measurement; return r^2/psi.
+@inlined
+def filter_step(p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool) -> int:
+    r"""Predict one filter, unless this is its first sample; correct it, if there is a measurement.
 
     .. math:: x^-=\Phi x+\Gamma u,\quad P^-=\Phi P\Phi^T+\Gamma Q\Gamma^T
 
     .. math:: r=z-Hx^-,\quad\psi=HP^-H^T+R,\quad K=P^-H^T/\psi,\quad x=x^-+Kr,\quad P=(I-KH)P^-
+
+    What is decided is the same for all filters, so it chooses between values and not between ways: a loop of this
+    stays one of vectors. Returns 1 if the residual covariance has changed, so that its logarithm is no longer right.
     """
     a = LANES + i
     b = OWN + i
-    steady = p[STEADY] != 0.0
-    x1 = s[b + X1 * n]
-    x2 = s[b + X2 * n]
-    c11 = s[b + P11 * n]
-    c12 = s[b + P12 * n]
-    c22 = s[b + P22 * n]
-    if not first:
-        f11 = p[a + PHI11 * n]
-        f12 = p[a + PHI12 * n]
-        f21 = p[a + PHI21 * n]
-        f22 = p[a + PHI22 * n]
-        g1 = p[a + GAMMA1 * n]
-        g2 = p[a + GAMMA2 * n]
-        moved = f11 * x1 + f12 * x2 + g1 * u
-        x2 = f21 * x1 + f22 * x2 + g2 * u
-        x1 = moved
-        if not steady:
-            q1 = f11 * c11 + f12 * c12
-            q2 = f11 * c12 + f12 * c22
-            q3 = f21 * c11 + f22 * c12
-            q4 = f21 * c12 + f22 * c22
-            noise = g1 * p[PROCESS]
-            c11 = q1 * f11 + q2 * f12 + g1 * noise
-            c12 = q1 * f21 + q2 * f22 + g2 * noise
-            c22 = q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
-    if steady:
-        psi = p[a + PSI * n]
-    elif p[PRINTED] != 0.0:
-        # the text prints psi without R, and without assumed noise that would end at nothing
-        psi = max(c11, LEAST * p[SENSOR])
+    printed = p[PRINTED] != 0.0
+    c11 = s[b + P11 * lane]
+    c12 = s[b + P12 * lane]
+    c22 = s[b + P22 * lane]
+    f11 = p[a + PHI11 * lane]
+    f12 = p[a + PHI12 * lane]
+    f21 = p[a + PHI21 * lane]
+    f22 = p[a + PHI22 * lane]
+    g1 = p[a + GAMMA1 * lane]
+    g2 = p[a + GAMMA2 * lane]
+    q1 = f11 * c11 + f12 * c12
+    q2 = f11 * c12 + f12 * c22
+    q3 = f21 * c11 + f22 * c12
+    q4 = f21 * c12 + f22 * c22
+    noise = g1 * p[PROCESS]
+    c11 = c11 if first else q1 * f11 + q2 * f12 + g1 * noise
+    c12 = c12 if first else q1 * f21 + q2 * f22 + g2 * noise
+    c22 = c22 if first else q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
+    total = c11 + p[SENSOR]
+    # the text prints psi without R, and without assumed noise that would end at nothing
+    psi = max(c11, LEAST * p[SENSOR]) if printed else total
+    inverse = 1.0 / psi
+    innovation = 1.0 / total if printed else inverse
+    k1 = c11 * innovation
+    k2 = c12 * innovation
+    correct_state(p, s, i, lane, u, z, first, seen, k1, k2, inverse)
+    s[b + P11 * lane] = c11 - k1 * c11 if seen else c11
+    s[b + P12 * lane] = c12 - k1 * c12 if seen else c12
+    s[b + P22 * lane] = c22 - k2 * c12 if seen else c22
+    changed = 1 if psi != s[b + COVARIANCE * lane] else 0
+    s[b + COVARIANCE * lane] = psi
+    return changed
+
+
+@inlined
+def correct_state(
+    p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool, k1: float, k2: float, inverse: float
+) -> None:
+    """Predict the state of one filter and correct it by a known gain."""
+    a = LANES + i
+    b = OWN + i
+    x1 = s[b + X1 * lane]
+    x2 = s[b + X2 * lane]
+    moved1 = p[a + PHI11 * lane] * x1 + p[a + PHI12 * lane] * x2 + p[a + GAMMA1 * lane] * u
+    moved2 = p[a + PHI21 * lane] * x1 + p[a + PHI22 * lane] * x2 + p[a + GAMMA2 * lane] * u
+    x1 = x1 if first else moved1
+    x2 = x2 if first else moved2
+    residual = settled(z - x1) if seen else 0.0
+    s[b + X1 * lane] = settled(x1 + k1 * residual)
+    s[b + X2 * lane] = settled(x2 + k2 * residual)
+    s[b + RESIDUAL * lane] = residual
+    s[b + INVERSE * lane] = inverse
+    s[b + NIS * lane] = residual * residual * inverse
+
+
+@inlined
+def filters_step(
+    p: Any, s: Any, w: Any, n: int, u: float, z: float, first: bool, seen: bool, at: int, nis: int
+) -> bool:
+    """Predict and correct all filters; show the residuals at ``at`` of the signals, their squares over psi at ``nis``.
+
+    Returns whether a residual covariance has changed, so that its logarithm is no longer right.
+    """
+    changed = 0
+    if p[STEADY] == 0.0:
+        for i in range(n):
+            changed += filter_step(p, s, i, LANE, u, z, first, seen)
     else:
-        psi = c11 + p[SENSOR]
-    if psi != s[b + COVARIANCE * n]:
-        s[b + COVARIANCE * n] = psi
-        s[b + INVERSE * n] = 1.0 / psi
-        s[b + HALF_LOG * n] = 0.5 * math.log(psi)
-    inverse = s[b + INVERSE * n]
-    residual = 0.0
-    if seen:
-        residual = settled(z - x1)
-        if steady:
-            k1 = p[a + GAIN1 * n]
-            k2 = p[a + GAIN2 * n]
-        else:
-            innovation = inverse if p[PRINTED] == 0.0 else 1.0 / (c11 + p[SENSOR])
-            k1 = c11 * innovation
-            k2 = c12 * innovation
-            c22 -= k2 * c12
-            c12 -= k1 * c12
-            c11 -= k1 * c11
-        x1 += k1 * residual
-        x2 += k2 * residual
-    s[b + X1 * n] = settled(x1)
-    s[b + X2 * n] = settled(x2)
-    s[b + P11 * n] = c11
-    s[b + P12 * n] = c12
-    s[b + P22 * n] = c22
-    s[b + RESIDUAL * n] = residual
-    return float(residual * residual * inverse)
+        for i in range(n):
+            a = LANES + i
+            psi = p[a + PSI * LANE]
+            correct_state(
+                p, s, i, LANE, u, z, first, seen, p[a + GAIN1 * LANE], p[a + GAIN2 * LANE], p[a + INVERSE_PSI * LANE]
+            )
+            changed += 1 if psi != s[OWN + COVARIANCE * LANE + i] else 0
+            s[OWN + COVARIANCE * LANE + i] = psi
+    for i in range(n):
+        w[at + i] = s[OWN + RESIDUAL * LANE + i]
+        w[nis + i] = s[OWN + NIS * LANE + i]
+    return changed != 0
 
 
 @kernel
-def hand_over(s: Any, n: int, source: int, target: int) -> None:
+def take_logarithms(s: Any, n: int) -> None:
+    """Keep half the logarithm of every residual covariance."""
+    for i in range(n):
+        s[OWN + HALF_LOG * LANE + i] = 0.5 * math.log(s[OWN + COVARIANCE * LANE + i])
+
+
+@inlined
+def judge(s: Any, log: int, likelihood: int, n: int, evidence: bool) -> float:
+    """Write the logarithms the residuals leave, from those at ``log`` to ``likelihood``; return the largest."""
+    best = -math.inf
+    for i in range(n):
+        before = s[log + i]
+        after = before - (0.5 * s[OWN + NIS * LANE + i] + s[OWN + HALF_LOG * LANE + i])
+        after = after if evidence else before
+        s[likelihood + i] = after
+        best = max(best, after)
+    return best
+
+
+@kernel
+def hand_over(s: Any, lane: int, source: int, target: int) -> None:
     """Let a filter go on from where another is: its state and its covariance."""
-    for lane in (X1, X2, P11, P12, P22):
-        s[OWN + lane * n + target] = s[OWN + lane * n + source]
+    for row in (X1, X2, P11, P12, P22):
+        s[OWN + row * lane + target] = s[OWN + row * lane + source]
 
 
 class FilterParams(BlockParams):
@@ -200,7 +245,7 @@ class KalmanBank(Block):
         scale = params.assumed_noise_scale
         q = params.process_noise_v**2 * scale
         r = (params.sensor_noise_um or assumed_noise(context)) ** 2 * scale
-        lanes = np.zeros((WIDTH, len(hypotheses)))
+        table = lanes(WIDTH, len(hypotheses))
         steady = getattr(params, "form", "") == "steady"
         printed = getattr(params, "residual_covariance", "") == "printed"
         for i, hypothesis in enumerate(hypotheses):
@@ -208,9 +253,10 @@ class KalmanBank(Block):
             phi = transition(device.mass, device.damping, device.stiffness, context.dt_ms)
             rest = device.static_gain
             gamma = ((1.0 - phi[0]) * rest, -phi[2] * rest)
-            lanes[:6, i] = (*phi, *gamma)
+            table[:6, i] = (*phi, *gamma)
             if steady:
-                lanes[6:, i] = steady_gain(phi, gamma, q, r, printed)
+                table[GAIN1 : PSI + 1, i] = steady_gain(phi, gamma, q, r, printed)
+                table[INVERSE_PSI, i] = 1.0 / table[PSI, i]
         memory = memory_ms(context)
         head = [
             len(hypotheses),
@@ -223,15 +269,17 @@ class KalmanBank(Block):
             math.exp(-context.dt_ms / memory),
             params.least_drive_v**2,
         ]
-        return [*map(float, head), *lanes.ravel().tolist()]
+        return [float(value) for value in (*head, *table.ravel())]
 
     @classmethod
-    def at_rest(cls, params: Any, context: Context, count: int = 0) -> list[float]:
-        """All filters at rest, as uncertain as the parameters say."""
-        lanes = np.zeros((DEPTH, count or len(params.hypotheses)))
-        lanes[P11] = params.initial_std_um**2
-        lanes[P22] = (params.initial_std_um * context.device.natural_frequency) ** 2
-        return [0.0] * OWN + lanes.ravel().tolist()
+    def at_rest(cls, params: Any, context: Context, more: tuple[float, ...] = (), count: int = 0) -> list[float]:
+        """All filters at rest, as uncertain as the parameters say; then lanes of a bank's own, each of one value."""
+        table = lanes(DEPTH + len(more), count or len(params.hypotheses))
+        table[P11] = params.initial_std_um**2
+        table[P22] = (params.initial_std_um * context.device.natural_frequency) ** 2
+        for row, value in enumerate(more, DEPTH):
+            table[row] = value
+        return [0.0] * OWN + [float(value) for value in table.ravel()]
 
 
 def gaussian(residual: float, covariance: float) -> float:

@@ -11,21 +11,20 @@ from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
 from core.diagnose.kalman import (
     COUNT,
-    COVARIANCE,
     DEPTH,
     LANES,
     MEASURED,
     OWN,
     PROBABILITY,
-    RESIDUAL,
     STARTED,
     WIDTH,
     KalmanBank,
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
 )
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
 
 FLOOR, LOG_FLOOR, CYCLES, DT, WINDOW, CAPACITY = range(6)
@@ -36,39 +35,35 @@ RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 1, PROBABILITY + 4)
 def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
     n = int(p[COUNT])
-    own = LANES + WIDTH * n
+    own = LANES + WIDTH * LANE
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
     evidence = seen and driven(p, s)
-    at = OWN + SLIDING * n
+    at = OWN + SLIDING * LANE
     capacity = int(p[own + CAPACITY])
-    place = window.begin(s, at, n, capacity, p[own + WINDOW])
+    place = window.begin(s, at, capacity, p[own + WINDOW])
     turn = window.angle(w, p[own + CYCLES], p[own + DT])
     cosine = math.cos(turn)
     sine = math.sin(turn)
     half = 0.5 / p[own + WINDOW]
+    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
+    window.push(s, at, n, capacity, place, cosine, sine)
     best = -math.inf
     for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        residual = s[OWN + RESIDUAL * n + i]
-        w[io[RESIDUAL_TAP] + i] = residual
-        w[io[NIS_TAP] + i] = nis
-        window.push(s, at, n, capacity, i, place, residual / math.sqrt(s[OWN + COVARIANCE * n + i]), cosine, sine)
-        tone = window.tone(s, at, n, i)
+        tone = window.tone(s, at, i)
         w[io[TONE_TAP] + i] = tone
-        log = s[OWN + LOG * n + i]
+        log = s[OWN + LOG * LANE + i]
         if evidence:
             log -= half * tone
-        s[OWN + LIKELIHOOD * n + i] = log
+        s[OWN + LIKELIHOOD * LANE + i] = log
         best = max(best, log)
-    window.end(s, at, n, capacity, place, cosine, sine)
     weigh(
         s,
-        OWN + LOG * n,
-        OWN + LIKELIHOOD * n,
+        OWN + LOG * LANE,
+        OWN + LIKELIHOOD * LANE,
         w,
         io[PROBABILITY],
         n,
@@ -126,7 +121,7 @@ class LockIn(KalmanBank):
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, all hypotheses alike, the window empty."""
         n = len(params.hypotheses)
-        sliding = [0.0] * window.size(n, window.room(params))
-        return np.array(cls.at_rest(params, context) + [-math.log(n)] * n + [0.0] * n + sliding)
+        sliding = [0.0] * window.size(window.room(params))
+        return np.array(cls.at_rest(params, context, (-math.log(n), 0.0)) + sliding)
 
     step = lock_in_step

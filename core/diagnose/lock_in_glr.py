@@ -11,21 +11,20 @@ from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
 from core.diagnose.kalman import (
     COUNT,
-    COVARIANCE,
     DEPTH,
     LANES,
     MEASURED,
     OWN,
     PROBABILITY,
-    RESIDUAL,
     STARTED,
     WIDTH,
     KalmanBank,
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
 )
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import share_out
 
 CYCLES, DT, WINDOW, THRESHOLD = range(4)
@@ -37,36 +36,32 @@ RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
 def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, demodulate, compare with the threshold."""
     n = int(p[COUNT])
-    own = LANES + WIDTH * n
+    own = LANES + WIDTH * LANE
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
-    at = OWN + SLIDING * n
+    at = OWN + SLIDING * LANE
     capacity = int(p[own + WINDOW])
-    place = window.begin(s, at, n, capacity, p[own + WINDOW])
+    place = window.begin(s, at, capacity, p[own + WINDOW])
     turn = window.angle(w, p[own + CYCLES], p[own + DT])
     cosine = math.cos(turn)
     sine = math.sin(turn)
     threshold = p[own + THRESHOLD]
+    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
+    window.push(s, at, n, capacity, place, cosine, sine)
     best = -math.inf
     for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        residual = s[OWN + RESIDUAL * n + i]
-        w[io[RESIDUAL_TAP] + i] = residual
-        w[io[NIS_TAP] + i] = nis
-        window.push(s, at, n, capacity, i, place, residual / math.sqrt(s[OWN + COVARIANCE * n + i]), cosine, sine)
-        tone = window.tone(s, at, n, i)
+        tone = window.tone(s, at, i)
         w[io[TONE_TAP] + i] = tone
         log = -0.5 * tone
         if i == 0:
             w[io[ALARM]] = 1.0 if tone > threshold and driven(p, s) else 0.0
             log += 0.5 * threshold
-        s[OWN + LIKELIHOOD * n + i] = log
+        s[OWN + LIKELIHOOD * LANE + i] = log
         best = max(best, log)
-    window.end(s, at, n, capacity, place, cosine, sine)
-    share_out(s, OWN + LIKELIHOOD * n, w, io[PROBABILITY], n, best)
+    share_out(s, OWN + LIKELIHOOD * LANE, w, io[PROBABILITY], n, best)
 
 
 class LockInGlr(KalmanBank):
@@ -108,7 +103,6 @@ class LockInGlr(KalmanBank):
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, the window empty."""
-        n = len(params.hypotheses)
-        return np.array(cls.at_rest(params, context) + [0.0] * n + [0.0] * window.size(n, params.window))
+        return np.array(cls.at_rest(params, context, (0.0,)) + [0.0] * window.size(params.window))
 
     step = lock_in_glr_step

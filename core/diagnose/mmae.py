@@ -15,17 +15,20 @@ from core.diagnose.kalman import (
     HALF_LOG,
     LANES,
     MEASURED,
+    NIS,
     OWN,
     PROBABILITY,
-    RESIDUAL,
     STARTED,
     WIDTH,
     KalmanBank,
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
+    judge,
+    take_logarithms,
 )
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
 
 LINEAR, FLOOR, LOG_FLOOR = range(3)
@@ -37,53 +40,48 @@ TWO_PI_ROOT = math.sqrt(2.0 * math.pi)
 
 
 @kernel
-def multiply(s: Any, n: int, w: Any, probability: int, floor: float) -> None:
+def multiply(s: Any, n: int, w: Any, probability: int, floor: float, evidence: bool) -> None:
     """Normalise products of densities and probabilities; where nothing is left of them, keep what was."""
     total = 0.0
     for i in range(n):
-        total += s[OWN + LIKELIHOOD * n + i]
+        share = s[OWN + LOG * LANE + i]
+        if evidence:
+            # a density times a probability, as printed: either may be too small for a number
+            density = math.exp(-0.5 * s[OWN + NIS * LANE + i])
+            share *= density / (TWO_PI_ROOT * math.exp(s[OWN + HALF_LOG * LANE + i]))
+        s[OWN + LIKELIHOOD * LANE + i] = share
+        total += share
     if total > 0.0 and math.isfinite(total):
         after = 0.0
         for i in range(n):
-            share = max(s[OWN + LIKELIHOOD * n + i] / total, floor)
-            s[OWN + LOG * n + i] = share
+            share = max(s[OWN + LIKELIHOOD * LANE + i] / total, floor)
+            s[OWN + LOG * LANE + i] = share
             after += share
         for i in range(n):
-            s[OWN + LOG * n + i] /= after
+            s[OWN + LOG * LANE + i] /= after
     for i in range(n):
-        w[probability + i] = s[OWN + LOG * n + i]
+        w[probability + i] = s[OWN + LOG * LANE + i]
 
 
 def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict and correct every filter, then weigh the hypotheses."""
     n = int(p[COUNT])
-    own = LANES + WIDTH * n
+    own = LANES + WIDTH * LANE
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
     evidence = seen and driven(p, s)
-    best = -math.inf
-    for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
-        w[io[NIS_TAP] + i] = nis
-        log = s[OWN + LOG * n + i]
-        if p[own + LINEAR] == 0.0:
-            if evidence:
-                log += -0.5 * nis - s[OWN + HALF_LOG * n + i]
-            best = max(best, log)
-        elif evidence:
-            # a density times a probability, as printed: either may be too small for a number
-            log *= math.exp(-0.5 * nis) / (TWO_PI_ROOT * math.exp(s[OWN + HALF_LOG * n + i]))
-        s[OWN + LIKELIHOOD * n + i] = log
+    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+        take_logarithms(s, n)
     at = io[PROBABILITY]
     if p[own + LINEAR] == 0.0:
-        weigh(s, OWN + LOG * n, OWN + LIKELIHOOD * n, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
+        best = judge(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, n, evidence)
+        weigh(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
     else:
-        multiply(s, n, w, at, p[own + FLOOR])
-    information = nearest_rival(p, s, OWN + SEPARATION * n, n, w, at)
+        multiply(s, n, w, at, p[own + FLOOR], evidence)
+    information = nearest_rival(p, s, OWN + SEPARATION * LANE, n, w, at)
     w[io[INFORMATION]] = information
     w[io[UNEXCITED]] = 1.0 if information < LEAST_INFORMATION else 0.0
 
@@ -163,6 +161,6 @@ class Mmae(KalmanBank):
         """All filters at rest, all hypotheses alike."""
         n = len(params.hypotheses)
         log = 1.0 / n if params.arithmetic == "linear" else -math.log(n)
-        return np.array(cls.at_rest(params, context) + [log] * n + [0.0] * n + [0.0] * n)
+        return np.array(cls.at_rest(params, context, (log, 0.0, 0.0)))
 
     step = mmae_step

@@ -11,10 +11,12 @@ from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose.hypothesis import Hypothesis
 from core.diagnose.kalman import (
     COUNT,
+    COVARIANCE,
     DEPTH,
     HALF_LOG,
     LANES,
     MEASURED,
+    NIS,
     OWN,
     PROBABILITY,
     RESIDUAL,
@@ -27,6 +29,7 @@ from core.diagnose.kalman import (
     filter_step,
     hand_over,
 )
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import weigh
 
 FLOOR, LOG_FLOOR, MOVE_ABOVE, SPACING = range(4)
@@ -38,29 +41,32 @@ RESIDUAL_TAP, NIS_TAP = PROBABILITY + 2, PROBABILITY + 3
 def moving_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Run the filter in the centre and its two neighbours; go where the evidence is."""
     n = int(p[COUNT])
-    own = LANES + WIDTH * n
+    lane = max(n, LANE)
+    own = LANES + WIDTH * lane
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
     evidence = seen and driven(p, s)
-    centre = int(s[OWN + CENTRE * n])
+    centre = int(s[OWN + CENTRE * lane])
     low = centre - 1
     best = -math.inf
     for j in range(3):
         i = low + j
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        w[io[RESIDUAL_TAP] + j] = s[OWN + RESIDUAL * n + i]
+        if filter_step(p, s, i, lane, u, z, first, seen) != 0:
+            s[OWN + HALF_LOG * lane + i] = 0.5 * math.log(s[OWN + COVARIANCE * lane + i])
+        nis = s[OWN + NIS * lane + i]
+        w[io[RESIDUAL_TAP] + j] = s[OWN + RESIDUAL * lane + i]
         w[io[NIS_TAP] + j] = nis
-        log = s[OWN + LOG * n + i]
+        log = s[OWN + LOG * lane + i]
         if evidence:
-            log += -0.5 * nis - s[OWN + HALF_LOG * n + i]
-        s[OWN + LIKELIHOOD * n + i] = log
+            log += -0.5 * nis - s[OWN + HALF_LOG * lane + i]
+        s[OWN + LIKELIHOOD * lane + i] = log
         best = max(best, log)
     at = io[PROBABILITY]
-    logs = OWN + LOG * n + low
-    weigh(s, logs, OWN + LIKELIHOOD * n + low, w, at, 3, best, p[own + FLOOR], p[own + LOG_FLOOR])
+    logs = OWN + LOG * lane + low
+    weigh(s, logs, OWN + LIKELIHOOD * lane + low, w, at, 3, best, p[own + FLOOR], p[own + LOG_FLOOR])
     half = n // 2
     w[io[ESTIMATE]] = 1.0 + p[own + SPACING] * (low - half + w[at + 1] + 2.0 * w[at + 2])
     step = 1 if w[at + 2] > p[own + MOVE_ABOVE] else -1 if w[at] > p[own + MOVE_ABOVE] else 0
@@ -68,9 +74,9 @@ def moving_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
         # the one that comes in starts where its neighbour is
         new = centre + 2 * step
         edge = centre + step
-        hand_over(s, n, edge, new)
-        s[OWN + LOG * n + new] = p[own + LOG_FLOOR]
-        s[OWN + CENTRE * n] = centre + step
+        hand_over(s, lane, edge, new)
+        s[OWN + LOG * lane + new] = p[own + LOG_FLOOR]
+        s[OWN + CENTRE * lane] = centre + step
 
 
 class MovingBank(KalmanBank):
@@ -124,7 +130,7 @@ class MovingBank(KalmanBank):
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, the nominal one in the centre."""
-        n = 2 * params.reach + 1
-        return np.array(cls.at_rest(params, context, n) + [-math.log(3.0)] * n + [0.0] * n + [float(params.reach)])
+        lanes = cls.at_rest(params, context, (-math.log(3.0), 0.0), count=2 * params.reach + 1)
+        return np.array([*lanes, float(params.reach)])
 
     step = moving_bank_step

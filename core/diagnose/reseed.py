@@ -11,21 +11,22 @@ from core.block import Context, Equation, FloatArray, kernel, parameter
 from core.diagnose.kalman import (
     COUNT,
     DEPTH,
-    HALF_LOG,
     LANES,
     MEASURED,
     OWN,
     PROBABILITY,
-    RESIDUAL,
     STARTED,
     WIDTH,
     KalmanBank,
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
     hand_over,
+    judge,
+    take_logarithms,
 )
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, likeliest, weigh
 
 FLOOR, LOG_FLOOR, INTERVAL, SURE, HOPELESS = range(5)
@@ -41,32 +42,25 @@ def reseed(s: Any, n: int, w: Any, probability: int, sure: float, hopeless: floa
         return
     for i in range(n):
         if w[probability + i] < hopeless:
-            hand_over(s, n, winner, i)
+            hand_over(s, LANE, winner, i)
 
 
 def reseed_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, weigh; now and then seed anew."""
     n = int(p[COUNT])
-    own = LANES + WIDTH * n
+    own = LANES + WIDTH * LANE
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
     evidence = seen and driven(p, s)
-    best = -math.inf
-    for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
-        w[io[NIS_TAP] + i] = nis
-        log = s[OWN + LOG * n + i]
-        if evidence:
-            log += -0.5 * nis - s[OWN + HALF_LOG * n + i]
-        s[OWN + LIKELIHOOD * n + i] = log
-        best = max(best, log)
+    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+        take_logarithms(s, n)
+    best = judge(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, n, evidence)
     at = io[PROBABILITY]
-    weigh(s, OWN + LOG * n, OWN + LIKELIHOOD * n, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
-    counter = OWN + COUNTER * n
+    weigh(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
+    counter = OWN + COUNTER * LANE
     s[counter] += 1.0
     if s[counter] >= p[own + INTERVAL]:
         s[counter] = 0.0
@@ -107,6 +101,6 @@ class Reseed(KalmanBank):
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, all hypotheses alike; the samples since the last seeding."""
         n = len(params.hypotheses)
-        return np.array(cls.at_rest(params, context) + [-math.log(n)] * n + [0.0] * n + [0.0])
+        return np.array([*cls.at_rest(params, context, (-math.log(n), 0.0)), 0.0])
 
     step = reseed_step

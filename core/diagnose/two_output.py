@@ -14,11 +14,11 @@ from core.diagnose.kalman import (
     HALF_LOG,
     LANES,
     MEASURED,
+    NIS,
     OWN,
     P11,
     P12,
     P22,
-    RESIDUAL,
     STARTED,
     WIDTH,
     X1,
@@ -27,8 +27,10 @@ from core.diagnose.kalman import (
     KalmanParams,
     applied_voltage,
     driven,
-    filter_step,
+    filters_step,
+    take_logarithms,
 )
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
 
 FLOOR, LOG_FLOOR, VELOCITY_NOISE = range(3)
@@ -37,24 +39,24 @@ VELOCITY, CHOSEN, RESIDUAL_TAP, NIS_TAP, SECOND_TAP = range(4, 9)
 
 
 @kernel
-def correct_velocity(p: Any, s: Any, i: int, n: int, residual: float, psi: float) -> None:
+def correct_velocity(p: Any, s: Any, i: int, residual: float, psi: float) -> None:
     """Correct one filter by the velocity, after the displacement."""
     b = OWN + i
-    c12 = s[b + P12 * n]
-    c22 = s[b + P22 * n]
+    c12 = s[b + P12 * LANE]
+    c22 = s[b + P22 * LANE]
     k1 = c12 / psi
     k2 = c22 / psi
-    s[b + X1 * n] += k1 * residual
-    s[b + X2 * n] += k2 * residual
-    s[b + P11 * n] -= k1 * c12
-    s[b + P12 * n] = c12 - k1 * c22
-    s[b + P22 * n] = c22 - k2 * c22
+    s[b + X1 * LANE] += k1 * residual
+    s[b + X2 * LANE] += k2 * residual
+    s[b + P11 * LANE] -= k1 * c12
+    s[b + P12 * LANE] = c12 - k1 * c22
+    s[b + P22 * LANE] = c22 - k2 * c22
 
 
 def two_output_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct by one output and then by the other, weigh."""
     n = int(p[COUNT])
-    own = LANES + WIDTH * n
+    own = LANES + WIDTH * LANE
     z = w[io[MEASURED]]
     zv = w[io[VELOCITY]]
     u = applied_voltage(p, s, w, io)
@@ -63,28 +65,29 @@ def two_output_step(p: Any, s: Any, w: Any, io: Any) -> None:
     seen = math.isfinite(z)
     seen_too = math.isfinite(zv)
     drive = driven(p, s)
+    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+        take_logarithms(s, n)
     best = -math.inf
     for i in range(n):
-        nis = filter_step(p, s, i, n, u, z, first, seen)
-        log = s[OWN + LOG * n + i]
+        nis = s[OWN + NIS * LANE + i]
+        log = s[OWN + LOG * LANE + i]
         if seen and drive:
-            log += -0.5 * nis - s[OWN + HALF_LOG * n + i]
+            log += -0.5 * nis - s[OWN + HALF_LOG * LANE + i]
         residual = 0.0
         if seen_too:
-            psi = s[OWN + P22 * n + i] + p[own + VELOCITY_NOISE]
-            residual = zv - s[OWN + X2 * n + i]
+            psi = s[OWN + P22 * LANE + i] + p[own + VELOCITY_NOISE]
+            residual = zv - s[OWN + X2 * LANE + i]
             more = residual * residual / psi
-            correct_velocity(p, s, i, n, residual, psi)
+            correct_velocity(p, s, i, residual, psi)
             if drive:
                 log += -0.5 * more - 0.5 * math.log(psi)
             nis = 0.5 * (nis + more) if seen else more
-        w[io[RESIDUAL_TAP] + i] = s[OWN + RESIDUAL * n + i]
         w[io[SECOND_TAP] + i] = residual
         w[io[NIS_TAP] + i] = nis
-        s[OWN + LIKELIHOOD * n + i] = log
+        s[OWN + LIKELIHOOD * LANE + i] = log
         best = max(best, log)
     at = io[CHOSEN]
-    weigh(s, OWN + LOG * n, OWN + LIKELIHOOD * n, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
+    weigh(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
 
 
 class TwoOutput(KalmanBank):
@@ -137,6 +140,6 @@ class TwoOutput(KalmanBank):
     def state(cls, params: Any, context: Context) -> FloatArray:
         """All filters at rest, all hypotheses alike."""
         n = len(params.hypotheses)
-        return np.array(cls.at_rest(params, context) + [-math.log(n)] * n + [0.0] * n)
+        return np.array(cls.at_rest(params, context, (-math.log(n), 0.0)))
 
     step = two_output_step

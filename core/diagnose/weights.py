@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import kernel
+from core.block import inlined
 
 
 def floored(floor: float) -> list[float]:
@@ -13,7 +13,7 @@ def floored(floor: float) -> list[float]:
     return [floor, math.log(floor) if floor > 0.0 else 0.0]
 
 
-@kernel
+@inlined
 def likeliest(w: Any, probability: int, n: int) -> int:
     """Return the hypothesis with the largest probability, the first of equals."""
     winner = 0
@@ -23,7 +23,7 @@ def likeliest(w: Any, probability: int, n: int) -> int:
     return winner
 
 
-@kernel
+@inlined
 def weigh(
     s: Any, log: int, likelihood: int, w: Any, probability: int, n: int, best: float, floor: float, log_floor: float
 ) -> None:
@@ -65,7 +65,7 @@ def weigh(
         w[probability + i] = share * inverse
 
 
-@kernel
+@inlined
 def share_out(s: Any, likelihood: int, w: Any, probability: int, n: int, best: float) -> None:
     """Turn unnormalised logarithms into probabilities that nothing remembers."""
     total = 0.0

@@ -11,11 +11,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import TICK, Context, kernel
+from core.block import TICK, Context, inlined, kernel
+from core.diagnose.kalman import COVARIANCE, OWN, RESIDUAL
+from core.diagnose.lanes import LANE
 
 LENGTH, PLACE, HEAD = range(3)
 COSINE_SUM, SINE_SUM, POWER_SUM, COSINE_NEW, SINE_NEW, POWER_NEW, SUMS = range(7)
-"""Lanes of sums, each as long as there are models; then rings of cosines, sines and residuals."""
+"""Lanes of sums; then rings of cosines, of sines, and of lanes of normalised residuals."""
 MOST = 512
 """Longest window that is not asked for."""
 
@@ -36,67 +38,69 @@ def room(params: Any) -> int:
     return params.window or MOST
 
 
-def size(n: int, capacity: int) -> int:
-    """Return how many numbers a window of n models takes."""
-    return HEAD + SUMS * n + (2 + n) * capacity
+def size(capacity: int) -> int:
+    """Return how many numbers a window takes."""
+    return HEAD + SUMS * LANE + (2 + LANE) * capacity
 
 
 @kernel
-def begin(s: Any, at: int, n: int, capacity: int, window: float) -> int:
+def begin(s: Any, at: int, capacity: int, window: float) -> int:
     """Return the place of this sample; a window of another length starts empty."""
     if s[at + LENGTH] != window:
-        for i in range(at, at + HEAD + SUMS * n + (2 + n) * capacity):
+        for i in range(at, at + HEAD + SUMS * LANE + (2 + LANE) * capacity):
             s[i] = 0.0
         s[at + LENGTH] = window
     return int(s[at + PLACE])
 
 
-@kernel
-def push(s: Any, at: int, n: int, capacity: int, i: int, place: int, value: float, cosine: float, sine: float) -> None:
-    """Let a normalised residual of one model in, and the oldest out."""
-    sums = at + HEAD + i
-    cosines = at + HEAD + SUMS * n
-    sines = cosines + capacity
-    ring = sines + capacity * (1 + i) + place
-    old = s[ring]
-    s[ring] = value
-    c = value * cosine
-    d = value * sine
-    e = value * value
-    s[sums + COSINE_SUM * n] += c - old * s[cosines + place]
-    s[sums + SINE_SUM * n] += d - old * s[sines + place]
-    s[sums + POWER_SUM * n] += e - old * old
-    s[sums + COSINE_NEW * n] += c
-    s[sums + SINE_NEW * n] += d
-    s[sums + POWER_NEW * n] += e
+@inlined
+def push(s: Any, at: int, n: int, capacity: int, place: int, cosine: float, sine: float) -> None:
+    """Let the normalised residuals of all models in, and the oldest out; go on to the next place.
 
-
-@kernel
-def end(s: Any, at: int, n: int, capacity: int, place: int, cosine: float, sine: float) -> None:
-    """Go on to the next place; at the end of the window exchange the sums for those summed anew."""
-    s[at + HEAD + SUMS * n + place] = cosine
-    s[at + HEAD + SUMS * n + capacity + place] = sine
+    At the end of the window the sums are exchanged for those summed anew.
+    """
+    sums = at + HEAD
+    ring = sums + SUMS * LANE
+    rows = ring + 2 * capacity
+    old_cosine = s[ring + place]
+    old_sine = s[ring + capacity + place]
+    s[ring + place] = cosine
+    s[ring + capacity + place] = sine
+    row = rows + LANE * place
+    for i in range(n):
+        value = s[OWN + RESIDUAL * LANE + i] / math.sqrt(s[OWN + COVARIANCE * LANE + i])
+        old = s[row + i]
+        s[row + i] = value
+        c = value * cosine
+        d = value * sine
+        e = value * value
+        s[sums + COSINE_SUM * LANE + i] += c - old * old_cosine
+        s[sums + SINE_SUM * LANE + i] += d - old * old_sine
+        s[sums + POWER_SUM * LANE + i] += e - old * old
+        s[sums + COSINE_NEW * LANE + i] += c
+        s[sums + SINE_NEW * LANE + i] += d
+        s[sums + POWER_NEW * LANE + i] += e
     place += 1
     if place >= s[at + LENGTH]:
         place = 0
-        for i in range(3 * n):
-            s[at + HEAD + i] = s[at + HEAD + COSINE_NEW * n + i]
-            s[at + HEAD + COSINE_NEW * n + i] = 0.0
+        for i in range(3 * LANE):
+            s[sums + i] = s[sums + COSINE_NEW * LANE + i]
+            s[sums + COSINE_NEW * LANE + i] = 0.0
     s[at + PLACE] = place
 
 
-@kernel
-def tone(s: Any, at: int, n: int, i: int) -> float:
+@inlined
+def tone(s: Any, at: int, i: int) -> float:
     """Return T of one model."""
-    c = s[at + HEAD + COSINE_SUM * n + i]
-    d = s[at + HEAD + SINE_SUM * n + i]
-    return float(2.0 * (c * c + d * d) / s[at + LENGTH])
+    c = s[at + HEAD + COSINE_SUM * LANE + i]
+    d = s[at + HEAD + SINE_SUM * LANE + i]
+    return 2.0 * (c * c + d * d) / s[at + LENGTH]  # type: ignore[no-any-return]
 
 
-@kernel
-def power(s: Any, at: int, n: int, i: int) -> float:
+@inlined
+def power(s: Any, at: int, i: int) -> float:
     """Return S of one model, never less than nothing by rounding."""
-    return float(max(s[at + HEAD + POWER_SUM * n + i], 0.0))
+    return max(s[at + HEAD + POWER_SUM * LANE + i], 0.0)  # type: ignore[no-any-return]
 
 
 @kernel

@@ -78,7 +78,7 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
     instance = wiring.instances[wiring.row(name)]
     table = np.ascontiguousarray(wiring.table[[wiring.row(name)]])
     table[:, program.ADDRESS] = program.compiled(instance.block.step).address
-    none, nothing, watches = np.zeros(0, dtype=np.int64), np.zeros((1, 0)), np.zeros((0, 3))
+    nothing, watches = np.zeros((1, 0)), np.zeros((0, 3))
     places = {signal: wiring.index[signal] for signal in RECORDED}
     wanted, trip = wiring.index[f"{name}.probability.{hypothesis}"], wiring.index["guard.trip"]
     found = np.empty(len(record["sensor.displacement"]))
@@ -87,7 +87,7 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
         wiring.w[TICK], wiring.w[TIME_MS] = tick, tick * dt
         # the voltage of a sample is the one applied at the sample before
         wiring.w[places["sensor.displacement"]] = record["sensor.displacement"][tick]
-        arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io, none, none)
+        arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io)
         program.run(1, tick, dt, *arrays, nothing, nothing, trip, watches)
         for signal in RECORDED[1:]:
             wiring.w[places[signal]] = record[signal][tick]

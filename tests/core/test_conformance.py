@@ -158,12 +158,14 @@ def plain(cases: list[dict[str, Any]], ticks: int, *, fence: bool) -> list[str]:
     return json.loads(answer.stdout)
 
 
+@pytest.mark.timeout(400)  # plain Python, half a minute where nothing else runs
 def test_everything_as_plain_python_gives_the_same_digests():
     found = plain(list(CASES.values()), TICKS, fence=False)
     expected = [run_digest(board_of(case), TICKS) for case in CASES.values()]
     assert dict(zip(CASES, found, strict=True)) == dict(zip(CASES, expected, strict=True))
 
 
+@pytest.mark.timeout(400)  # plain Python, half a minute where nothing else runs
 def test_steps_touch_only_their_own_parameters_state_and_ports():
     assert plain(list(CASES.values()), 42, fence=True) == []
 

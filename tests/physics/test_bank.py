@@ -16,10 +16,12 @@ from scenarios.seeds import run_seeds
 from tests.lab import inject, make, phasor, play
 from tests.physics.bank import BENCH, BETA, FACTORS, FORCE, NAMES, K, M, model, of_bank, signals
 
+Factors = dict[str, tuple[float, float, float]]
 
-def reference_bank(z: np.ndarray, u: np.ndarray, floor: float) -> np.ndarray:
+
+def reference_bank(z: np.ndarray, u: np.ndarray, floor: float, factors: Factors = FACTORS) -> np.ndarray:
     """MMAE in logarithms with a floor, all filters at once."""
-    models = [model(factors) for factors in FACTORS.values()]
+    models = [model(own) for own in factors.values()]
     phi, gamma = np.array([m[0] for m in models]), np.array([m[1][:, 0] for m in models])
     n = len(models)
     x, p = np.zeros((n, 2)), np.tile(np.diag([1.0, K / M * 1e-6]), (n, 1, 1))
@@ -58,6 +60,22 @@ def test_probabilities_against_an_independent_bank(floor):
     assert found.min() >= floor / (1 + 6 * floor)
     np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1e-12)
     assert np.array_equal(result.signal("kalman.winner"), found.argmax(axis=1))
+
+
+@pytest.mark.parametrize("n", [2, 7, 8, 9, 15, 16])
+@pytest.mark.parametrize("kind", ["mmae", "reseed"])
+def test_a_list_of_any_length_against_an_independent_bank(n, kind):
+    """Models are worked on eight at a time, and there is room for sixteen: no length is special."""
+    factors = {f"k{i}": (1.0, 1.0 + 0.02 * i, 1.0) for i in range(n)}
+    hypotheses = [{"name": name, "stiffness": own[1]} for name, own in factors.items()]
+    bank = {"kind": kind, "hypotheses": hypotheses, "process_noise_v": 0.3, "least_drive_v": 0.0}
+    if kind == "reseed":
+        bank["sure"] = 1.0  # never seeds
+    trace = signals(1200, {"diagnosers": {"kalman": bank}}, {"stiffness": 0.02 * (n - 1)})
+    found = of_bank(trace, "probability", list(factors))
+    expected = reference_bank(trace["sensor.displacement"], trace["drive.voltage"], 1e-3, factors)
+    np.testing.assert_allclose(found, expected, atol=1e-8)
+    assert found[-1].argmax() == n - 1
 
 
 def test_first_probabilities_against_filterpy_bank():
