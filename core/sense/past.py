@@ -10,7 +10,7 @@ from core.sense.tracker import P11, P22, X, correct, predict
 MEASURED, APPLIED, VARIANCE, ENTRY = range(4)
 """Layout of an entry, and its length; a variance of 0 says that nothing was measured."""
 KEPT = 32
-"""Entries kept; the noise of the speed falls with the power 3/2 of their number. A unit that runs more rarely has none."""
+"""Entries kept: noise of the speed falls with the power 3/2 of it. A unit that runs more rarely finds none."""
 SPEED = 100.0
 """Variance of the speed a fresh filter assumes in motion, over that at rest: up to the stroke at resonance."""
 
