@@ -188,6 +188,8 @@ class Context:
         dC/dx of one comb, uN/V^2 (the same number as 1e6 F/m).
     sensor_noise_um : float
         Standard deviation of the sensor's white noise.
+    sensor_every : int
+        Board ticks between two samples of the sensor.
     analogue : bool
         Whether the reference drives the plant between samples.
     limit_v : float
@@ -208,6 +210,7 @@ class Context:
     stator_voltages: tuple[float, float] = (0.0, 0.0)
     capacitance_gradient: float = 0.0
     sensor_noise_um: float = 0.0
+    sensor_every: int = 1
     analogue: bool = False
     limit_v: float = 30.0
     tone_hz: float = 0.0

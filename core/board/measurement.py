@@ -7,14 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, FloatArray, Port
+from core.block import TICK, Block, BlockParams, Context, FloatArray, Port
+from core.sense.past import ENTRY, KEPT, note
+from core.sense.tracker import APPLIED_PORT
 
-CHOSEN, OFFSET, QUANTUM, HELD, MEASURED = range(5)
+CHOSEN, OFFSET, QUANTUM, HELD, APPLIED, MEASURED, PAST = range(7)
+VARIANCE, EVERY = range(2)
 
 
 def measurement_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Pass on the displacement of the sensor in use, unless the sample was lost."""
     if w[io[HELD]] != 0.0:
+        note(w, io[PAST], 0.0, w[io[APPLIED]], 0.0)
         return
     z = w[io[CHOSEN]]
     if w[io[OFFSET]] != 0.0:
@@ -22,13 +26,16 @@ def measurement_step(p: Any, s: Any, w: Any, io: Any) -> None:
     if w[io[QUANTUM]] != 0.0:
         z = w[io[QUANTUM]] * math.floor(z / w[io[QUANTUM]] + 0.5)
     w[io[MEASURED]] = z
+    fresh = int(w[TICK]) % int(p[EVERY]) == 0 and math.isfinite(z)
+    variance = p[VARIANCE] + w[io[QUANTUM]] * w[io[QUANTUM]] / 12.0
+    note(w, io[PAST], z, w[io[APPLIED]], variance if fresh else 0.0)
 
 
 class Measurement(Block):
     """Passes on the displacement of the sensor in use; all sensors run, so a change is one index.
 
     What faults of the measurement do comes in the order of the chain: what is added before the converter, the
-    converter, the samples that get lost behind it.
+    converter, the samples that get lost behind it. The last samples are kept for a sensor that takes over in motion.
     """
 
     title = "Measurement"
@@ -37,15 +44,26 @@ class Measurement(Block):
         Port("offset", "um", "added to what is measured", source="effects.sensor_offset"),
         Port("quantum", "um", "step what is measured is rounded to", source="effects.sensor_quantum"),
         Port("held", "1", "not zero while the sample is lost", source="effects.sensor_held"),
+        APPLIED_PORT,
     )
     outputs = (Port("displacement", "um", "measured displacement"),)
+    taps = (
+        Port(
+            "past",
+            "mixed",
+            "what was measured over the last samples, with voltage and variance",
+            labels=tuple(str(i) for i in range(KEPT * ENTRY)),
+            hidden=True,
+        ),
+    )
 
     class Params(BlockParams):
         """Nothing to choose but the sensor."""
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack nothing."""
-        return np.zeros(0)
+        """Pack the variance of a sample, not 0 so that it counts as measured, and how often there is one."""
+        noise = max(context.sensor_noise_um, 1e-6)
+        return np.array([noise * noise, context.sensor_every])
 
     step = measurement_step

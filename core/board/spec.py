@@ -91,7 +91,7 @@ class Spec:
         # the noise of a sample of the sensor, however often the block that asks runs
         noise = getattr(sensor.block, "noise_um", None)
         own = noise(sensor.params, self._known(sensor.every)) if noise else getattr(sensor.params, "noise_um", 0.0)
-        return replace(self._known(every), sensor_noise_um=float(own))
+        return replace(self._known(every), sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:
         nominal = self.device.oscillator()

@@ -13,6 +13,7 @@ from core.sense.grating import WAVE
 from core.sense.hypotheses import (
     BEST,
     CHANGES,
+    EVERY,
     GRATING,
     MODEL,
     MOST,
@@ -25,6 +26,7 @@ from core.sense.hypotheses import (
     sift,
     turns,
 )
+from core.sense.past import PAST_PORT, catch_up
 from core.sense.sensor import (
     ERROR_PORT,
     LAST_PORT,
@@ -38,15 +40,17 @@ from core.sense.sensor import (
 from core.sense.through_wafer import ThroughWafer
 from core.sense.tracker import APPLIED_PORT, FILTER, MOTION, Tracker, TrackerParams, V, X, predict
 
-LAST, LIGHT, APPLIED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(10)
+LAST, PAST, LIGHT, APPLIED, TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = range(11)
 
 
 def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Follow every hypothesis and put out the likeliest."""
-    first = s[STARTED] == 0.0
-    if first:
+    first = False
+    if s[STARTED] == 0.0:
         s[STARTED] = 1.0
-        s[OWN + X] = begin_at(w[io[LAST]])
+        first = not catch_up(p, MODEL, s, OWN, w, io[PAST], int(p[EVERY]))
+        if first:
+            s[OWN + X] = begin_at(w[io[LAST]])
     z = w[io[LIGHT]]
     for i in range(MOST):
         b = OWN + i * WIDTH
@@ -79,14 +83,15 @@ class SingleBeam(Tracker):
     memory of a few periods of the drive. While the stiffness is known to 30 % one filter would do; beyond that it
     slips, and the reflections bring it back.
 
-    It costs as much as the rest of the bench together while it runs. It begins where the shuttle was measured last,
-    at no speed.
+    It costs as much as the rest of the bench together while it runs. It begins with the place and the speed that
+    one filter makes of what was measured over the last samples.
     The text leaves the unit to others (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
     """
 
     title = "Single beam, several hypotheses"
     inputs = (
         LAST_PORT,
+        PAST_PORT,
         Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
         APPLIED_PORT,
         TRUE_PORT,
@@ -135,6 +140,7 @@ class SingleBeam(Tracker):
             params.near_um,
             0.0125 * beam.pitch_um,
             0.025 * beam.pitch_um * context.device.natural_frequency,
+            context.every,
         ]
         return np.array(own + tracker.pack_model(params, context) + beam.packed(context))
 
