@@ -13,6 +13,7 @@ them. Spot, bar transmission and signal to noise ratio are not in the text and a
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 from core.block import Context, kernel, parameter
@@ -23,6 +24,18 @@ MEAN, WAVE, OFFSET, COUNT, FIRST = range(5)
 """Layout of a packed grating: mean, 2 pi over pitch, offset, number of harmonics, then their amplitudes."""
 HARMONICS = 64
 NEGLIGIBLE = 1e-9
+
+
+@lru_cache(256)
+def amplitudes(pitch: float, spot: float, opening: float) -> tuple[float, ...]:
+    """Return the amplitudes a of the harmonics, as many as matter."""
+    found = []
+    for m in range(1, HARMONICS + 1):
+        smooth = math.exp(-0.5 * (math.pi * m * spot / pitch) ** 2)
+        found.append(2.0 / (math.pi * m) * math.sin(math.pi * m * opening) * smooth)
+    while len(found) > 1 and abs(found[-1]) <= NEGLIGIBLE * abs(found[0]):
+        found.pop()
+    return tuple(found)
 
 
 class GratingParams(SensorParams):
@@ -37,13 +50,7 @@ class GratingParams(SensorParams):
 
     def shape(self) -> list[float]:
         """Return the amplitudes of the harmonics of the open share, as many as matter."""
-        found = []
-        for m in range(1, HARMONICS + 1):
-            smooth = math.exp(-0.5 * (math.pi * m * self.spot_um / self.pitch_um) ** 2)
-            found.append(2.0 / (math.pi * m) * math.sin(math.pi * m * self.opening) * smooth)
-        while len(found) > 1 and abs(found[-1]) <= NEGLIGIBLE * abs(found[0]):
-            found.pop()
-        return found
+        return list(amplitudes(self.pitch_um, self.spot_um, self.opening))
 
     def offset(self, seed: int) -> float:
         """Return the position of an opening, given or drawn."""
