@@ -9,6 +9,7 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.schema import Scenario
+from scenarios.timing import cpu_ns
 
 SAMPLES = 9000
 DIAGNOSERS: dict[str, dict[str, Any]] = {
@@ -27,7 +28,7 @@ def side_by_side() -> Scenario:
     return with_values(get("ch5-seven-step"), {"diagnosers": DIAGNOSERS, "expect": []})
 
 
-def seven_steps(cpu_ns: Callable[[Callable[[], Any], int], float]) -> Callable[[], float]:
+def seven_steps() -> Callable[[], float]:
     """Return the measurement of a run as a bench pays it, ns: blocks, trace rows, events, log, digest."""
     scenario = side_by_side()
 

@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 import os
-import time
-from collections.abc import Callable, Mapping
 from functools import partial
-from statistics import median
 from typing import Any
 
 import numpy as np
-from scipy import signal
 
-from core import estimation, registry
-from core.block import FloatArray, Oscillator, kernel
-from core.board import program
+from core import registry
 from core.board.board import CHUNK, Board
-from core.device.oscillator import transition
 from core.device.response import held_response
 from scenarios.campaign_speed import scaling
 from scenarios.edit import with_values
 from scenarios.library import get
+from scenarios.peers import (
+    estimate_sample,
+    filterpy_step,
+    interconnected_sample,
+    lsim_sample,
+    padasip_sample,
+    regressors_of,
+)
 from scenarios.run import build
 from scenarios.side_by_side import DIAGNOSERS, SAMPLES, seven_steps, side_by_side
+from scenarios.timing import ALIVE, advance_cost, block_costs, cpu_ns, interleaved, loop_cost
 
-REPEATS = 7
 CAMPAIGN_RUNS = 400
 SECOND = 100_000
 """Samples of 1 s at 100 kHz."""
@@ -32,176 +33,11 @@ SAMPLE_NS = 10_000.0
 """Device time of a sample at 100 kHz."""
 
 
-def cpu_ns(work: Callable[[], Any], units: int) -> float:
-    """Return the CPU time of one unit of work, ns."""
-    begin = time.thread_time_ns()
-    work()
-    return (time.thread_time_ns() - begin) / units
-
-
-def interleaved(candidates: Mapping[str, Callable[[], float]], repeats: int = REPEATS) -> dict[str, float]:
-    """Measure candidates in turn and return the median of each, so that drift meets all alike."""
-    found: dict[str, list[float]] = {name: [] for name in candidates}
-    for measure in candidates.values():
-        measure()
-    for _ in range(repeats):
-        for name, measure in candidates.items():
-            found[name].append(measure())
-    return {name: median(values) for name, values in found.items()}
-
-
 def _board(values: dict[str, Any] | None = None) -> Board:
     scenario = with_values(get("ch5-seven-step"), {"events": [], **(values or {})})
     board = build(scenario)
     board.advance(CHUNK)
     return board
-
-
-def advance_cost(board: Board, ticks: int = 100 * CHUNK) -> float:
-    """Return the cost of a tick as a bench pays it: blocks, trace rows, log, digest, ns."""
-
-    def work() -> None:
-        for _ in range(ticks // CHUNK):
-            board.advance(CHUNK)
-
-    return cpu_ns(work, ticks)
-
-
-def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:
-    """Return the cost of a tick of some blocks alone, without trace or digest, ns."""
-    wiring = board.wiring
-    rows = [wiring.row(key) for key in keys]
-    table = np.ascontiguousarray(wiring.table[rows])
-    table[:, program.ADDRESS] = [program.compiled(wiring.instances[row].block.step).address for row in rows]
-    nothing = np.zeros((ticks, 0))
-    arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io)
-    trip, watches = wiring.index["guard.trip"], np.zeros((0, 3))
-
-    def work() -> None:
-        program.run(ticks, 1, board.dt_ms, *arrays, nothing, nothing, trip, watches)
-
-    return cpu_ns(work, ticks)
-
-
-ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive")
-"""Blocks that keep every signal moving: with frozen inputs a block is not doing its usual work."""
-
-
-def block_costs(board: Board, *only: str) -> dict[str, float]:
-    """Return the cost of some blocks or all, ns per tick, the dispatch included: a tick with it run once more."""
-    candidates = {"": partial(loop_cost, board, [*ALIVE], 50_000)}
-    for instance in board.wiring.instances:
-        if not only or instance.key in only:
-            candidates[instance.key] = partial(loop_cost, board, [*ALIVE, instance.key], 50_000)
-    ns = interleaved(candidates)
-    return {key: round(value - ns[""], 1) for key, value in ns.items() if key}
-
-
-def filterpy_step(board: Board, steps: int = 300) -> Callable[[], float]:
-    """Return the measurement of filterpy's bank on the same six models, ns per step."""
-    from filterpy.kalman import KalmanFilter, MMAEFilterBank
-
-    filters = []
-    section = board.spec.diagnosers["kalman"]
-    context = board.spec.context()
-    for hypothesis in section.params.hypotheses:  # type: ignore[attr-defined]
-        device = hypothesis.oscillator(context.device)
-        phi = np.array(transition(device.mass, device.damping, device.stiffness, context.dt_ms)).reshape(2, 2)
-        gamma = np.array([[(1.0 - phi[0, 0]) * device.static_gain], [-phi[1, 0] * device.static_gain]])
-        kalman = KalmanFilter(dim_x=2, dim_z=1, dim_u=1)
-        kalman.F, kalman.B, kalman.H = phi, gamma, np.array([[1.0, 0.0]])
-        kalman.Q, kalman.R = gamma @ gamma.T * 0.09, np.array([[0.0025]])
-        filters.append(kalman)
-    bank = MMAEFilterBank(filters, [1.0 / len(filters)] * len(filters), dim_x=2, H=filters[0].H)
-
-    def measure() -> float:
-        def work() -> None:
-            for i in range(steps):
-                bank.predict(u=np.array([[np.sin(0.25 * i)]]))
-                bank.update(np.array([[0.01 * i]]))
-
-        return cpu_ns(work, steps)
-
-    return measure
-
-
-def interconnected_sample(board: Board, samples: int = 20) -> Callable[[], float]:
-    """Return the measurement of python-control's simulation of the same adaptive loop, ns per sample of 10 us."""
-    from scenarios.interconnected import adaptive_loop, simulate
-
-    loop = adaptive_loop(board.spec.context())
-    return lambda: cpu_ns(lambda: simulate(loop, board.dt_ms * samples), samples)
-
-
-def lsim_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
-    """Return the measurement of ``scipy.signal.lsim`` on the same record, ns per sample."""
-    system = (
-        [device.force / device.mass],
-        [1.0, device.damping / device.mass, device.stiffness / device.mass],
-    )
-    t = np.arange(len(voltage)) * 0.01
-    return lambda: cpu_ns(lambda: signal.lsim(system, voltage, t), len(voltage))
-
-
-@kernel
-def estimate_record(
-    s: FloatArray, regressors: FloatArray, measured: FloatArray, forgetting: float, limit: float
-) -> None:
-    """Run recursive least squares with four parameters over a record.
-
-    Parameters
-    ----------
-    s : ndarray
-        Estimate, lower triangle of the covariance, and eight scratch numbers.
-    regressors, measured : ndarray, shape (m, 4) and (m,)
-        The record.
-    forgetting, limit : float
-        Forgetting factor and largest trace.
-    """
-    n, at = 4, 14  # known when it is compiled, so that the loops are unrolled
-    for i in range(regressors.shape[0]):
-        error = measured[i]
-        for j in range(n):
-            s[at + j] = regressors[i, j]
-            error -= s[j] * regressors[i, j]
-        estimation.least_squares(s, 0, n, at, at + n, n, error, forgetting, forgetting, limit)
-
-
-def estimate_start(covariance: float) -> FloatArray:
-    """Return the state of ``estimate_record`` before the first sample."""
-    return np.array([0.0] * 4 + estimation.diagonal(4, covariance) + [0.0] * 8)
-
-
-def regressors_of(u: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the regressors [u, u, -y, -y] of a record and what they should give."""
-    return np.column_stack([u[1:-1], u[:-2], -y[1:-1], -y[:-2]]), y[2:]
-
-
-def estimate_sample(regressors: FloatArray, measured: FloatArray) -> Callable[[], float]:
-    """Return the measurement of recursive least squares with four parameters, ns per update."""
-    start = estimate_start(1e8)
-
-    def measure() -> float:
-        s = start.copy()
-        return cpu_ns(lambda: estimate_record(s, regressors, measured, 0.98, 1e10), len(measured))
-
-    return measure
-
-
-def padasip_sample(regressors: FloatArray, measured: FloatArray, updates: int = 2000) -> Callable[[], float]:
-    """Return the measurement of padasip's filter on the same record, ns per update."""
-    import padasip
-
-    def measure() -> float:
-        peer = padasip.filters.FilterRLS(n=4, mu=0.98, eps=1e-8, w="zeros")
-
-        def work() -> None:
-            for i in range(updates):
-                peer.adapt(measured[i], regressors[i])
-
-        return cpu_ns(work, updates)
-
-    return measure
 
 
 ADAPTIVE = {
@@ -256,7 +92,7 @@ def speed() -> dict[str, Any]:
         "plant_3_controllers_bank": lambda: loop_cost(bench, hot),
         "controllers": lambda: loop_cost(bench, controllers),
         "bank": lambda: loop_cost(bench, ["kalman"]),
-        "seven_steps": seven_steps(cpu_ns),
+        "seven_steps": seven_steps(),
         "mrac_loop": lambda: loop_cost(loop, ["plant", "effects", "sensor", "reference", "model", "mrac", "drive"]),
         "planar": lambda: loop_cost(plane, [*ALIVE], 2_000),
         "plant_record": lambda: cpu_ns(lambda: held_response(device, sine, 0.01), SECOND),
