@@ -58,7 +58,7 @@ describe("StreamClient", () => {
     handlers = {
       onMessage: vi.fn(),
       onOpen: vi.fn(),
-      onFrame: vi.fn(),
+      isDrawing: vi.fn(() => true),
       onClose: vi.fn(),
       explain: vi.fn(async () => undefined),
     };
@@ -151,25 +151,39 @@ describe("StreamClient", () => {
     await lost;
   });
 
+  const sayFrame = (frame: number, panel: number) => {
+    const picture = { panel, revision: 1, startTick: 0, endTick: 1, flags: 0, min: [[1]], max: [[1]], latest: [1] };
+    last().say(encodeFrame({ frame, headTick: 77, dtMs: 0.01, panels: [picture] }));
+  };
+
   it("only stores a frame; drawing acknowledges it", () => {
     const draw = vi.fn();
     const feed = client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 1 }, draw);
     last().accept();
-    const panel = {
-      panel: feed.panel,
-      revision: 1,
-      startTick: 0,
-      endTick: 1,
-      flags: 0,
-      min: [[1]],
-      max: [[1]],
-      latest: [1],
-    };
-    last().say(encodeFrame({ frame: 1, headTick: 77, dtMs: 0.01, panels: [panel] }));
+    sayFrame(1, feed.panel);
     expect(client.head.tick).toBe(77);
     expect(draw).not.toHaveBeenCalled();
     client.feeds.draw();
     expect(draw).toHaveBeenCalledOnce();
     expect(types(last())).toEqual(["subscribe", "ack"]);
+  });
+
+  it("acknowledges at the next message what it will not draw, although no frame comes any more", () => {
+    const draw = vi.fn();
+    const feed = client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 1 }, draw);
+    last().accept();
+    sayFrame(1, feed.panel);
+    sayFrame(2, feed.panel);
+    expect(types(last())).toEqual(["subscribe"]);
+    handlers.isDrawing.mockReturnValue(false);
+    last().say({ type: "status" });
+    last().say({ type: "status" });
+    expect(
+      last()
+        .sent.slice(1)
+        .map((text) => JSON.parse(text)),
+    ).toEqual([{ type: "ack", frame: 2 }]);
+    client.feeds.draw();
+    expect(draw).toHaveBeenCalledOnce();
   });
 });

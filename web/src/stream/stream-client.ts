@@ -2,7 +2,7 @@ import { ApiError } from "../api/api-error";
 import type { components } from "../api/schema";
 import type { Command } from "../api/types";
 import { type CloseReason, closeReason } from "./close-reason";
-import { decodeFrame } from "./decode-frame";
+import { decodeFrame, type Frame } from "./decode-frame";
 import { Feeds } from "./feeds";
 import { reconnectDelay } from "./reconnect-delay";
 import { type ClientMessage, type ServerMessage, SUBPROTOCOL } from "./wire";
@@ -12,8 +12,8 @@ const REPLY_TIMEOUT_MS = 5000;
 export interface StreamHandlers {
   onMessage(message: ServerMessage): void;
   onOpen(): void;
-  /** A frame has been stored. */
-  onFrame(): void;
+  /** Whether what arrives is drawn soon; drawing acknowledges it. */
+  isDrawing(): boolean;
   /** `retryAt` is the time of the next attempt on `performance.now()`'s clock, if there will be one. */
   onClose(reason: CloseReason, code: number, retryAt: number | undefined): void;
   /** Asked when a connection never opened: why, if the server can be asked. */
@@ -127,17 +127,22 @@ export class StreamClient {
 
   private receive(data: ArrayBuffer | string): void {
     this.lastHeard = performance.now();
-    if (typeof data === "string") {
-      const message = JSON.parse(data) as ServerMessage;
-      if (message.type === "reply") this.reply(message);
-      if (message.type === "hello") this.attempt = 0;
-      this.handlers.onMessage(message);
-      return;
-    }
-    const frame = decodeFrame(data);
+    if (typeof data === "string") this.receiveText(JSON.parse(data) as ServerMessage);
+    else this.receiveFrame(decodeFrame(data));
+    // At every message, not only at a frame: the server sends no frame more while two wait for a drawing that does not
+    // come, as when the page was hidden just now, but its status comes all the same.
+    if (!this.handlers.isDrawing()) this.feeds.acknowledge();
+  }
+
+  private receiveText(message: ServerMessage): void {
+    if (message.type === "reply") this.reply(message);
+    if (message.type === "hello") this.attempt = 0;
+    this.handlers.onMessage(message);
+  }
+
+  private receiveFrame(frame: Frame): void {
     this.head = { tick: frame.headTick, dtMs: frame.dtMs, running: frame.running };
     this.feeds.receive(frame);
-    this.handlers.onFrame();
   }
 
   private reply(message: components["schemas"]["Reply"]): void {

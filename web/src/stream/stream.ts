@@ -21,9 +21,7 @@ const client = new StreamClient({
   onMessage: receive,
   onOpen: () => patch({ phase: "open", reason: undefined, retryAt: undefined, staleSince: undefined }),
   // A hidden page gets no animation frames and slow timers; the server must not take it for a dead one.
-  onFrame: () => {
-    if (document.hidden || performance.now() - loop.lastFrame > STALE_MS) client.feeds.acknowledge();
-  },
+  isDrawing: () => !document.hidden && performance.now() - loop.lastFrame <= STALE_MS,
   onClose: (reason, _code, retryAt) => {
     const since = useBench.getState().connection.staleSince ?? new Date();
     patch({ phase: retryAt === undefined ? "closed" : "waiting", reason, retryAt, staleSince: since });
