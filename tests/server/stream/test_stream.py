@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 import threading
 import time
 from typing import Any
@@ -149,6 +150,38 @@ def test_a_stalled_page_is_let_go_and_the_others_see_nothing_of_it(live: Any, mo
         assert any(m["type"] == "notice" and m["code"] == "slow_client" for m in bad.messages)
         assert len(good.frames) > 100
         good.until(lambda m: isinstance(m, dict) and m["type"] == "status" and m["watchers"] == 1)
+
+
+def stand_still_while_reading(live: Any, seconds: float) -> None:
+    """Stop the loop where it polls its sockets: next come its timers, and only then what has arrived meanwhile."""
+    loop = live.service._loop
+    inner, outer = socket.socketpair()
+
+    def stop() -> None:
+        loop.remove_reader(inner)
+        time.sleep(seconds)
+        inner.close()
+
+    loop.call_soon_threadsafe(loop.add_reader, inner, stop)
+    outer.close()
+
+
+def test_a_server_that_stood_still_does_not_blame_its_pages(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a page acknowledged meanwhile waits to be read: nobody is let go before it has been."""
+    monkeypatch.setattr(client_module, "STALL_S", 1.0)
+    bench = live.bench()
+    with live.stream(bench["id"]) as stream:
+        stream.acks = False
+        stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
+        stream.until_frame()
+        stream.drain(0.3)
+        stand_still_while_reading(live, 2.0)
+        time.sleep(0.5)
+        stream.send(type="ack", frame=stream.frames[-1].frame)
+        stream.acks = True
+        stream.drain(3.0)
+        assert len(stream.frames) > 30
+        assert live.service.hub.watchers(bench["id"]) == 1
 
 
 def test_a_page_that_reads_nothing_at_all_is_cut_off(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
