@@ -52,8 +52,8 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   const rows = result.getByRole("table").first().locator("tbody tr");
   await expect(rows).toHaveCount(2);
   await expect(rows.first()).toContainText("0.05");
-  await result.getByRole("button", { name: "noise um" }).click();
-  await result.getByRole("button", { name: "noise um" }).click();
+  await result.getByRole("button", { name: "noise µm" }).click();
+  await result.getByRole("button", { name: "noise µm" }).click();
   await expect(rows.first()).toContainText("0.2");
   await expect(result.getByRole("img", { name: /Receiver operating characteristic/ })).toBeVisible();
   await expect(result.getByRole("img", { name: /Detection delay/ })).toBeVisible();

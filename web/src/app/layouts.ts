@@ -2,6 +2,7 @@ import type { DockviewApi, SerializedDockview } from "dockview-react";
 import type { Document } from "../api/types";
 import { scopeConfig } from "../panels/scope/scope-config";
 import { BUILT_IN } from "./built-in-layouts";
+import { withGaps } from "./dock-gap";
 import { PANELS } from "./panels";
 import { type LayoutName, useView } from "./view-store";
 
@@ -69,6 +70,14 @@ function stored(name: LayoutName): SerializedDockview | undefined {
   return text ? (JSON.parse(text) as SerializedDockview) : undefined;
 }
 
+/** The tabs of a narrow group scroll; the one whose panel is shown must be among those seen. */
+function revealActiveTabs(): void {
+  for (const group of current?.groups ?? [])
+    group.element
+      .querySelector("[role=tab][aria-selected=true]")
+      ?.scrollIntoView({ block: "nearest", inline: "nearest" });
+}
+
 function arrange(name: LayoutName, saved: SerializedDockview | undefined): void {
   const api = current;
   useView.setState({ layout: name, large: name === "lecture" });
@@ -76,7 +85,8 @@ function arrange(name: LayoutName, saved: SerializedDockview | undefined): void 
   if (!api) return;
   if (saved) {
     try {
-      api.fromJSON(saved);
+      api.fromJSON(withGaps(saved));
+      requestAnimationFrame(revealActiveTabs);
       return;
     } catch (error) {
       console.warn("the stored layout does not fit this version", error);

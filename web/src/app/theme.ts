@@ -72,6 +72,7 @@ export const theme = createTheme({
       },
     },
     Notification: { defaultProps: { closeButtonProps: { "aria-label": "Dismiss" } } },
+    Slider: { defaultProps: { thumbSize: "var(--thumb)" } },
     Popover: { defaultProps: { shadow: "md", withinPortal: true } },
   },
 });

@@ -13,12 +13,13 @@ import { useBench } from "../stream/bench-store";
 import { PanelVisible } from "../ui/panel-visible";
 import { usePageVisible } from "../ui/use-page-visible";
 import "./dock.css";
+import { DOCK_GAP } from "./dock-gap";
 import { addPanel, addScope, attachDock } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind } from "./panels";
 import { SCOPE_PRESETS } from "./scope-presets";
 
-const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: 6 };
+const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: DOCK_GAP };
 
 const components = Object.fromEntries(Object.entries(PANELS).map(([name, kind]) => [name, dockPanel(kind)]));
 

@@ -44,7 +44,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                 )}
                 {all && entry.note && <small>{entry.note}</small>}
               </th>
-              <td>{entry.published || "–"}</td>
+              <td>{entry.published?.replaceAll(" %", "\u00a0%") || "–"}</td>
               <td className={styles.expected}>{typeset(entry.expected)}</td>
               <td data-ok={entry.ok}>
                 {entry.measured === null || entry.measured === undefined ? "–" : formatSi(entry.measured, "")}

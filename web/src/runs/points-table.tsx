@@ -22,7 +22,7 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
     ...axes.map(
       (axis): Column => ({
         id: axis,
-        title: axis.split(".").at(-1)?.replaceAll("_", " ") ?? axis,
+        title: metricName(axis.split(".").at(-1) ?? axis),
         of: (p) => p.labels[axis],
         say: (p) => labelText(p.labels[axis] ?? ""),
       }),

@@ -5,7 +5,7 @@ import { CANVAS, type Scheme } from "../ui/palette";
 import { linearTicks } from "../ui/ticks";
 
 /** Room for the axes, CSS pixels. */
-export const FIELD = { left: 44, bottom: 34, right: 8, top: 4 };
+export const FIELD = { left: 44, bottom: 34, right: 8, top: 8 };
 
 /** Growth, 1/time, that counts as none. */
 export const STILL = 1e-7;

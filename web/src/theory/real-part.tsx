@@ -93,7 +93,7 @@ function Plot({ label, width, x, y, across, up, log = false }: PlotProps) {
       <text x={LEFT + wide} y={HEIGHT - 5} textAnchor="end" className={styles.tick}>
         {across}
       </text>
-      <text x={LEFT + 6} y={19} className={styles.tick}>
+      <text x={(log ? LEFT : Math.max(LEFT, px(0))) + 6} y={19} className={styles.tick}>
         {up}
       </text>
     </svg>

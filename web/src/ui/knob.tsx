@@ -74,7 +74,6 @@ export function Knob(props: KnobProps) {
       </div>
       <Slider
         size="xs"
-        thumbSize={14}
         min={0}
         max={1}
         step={0.001}

@@ -23,7 +23,9 @@ interface LineChartProps {
   yRange?: [number, number];
 }
 
-const LEFT = 58;
+/** Room for the title of the upright axis, and for each digit of its numbers, px. */
+const TITLE = 24;
+const DIGIT = 7;
 const RIGHT = 12;
 const TOP = 8;
 const BOTTOM = 40;
@@ -40,9 +42,11 @@ export function LineChart({ title, xLabel, yLabel, lines, xRange, yRange }: Line
       spanOf(lines.flatMap((l) => l.y.flatMap((v, i) => [v - (l.spread?.[i] ?? 0), v + (l.spread?.[i] ?? 0)]))),
     [lines, yRange],
   );
-  const width = Math.max(60, size.width - LEFT - RIGHT);
   const height = Math.max(40, size.height - TOP - BOTTOM);
-  const px = (x: number) => LEFT + ((x - x0) / (x1 - x0)) * width;
+  const rows = linearTicks(y0, y1, height / 34);
+  const left = TITLE + DIGIT * Math.max(5, ...rows.map((t) => say(t).length));
+  const width = Math.max(60, size.width - left - RIGHT);
+  const px = (x: number) => left + ((x - x0) / (x1 - x0)) * width;
   const py = (y: number) => TOP + height - ((y - y0) / (y1 - y0)) * height;
   const colour = (i: number) => TRACE_COLOURS[scheme][1 + (i % (TRACE_COLOURS[scheme].length - 1))];
   const dash = (i: number) => DASHES[i % DASHES.length].join(" ");
@@ -73,15 +77,15 @@ export function LineChart({ title, xLabel, yLabel, lines, xRange, yRange }: Line
                 </text>
               </g>
             ))}
-            {linearTicks(y0, y1, height / 34).map((t) => (
+            {rows.map((t) => (
               <g key={`y${t}`}>
-                <path d={`M${LEFT} ${py(t)}H${LEFT + width}`} className={styles.grid} />
-                <text x={LEFT - 6} y={py(t) + 4} textAnchor="end">
+                <path d={`M${left} ${py(t)}H${left + width}`} className={styles.grid} />
+                <text x={left - 6} y={py(t) + 4} textAnchor="end">
                   {say(t)}
                 </text>
               </g>
             ))}
-            <text x={LEFT + width / 2} y={size.height - 6} textAnchor="middle" className={styles.axis}>
+            <text x={left + width / 2} y={size.height - 6} textAnchor="middle" className={styles.axis}>
               {xLabel}
             </text>
             <text

@@ -5,4 +5,5 @@ it("says a metric in words and keeps whose it is", () => {
   expect(metricName("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
   expect(metricName("control.effort_ratio")).toBe("effort ratio");
   expect(metricName("twins.healthy.control.effort_ratio")).toBe("healthy: control effort ratio");
+  expect(metricName("beam_width.softer_5_um_pct")).toBe("beam width softer 5 µm %");
 });

@@ -3,5 +3,7 @@ export function metricName(metric: string): string {
   return metric
     .replace(/^(?:control|device|diagnosis|identify|lateral|sensing)\./, "")
     .replace(/^twins\.([^.]+)\./, "$1: ")
-    .replaceAll(/[._]/g, " ");
+    .replaceAll(/[._]/g, " ")
+    .replaceAll(/\bum\b/g, "µm")
+    .replaceAll(/\bpct\b/g, "%");
 }

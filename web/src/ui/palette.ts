@@ -6,7 +6,7 @@ export type Scheme = "dark" | "light";
  */
 export const TRACE_COLOURS: Record<Scheme, readonly string[]> = {
   dark: ["#dfe4ea", "#56b4e9", "#e69f00", "#1fb88f", "#cc79a7", "#e8703a", "#f0e442", "#4a90e2"],
-  light: ["#2b3036", "#0072b2", "#b97900", "#008a64", "#b04f86", "#c84e00", "#857a00", "#2f86c1"],
+  light: ["#2b3036", "#0072b2", "#b97900", "#00805c", "#b04f86", "#c84e00", "#7d7300", "#2f86c1"],
 };
 
 /** Dashes in device-independent pixels; the first is solid. */

@@ -63,11 +63,11 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
       <NumberInput
         size="xs"
         label="Length"
-        title="0: until it is stopped"
+        placeholder="until stopped"
         suffix=" ms"
         min={0}
-        w={92}
-        value={draft.lengthMs}
+        w={112}
+        value={draft.lengthMs || ""}
         onChange={(n) => set({ lengthMs: Number(n) || 0 })}
       />
       <NativeSelect

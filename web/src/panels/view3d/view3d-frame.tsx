@@ -86,10 +86,16 @@ export function View3dFrame({ path }: { path: string }) {
           </button>
         ))}
       </fieldset>
-      {(closed || waiting) && (
+      {closed || waiting ? (
         <div className={styles.veil} role="status">
           The 3D view waits for the server
         </div>
+      ) : (
+        connected === 0 && (
+          <div className={styles.loading} role="status">
+            The 3D view is loading
+          </div>
+        )
       )}
     </div>
   );
