@@ -1,6 +1,6 @@
 import { expect, test } from "./lab";
 
-test.use({ viewport: { width: 390, height: 844 } });
+test.use({ viewport: { width: 390, height: 844 }, hasTouch: true });
 
 test("a phone shows status, scope and lanes, and stops the bench", async ({ page, openBench }) => {
   await openBench();
@@ -12,4 +12,20 @@ test("a phone shows status, scope and lanes, and stops the bench", async ({ page
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
   await page.getByRole("button", { name: "Run", exact: true }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
+});
+
+test("whatever a finger taps is 24 px or more", async ({ page, openBench }) => {
+  await openBench();
+  await page.getByRole("combobox", { name: "Another panel" }).selectOption("labs");
+  await expect(page.getByRole("slider").first()).toBeVisible();
+  const small = await page.locator("button, [role=slider]").evaluateAll((targets) =>
+    targets
+      .map((target) => ({
+        name: target.getAttribute("aria-label") ?? target.textContent,
+        box: target.getBoundingClientRect(),
+      }))
+      .filter(({ box }) => box.width > 0 && Math.min(box.width, box.height) < 24)
+      .map(({ name }) => name),
+  );
+  expect(small).toEqual([]);
 });

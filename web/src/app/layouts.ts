@@ -75,7 +75,7 @@ function revealActiveTabs(): void {
   for (const group of current?.groups ?? [])
     group.element
       .querySelector("[role=tab][aria-selected=true]")
-      ?.scrollIntoView({ block: "nearest", inline: "nearest" });
+      ?.scrollIntoView({ block: "nearest", inline: "center" });
 }
 
 function arrange(name: LayoutName, saved: SerializedDockview | undefined): void {
