@@ -10,21 +10,8 @@ from scipy.special import chdtri
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
-from core.diagnose.kalman import (
-    COUNT,
-    DEPTH,
-    LANES,
-    MEASURED,
-    OWN,
-    PROBABILITY,
-    STARTED,
-    WIDTH,
-    KalmanBank,
-    KalmanParams,
-    applied_voltage,
-    driven,
-    filters_step,
-)
+from core.diagnose.filters import COUNT, DEPTH, LANES, OWN, PROBABILITY, WIDTH, applied_voltage, driven, filters_step
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 
 CYCLES, DT, WINDOW, CAPACITY, POWER_LIMIT, TONE_LIMIT, ALONE_FOR, NONE_FOR = range(8)
@@ -39,11 +26,7 @@ def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, test every hypothesis, conclude."""
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
-    z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
     state = OWN + DEPTH * LANE
     at = state + SLIDING
     capacity = int(p[own + CAPACITY])
@@ -51,7 +34,7 @@ def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     turn = window.angle(w, p[own + CYCLES], p[own + DT])
     cosine = math.cos(turn)
     sine = math.sin(turn)
-    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
+    filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     candidates = 0
     last = -1

@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
-from core.diagnose.kalman import (
+from core.diagnose.filters import (
     COUNT,
     DEPTH,
     HALF_LOG,
     LANES,
-    MEASURED,
     NIS,
     OWN,
     PROBABILITY,
-    STARTED,
     WIDTH,
-    KalmanBank,
-    KalmanParams,
     applied_voltage,
-    driven,
     filters_step,
+    informed,
     take_logarithms,
 )
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import share_out
 
@@ -39,13 +35,9 @@ def cusum_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, add up, compare with the threshold."""
     n = int(p[COUNT])
     threshold = p[LANES + WIDTH * LANE + THRESHOLD]
-    z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
-    evidence = seen and driven(p, s)
-    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+    evidence = informed(p, s, w, io)
+    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
         take_logarithms(s, n)
     healthy = 0.0
     most = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import inlined, settled
-from core.diagnose.kalman import INVERSE, MEMORY, OWN, RESIDUAL
+from core.diagnose.filters import INVERSE, MEMORY, OWN, RESIDUAL
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import likeliest
 

@@ -9,12 +9,11 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, inlined, parameter
 from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
-from core.diagnose.kalman import (
+from core.diagnose.filters import (
     COUNT,
     COVARIANCE,
     DEPTH,
     LANES,
-    MEASURED,
     NIS,
     OWN,
     P11,
@@ -25,12 +24,11 @@ from core.diagnose.kalman import (
     WIDTH,
     X1,
     X2,
-    KalmanBank,
-    KalmanParams,
     applied_voltage,
-    driven,
     filters_step,
+    informed,
 )
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 
 OTHER = 0
@@ -87,15 +85,11 @@ def mix(s: Any, n: int, other: float) -> None:
 def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Mix, predict and correct, weigh."""
     n = int(p[COUNT])
-    z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
-    evidence = seen and driven(p, s)
-    if evidence and not first:
+    evidence = informed(p, s, w, io)
+    if evidence and s[STARTED] != 0.0:
         mix(s, n, p[LANES + WIDTH * LANE + OTHER])
-    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
+    filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
     if evidence:
         least = math.inf
         for i in range(n):

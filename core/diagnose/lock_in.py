@@ -9,21 +9,8 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
-from core.diagnose.kalman import (
-    COUNT,
-    DEPTH,
-    LANES,
-    MEASURED,
-    OWN,
-    PROBABILITY,
-    STARTED,
-    WIDTH,
-    KalmanBank,
-    KalmanParams,
-    applied_voltage,
-    driven,
-    filters_step,
-)
+from core.diagnose.filters import COUNT, DEPTH, LANES, OWN, PROBABILITY, WIDTH, applied_voltage, filters_step, informed
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
 
@@ -36,12 +23,8 @@ def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
-    z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
-    evidence = seen and driven(p, s)
+    evidence = informed(p, s, w, io)
     at = OWN + SLIDING * LANE
     capacity = int(p[own + CAPACITY])
     place = window.begin(s, at, capacity, p[own + WINDOW])
@@ -49,7 +32,7 @@ def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
     cosine = math.cos(turn)
     sine = math.sin(turn)
     half = 0.5 / p[own + WINDOW]
-    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
+    filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     best = -math.inf
     for i in range(n):

@@ -9,21 +9,8 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
-from core.diagnose.kalman import (
-    COUNT,
-    DEPTH,
-    LANES,
-    MEASURED,
-    OWN,
-    PROBABILITY,
-    STARTED,
-    WIDTH,
-    KalmanBank,
-    KalmanParams,
-    applied_voltage,
-    driven,
-    filters_step,
-)
+from core.diagnose.filters import COUNT, DEPTH, LANES, OWN, PROBABILITY, WIDTH, applied_voltage, driven, filters_step
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import share_out
 
@@ -37,11 +24,7 @@ def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, demodulate, compare with the threshold."""
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
-    z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
     at = OWN + SLIDING * LANE
     capacity = int(p[own + WINDOW])
     place = window.begin(s, at, capacity, p[own + WINDOW])
@@ -49,7 +32,7 @@ def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
     cosine = math.cos(turn)
     sine = math.sin(turn)
     threshold = p[own + THRESHOLD]
-    filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP])
+    filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     best = -math.inf
     for i in range(n):

@@ -9,25 +9,22 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, kernel, parameter
 from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
-from core.diagnose.kalman import (
+from core.diagnose.filters import (
     COUNT,
     DEPTH,
     HALF_LOG,
     LANES,
-    MEASURED,
     NIS,
     OWN,
     PROBABILITY,
-    STARTED,
     WIDTH,
-    KalmanBank,
-    KalmanParams,
     applied_voltage,
-    driven,
     filters_step,
+    informed,
     judge,
     take_logarithms,
 )
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
 
@@ -67,13 +64,9 @@ def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict and correct every filter, then weigh the hypotheses."""
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
-    z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
-    evidence = seen and driven(p, s)
-    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+    evidence = informed(p, s, w, io)
+    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
         take_logarithms(s, n)
     at = io[PROBABILITY]
     if p[own + LINEAR] == 0.0:

@@ -8,8 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
-from core.diagnose.hypothesis import Hypothesis
-from core.diagnose.kalman import (
+from core.diagnose.filters import (
     COUNT,
     COVARIANCE,
     DEPTH,
@@ -22,13 +21,13 @@ from core.diagnose.kalman import (
     RESIDUAL,
     STARTED,
     WIDTH,
-    FilterParams,
-    KalmanBank,
     applied_voltage,
     driven,
     filter_step,
     hand_over,
 )
+from core.diagnose.hypothesis import Hypothesis
+from core.diagnose.kalman import FilterParams, KalmanBank
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import weigh
 

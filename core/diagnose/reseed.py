@@ -8,24 +8,21 @@ from typing import Any
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, kernel, parameter
-from core.diagnose.kalman import (
+from core.diagnose.filters import (
     COUNT,
     DEPTH,
     LANES,
-    MEASURED,
     OWN,
     PROBABILITY,
-    STARTED,
     WIDTH,
-    KalmanBank,
-    KalmanParams,
     applied_voltage,
-    driven,
     filters_step,
     hand_over,
+    informed,
     judge,
     take_logarithms,
 )
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, likeliest, weigh
 
@@ -49,13 +46,9 @@ def reseed_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, weigh; now and then seed anew."""
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
-    z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
-    evidence = seen and driven(p, s)
-    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+    evidence = informed(p, s, w, io)
+    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
         take_logarithms(s, n)
     best = judge(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, n, evidence)
     at = io[PROBABILITY]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, kernel, parameter
-from core.diagnose.kalman import (
+from core.diagnose.filters import (
     COUNT,
     DEPTH,
     HALF_LOG,
@@ -19,17 +19,15 @@ from core.diagnose.kalman import (
     P11,
     P12,
     P22,
-    STARTED,
     WIDTH,
     X1,
     X2,
-    KalmanBank,
-    KalmanParams,
     applied_voltage,
     driven,
     filters_step,
     take_logarithms,
 )
+from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
 
@@ -57,15 +55,12 @@ def two_output_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct by one output and then by the other, weigh."""
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
-    z = w[io[MEASURED]]
     zv = w[io[VELOCITY]]
     u = applied_voltage(p, s, w, io)
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
+    seen = math.isfinite(w[io[MEASURED]])
     seen_too = math.isfinite(zv)
     drive = driven(p, s)
-    if filters_step(p, s, w, n, u, z, first, seen, io[RESIDUAL_TAP], io[NIS_TAP]):
+    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
         take_logarithms(s, n)
     best = -math.inf
     for i in range(n):

@@ -12,7 +12,7 @@ import math
 from typing import Any
 
 from core.block import TICK, Context, inlined, kernel
-from core.diagnose.kalman import COVARIANCE, OWN, RESIDUAL
+from core.diagnose.filters import COVARIANCE, OWN, RESIDUAL
 from core.diagnose.lanes import LANE
 
 LENGTH, PLACE, HEAD = range(3)

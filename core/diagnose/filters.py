@@ -1,0 +1,177 @@
+"""Kalman filters side by side: the layout of a bank, and what its step is made of."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from core.block import inlined, kernel, settled
+from core.diagnose.lanes import LANE
+
+COUNT, PROCESS, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(10)
+"""Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
+PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI, INVERSE_PSI, WIDTH = range(11)
+"""Lanes of the parameters."""
+STARTED, LAST_CHARGE, LEVEL, OWN = range(4)
+"""State of every bank; the lanes of the filters follow, then a bank's own."""
+X1, X2, P11, P12, P22, RESIDUAL, NIS, COVARIANCE, INVERSE, HALF_LOG, DEPTH = range(11)
+"""Lanes of the state; half the logarithm of the residual covariance is kept while it stays."""
+MEASURED, APPLIED, MIDDLE, CHARGE, PROBABILITY = range(5)
+"""Ports of every bank."""
+LEAST = 1e-12
+"""Least residual covariance, as a share of R."""
+
+
+@kernel
+def applied_voltage(p: Any, s: Any, w: Any, io: Any) -> float:
+    """Return the voltage of the interval that ends now, and keep its mean square over the shuttle's own memory.
+
+    A bank that runs every N ticks is given the mean voltage of the ticks between.
+    """
+    if p[EVERY] != 1.0:
+        u = (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
+    elif p[AT_START] != 0.0:
+        u = w[io[APPLIED]]
+    else:
+        u = w[io[MIDDLE]]
+    s[LAST_CHARGE] = w[io[CHARGE]]
+    s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * u * u)
+    return float(u)
+
+
+@kernel
+def driven(p: Any, s: Any) -> bool:
+    """Say whether there is drive enough for residuals to be evidence."""
+    return bool(s[LEVEL] >= p[LEAST_DRIVE])
+
+
+@kernel
+def informed(p: Any, s: Any, w: Any, io: Any) -> bool:
+    """Say whether this sample is evidence: it was measured, and there is drive enough."""
+    return math.isfinite(w[io[MEASURED]]) and s[LEVEL] >= p[LEAST_DRIVE]
+
+
+@inlined
+def filter_step(p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool) -> int:
+    r"""Predict one filter, unless this is its first sample; correct it, if there is a measurement.
+
+    .. math:: x^-=\Phi x+\Gamma u,\quad P^-=\Phi P\Phi^T+\Gamma Q\Gamma^T
+
+    .. math:: r=z-Hx^-,\quad\psi=HP^-H^T+R,\quad K=P^-H^T/\psi,\quad x=x^-+Kr,\quad P=(I-KH)P^-
+
+    What is decided is the same for all filters, so it chooses between values and not between ways: a loop of this
+    stays one of vectors. Returns 1 if the residual covariance has changed, so that its logarithm is no longer right.
+    """
+    a = LANES + i
+    b = OWN + i
+    printed = p[PRINTED] != 0.0
+    c11 = s[b + P11 * lane]
+    c12 = s[b + P12 * lane]
+    c22 = s[b + P22 * lane]
+    f11 = p[a + PHI11 * lane]
+    f12 = p[a + PHI12 * lane]
+    f21 = p[a + PHI21 * lane]
+    f22 = p[a + PHI22 * lane]
+    g1 = p[a + GAMMA1 * lane]
+    g2 = p[a + GAMMA2 * lane]
+    q1 = f11 * c11 + f12 * c12
+    q2 = f11 * c12 + f12 * c22
+    q3 = f21 * c11 + f22 * c12
+    q4 = f21 * c12 + f22 * c22
+    noise = g1 * p[PROCESS]
+    c11 = c11 if first else q1 * f11 + q2 * f12 + g1 * noise
+    c12 = c12 if first else q1 * f21 + q2 * f22 + g2 * noise
+    c22 = c22 if first else q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
+    total = c11 + p[SENSOR]
+    # the text prints psi without R, and without assumed noise that would end at nothing
+    psi = max(c11, LEAST * p[SENSOR]) if printed else total
+    inverse = 1.0 / psi
+    innovation = 1.0 / total if printed else inverse
+    k1 = c11 * innovation
+    k2 = c12 * innovation
+    correct_state(p, s, i, lane, u, z, first, seen, k1, k2, inverse)
+    s[b + P11 * lane] = c11 - k1 * c11 if seen else c11
+    s[b + P12 * lane] = c12 - k1 * c12 if seen else c12
+    s[b + P22 * lane] = c22 - k2 * c12 if seen else c22
+    changed = 1 if psi != s[b + COVARIANCE * lane] else 0
+    s[b + COVARIANCE * lane] = psi
+    return changed
+
+
+@inlined
+def correct_state(
+    p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool, k1: float, k2: float, inverse: float
+) -> None:
+    """Predict the state of one filter and correct it by a known gain."""
+    a = LANES + i
+    b = OWN + i
+    x1 = s[b + X1 * lane]
+    x2 = s[b + X2 * lane]
+    moved1 = p[a + PHI11 * lane] * x1 + p[a + PHI12 * lane] * x2 + p[a + GAMMA1 * lane] * u
+    moved2 = p[a + PHI21 * lane] * x1 + p[a + PHI22 * lane] * x2 + p[a + GAMMA2 * lane] * u
+    x1 = x1 if first else moved1
+    x2 = x2 if first else moved2
+    residual = settled(z - x1) if seen else 0.0
+    s[b + X1 * lane] = settled(x1 + k1 * residual)
+    s[b + X2 * lane] = settled(x2 + k2 * residual)
+    s[b + RESIDUAL * lane] = residual
+    s[b + INVERSE * lane] = inverse
+    s[b + NIS * lane] = residual * residual * inverse
+
+
+@inlined
+def filters_step(p: Any, s: Any, w: Any, io: Any, n: int, u: float, residual_tap: int) -> bool:
+    """Predict and correct all filters; show their residuals at a tap, and the squares over psi at the next.
+
+    Returns whether a residual covariance has changed, so that its logarithm is no longer right.
+    """
+    z = w[io[MEASURED]]
+    seen = math.isfinite(z)
+    first = s[STARTED] == 0.0
+    s[STARTED] = 1.0
+    changed = 0
+    if p[STEADY] == 0.0:
+        for i in range(n):
+            changed += filter_step(p, s, i, LANE, u, z, first, seen)
+    else:
+        for i in range(n):
+            a = LANES + i
+            psi = p[a + PSI * LANE]
+            correct_state(
+                p, s, i, LANE, u, z, first, seen, p[a + GAIN1 * LANE], p[a + GAIN2 * LANE], p[a + INVERSE_PSI * LANE]
+            )
+            changed += 1 if psi != s[OWN + COVARIANCE * LANE + i] else 0
+            s[OWN + COVARIANCE * LANE + i] = psi
+    residuals = io[residual_tap]
+    squares = io[residual_tap + 1]
+    for i in range(n):
+        w[residuals + i] = s[OWN + RESIDUAL * LANE + i]
+        w[squares + i] = s[OWN + NIS * LANE + i]
+    return changed != 0
+
+
+@kernel
+def take_logarithms(s: Any, n: int) -> None:
+    """Keep half the logarithm of every residual covariance."""
+    for i in range(n):
+        s[OWN + HALF_LOG * LANE + i] = 0.5 * math.log(s[OWN + COVARIANCE * LANE + i])
+
+
+@inlined
+def judge(s: Any, log: int, likelihood: int, n: int, evidence: bool) -> float:
+    """Write the logarithms the residuals leave, from those at ``log`` to ``likelihood``; return the largest."""
+    best = -math.inf
+    for i in range(n):
+        before = s[log + i]
+        after = before - (0.5 * s[OWN + NIS * LANE + i] + s[OWN + HALF_LOG * LANE + i])
+        after = after if evidence else before
+        s[likelihood + i] = after
+        best = max(best, after)
+    return best
+
+
+@kernel
+def hand_over(s: Any, lane: int, source: int, target: int) -> None:
+    """Let a filter go on from where another is: its state and its covariance."""
+    for row in (X1, X2, P11, P12, P22):
+        s[OWN + row * lane + target] = s[OWN + row * lane + source]
