@@ -33,9 +33,8 @@ def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) 
     document = json.loads(json.dumps(result.scenario.document, default=str))
     ticks = np.arange(len(result.outputs))
     columns: dict[str, np.ndarray[Any, Any]] = {"tick": ticks, "time_ms": ticks * result.board.dt_ms}
-    for signal in result.board.signals:
-        if signal.kind == "output" or result.taps is not None:
-            columns[signal.name] = result.signal(signal.name)
+    for signal in result.kept:
+        columns[signal.name] = result.signal(signal.name)
     write_parquet(stem.with_suffix(".parquet"), columns, {"scenario": document, "seed": result.seed})
     write_text(stem.with_suffix(".html"), run_report(result, summary))
     write_text(stem.with_suffix(".svg"), thumbnail(result))

@@ -87,7 +87,7 @@ def _diagnosis(result: Result, name: str, scores: Scores) -> Diagnosis:
         None,
     )
     columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
-    if healthy is None or columns[0] not in {signal.name for signal in result.board.signals} or not len(result.outputs):
+    if healthy is None or columns[0] not in {signal.name for signal in result.kept} or not len(result.outputs):
         return found
     probability = np.array([result.signal(column) for column in columns])
     bins = np.digitize(_log_odds(probability, healthy), EVIDENCE)

@@ -15,7 +15,7 @@ from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
 from core.errors import InputError
-from core.signals import SignalTable
+from core.signals import Signal, SignalTable
 from scenarios.metrics import device_metrics, measure
 from scenarios.schema import Scenario
 from scenarios.verdict_metrics import TRACED_VERDICTS
@@ -48,6 +48,11 @@ class Result:
     def trip(self) -> Trip | None:
         """Why the board stopped, if it did."""
         return self.board.trip
+
+    @property
+    def kept(self) -> list[Signal]:
+        """Signals whose traces were kept: the outputs, and the taps if there was to be a trace of them."""
+        return [signal for signal in self.board.signals if signal.kind == "output" or self.taps is not None]
 
     def signal(self, name: str) -> FloatArray:
         """Return the trace of one signal.
@@ -139,6 +144,11 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
             except InputError as error:
                 raise error.under(f"events.{position}") from None
     return board
+
+
+def trace_bytes(board: Board, samples: int, *, taps: bool) -> int:
+    """Return the memory a run takes for what it keeps of its signals."""
+    return 8 * samples * (len(board.signals) if taps else board.signals.outputs)
 
 
 def run(

@@ -85,7 +85,7 @@ def _charts(result: Result) -> list[str]:
         return []
     time_ms = np.arange(float(len(result.outputs))) * result.board.dt_ms
     span = (0.0, float(time_ms[-1]))
-    signals = {signal.name: signal for signal in result.board.signals}
+    signals = {signal.name: signal for signal in result.kept}
     marks = [Mark(entry.time_ms, entry.text) for entry in result.board.log if entry.kind in DONE and entry.tick]
     found = []
     for title, names in CHARTS:

@@ -40,7 +40,7 @@ def thumbnail(result: Result) -> str:
 
 def _motion(result: Result) -> list[str]:
     """Draw a trace."""
-    names = set(result.board.signals.names)
+    names = {signal.name for signal in result.kept}
     diagnosers = [name for name in result.board.spec.diagnosers if f"{name}.winner" in names][:2]
     bottom = HEIGHT - 4 - len(diagnosers) * (LANE + 7)
     width = WIDTH / (len(result.outputs) - 1)

@@ -44,6 +44,9 @@ class Settings(BaseSettings):
     max_queued_runs: int = Field(256, ge=1, description="Headless runs waiting or running.")
     max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
     max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
+    max_run_mb: int = Field(
+        2000, ge=1, description="Memory for the trace of one headless run; where taps have no room, outputs only."
+    )
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
     quota_bytes: int = Field(50_000_000_000, ge=0, description="Bytes of recordings and runs; beyond, no new ones.")

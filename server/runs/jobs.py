@@ -24,10 +24,10 @@ from sqlalchemy.orm import Session
 from core.errors import InputError
 from scenarios.executor import prepare
 from scenarios.key import content_hash, run_key
-from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
+from server.runs.length import check_length
 from server.runs.worker import CANCEL, NICE, PROGRESS, STEM, Cancelled, work
 from server.settings import Settings
 from server.store.database import Database
@@ -93,15 +93,12 @@ class Jobs:
         Raises
         ------
         ApiError
-            If too many wait, or the run is too long.
+            If too many wait, or the run is too long, or its trace too large.
         """
         settings = self._settings
         if settings.run_workers == 0:
             raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
-        ticks = (scenario.samples or DEFAULT_SAMPLES) * len(seeds)
-        if ticks > settings.max_run_ticks:
-            text = f"this run has {ticks} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
-            raise ApiError(422, "too_long", text, "scenario")
+        await asyncio.to_thread(check_length, scenario, len(seeds), settings, "this run", "scenario")
         document, key = identify(scenario, seeds)
         row = RunRow(
             id=key[:32],
@@ -232,7 +229,9 @@ class Jobs:
         place = self._folder / run_id
         await asyncio.to_thread(shutil.rmtree, place, ignore_errors=True)
         pool = self._executor()
-        future = self._futures[run_id] = pool.submit(work, document, seeds, str(place))
+        future = self._futures[run_id] = pool.submit(
+            work, document, seeds, str(place), self._settings.max_run_mb * 1_000_000
+        )
         try:
             summary = await asyncio.wrap_future(future)
         except Cancelled:

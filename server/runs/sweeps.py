@@ -20,10 +20,13 @@ from core.errors import InputError
 from scenarios.campaign import Campaign, Stopped
 from scenarios.key import code_version, content_hash, run_key
 from scenarios.outcome import Outcome
+from scenarios.run import DEFAULT_SAMPLES
+from scenarios.schema import Scenario
 from scenarios.sweep import Sweep
 from scenarios.tally import PointTally, tally
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
+from server.runs.length import check_length
 from server.runs.worker import NICE
 from server.settings import Settings
 from server.store.database import Database, reason_of
@@ -88,10 +91,9 @@ class Sweeps:
         if len(sweep) > settings.max_sweep_runs:
             text = f"this campaign has {len(sweep)} runs, the limit is {settings.max_sweep_runs} (max_sweep_runs)"
             raise ApiError(422, "too_long", text, "sweep")
-        longest = max(point.document.get("samples") or 10_000 for point in sweep.points)
-        if longest > settings.max_run_ticks:
-            text = f"a run of this campaign has {longest} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
-            raise ApiError(422, "too_long", text, "sweep")
+        longest = max(sweep.points, key=lambda point: point.document.get("samples") or DEFAULT_SAMPLES)
+        scenario = await asyncio.to_thread(Scenario.load, longest.document)
+        await asyncio.to_thread(check_length, scenario, 1, settings, "a run of this campaign", "sweep")
         sweep_id = run_key(content_hash({"sweep": sweep.document}))[:32]
         known = await self._row(sweep_id)
         if known is not None and known.state in (*ACTIVE, "done"):

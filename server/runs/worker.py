@@ -45,7 +45,7 @@ class Watch:
         return look
 
 
-def work(document: dict[str, Any], seeds: list[int], folder: str) -> dict[str, Any]:
+def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: int) -> dict[str, Any]:
     """Run a scenario once per seed; trace, report and drawing are of the first.
 
     Parameters
@@ -56,6 +56,8 @@ def work(document: dict[str, Any], seeds: list[int], folder: str) -> dict[str, A
         At least one.
     folder : str
         Where the results go, each under a temporary name first.
+    most_bytes : int
+        Memory for the trace; taps that would not fit are left out.
 
     Returns
     -------
@@ -68,7 +70,7 @@ def work(document: dict[str, Any], seeds: list[int], folder: str) -> dict[str, A
         When a file ``cancel`` has appeared in the folder.
     """
     from scenarios.keeping import keep
-    from scenarios.run import DEFAULT_SAMPLES, Result, run
+    from scenarios.run import DEFAULT_SAMPLES, Result, build, run, trace_bytes
     from scenarios.schema import Scenario
     from scenarios.seeds import together
 
@@ -78,10 +80,11 @@ def work(document: dict[str, Any], seeds: list[int], folder: str) -> dict[str, A
     summaries: list[dict[str, Any]] = []
     samples = scenario.samples or DEFAULT_SAMPLES
     watch = Watch(place, samples * len(seeds))
+    has_room = trace_bytes(build(scenario), samples, taps=True) <= most_bytes
     kept: Result | None = None
     for number, seed in enumerate(seeds):
         watch.at(number * samples)(0)
-        result = run(scenario, seed, taps=number == 0, on_tick=watch.at(number * samples))
+        result = run(scenario, seed, taps=has_room and number == 0, on_tick=watch.at(number * samples))
         summaries.append(result.summary())
         kept = kept or result
     assert kept is not None

@@ -55,7 +55,7 @@ def client(address: str) -> httpx.Client:
 def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
     from websockets.sync.client import connect
 
-    with process(tmp_path) as running:
+    with process(tmp_path, COMBBENCH_MAX_RUN_MB="100000") as running:
         assert running.address.startswith("CombBench is at http://127.0.0.1:")
         assert running.address.endswith(f"/?token={TOKEN}")
         with client(running.address) as http:

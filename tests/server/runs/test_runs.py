@@ -69,6 +69,7 @@ def test_several_seeds_give_means_and_deviations(live: Any) -> None:
         ({"seed": 1, "seeds": [1, 2]}, "seed or seeds"),
         ({"seed": -1}, "seed"),
         ({"set": {"samples": 50_000_000}}, "max_run_ticks"),
+        ({"set": {"samples": 19_000_000}}, "max_run_mb"),
         ({"set": {"samples": 0}}, "samples"),
     ],
 )
@@ -76,6 +77,10 @@ def test_a_wrong_run_is_refused(live: Any, body: dict[str, Any], word: str) -> N
     answer = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", **body})
     assert answer.status_code == 422
     assert word in answer.json()["error"]["message"]
+
+
+ROOM = {"max_run_mb": 100_000}
+"""For runs that are long only so that there is time to do something to them."""
 
 
 def long_run(number: int = 0) -> dict[str, Any]:
@@ -91,7 +96,7 @@ def until_running(live: Any, run_id: str) -> dict[str, Any]:
 
 
 def test_the_queue_is_bounded_and_any_run_can_be_cancelled(serve: Any) -> None:
-    with serve(max_queued_runs=3) as live:
+    with serve(max_queued_runs=3, **ROOM) as live:
         ids = [live.http.post("/api/v1/runs", json=long_run(number)).json()["id"] for number in range(3)]
         refused = live.http.post("/api/v1/runs", json=long_run(9))
         assert refused.status_code == 429 and refused.json()["error"]["code"] == "too_many_runs"
@@ -106,13 +111,30 @@ def test_the_queue_is_bounded_and_any_run_can_be_cancelled(serve: Any) -> None:
         status = live.get(bench["id"])
         assert status["state"] == "running" and status["tick"] > 0
     # The server has gone while one was under way: it begins again, and what was cancelled stays so.
-    with serve() as live:
+    with serve(**ROOM) as live:
         states = {found["id"]: found["state"] for found in live.http.get("/api/v1/runs").json()["runs"]}
         assert states[ids[0]] == states[ids[2]] == "cancelled"
         assert states[ids[1]] in ("queued", "running")
         assert live.http.delete(f"/api/v1/runs/{ids[1]}").json()["state"] == "cancelled"
         # A cancelled run may be asked for again.
         assert live.http.post("/api/v1/runs", json=long_run(0)).status_code == 202
+
+
+def test_a_trace_without_room_for_taps_holds_the_outputs(serve: Any) -> None:
+    body = {"scenario": "ch5-seven-step", "set": {"samples": 1500}}
+    with serve(max_run_mb=1) as live:
+        found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
+        assert found["state"] == "done", found["error"]
+        assert found["summary"]["digest"] == run(with_values(get("ch5-seven-step"), body["set"])).digest
+        trace = live.http.get(f"/api/v1/runs/{found['id']}/trace?format=csv").text.splitlines()
+        assert len(trace) == 1501
+        names = trace[0].replace('"', "").split(",")
+        assert "kalman.probability.healthy" in names
+        assert not any(name.startswith("kalman.nis") for name in names)
+        tap = live.http.get(f"/api/v1/runs/{found['id']}/trace?format=csv&signals=kalman.nis.healthy")
+        assert tap.status_code == 422 and "kalman.nis.healthy" in tap.json()["error"]["message"]
+        refused = live.http.post("/api/v1/runs", json={**body, "set": {"samples": 9000}})
+        assert refused.status_code == 422 and "max_run_mb" in refused.json()["error"]["message"]
 
 
 def test_the_same_run_asked_twice_is_one_run(live: Any) -> None:
@@ -151,7 +173,7 @@ def test_a_run_a_crash_interrupted_begins_again_but_not_for_ever(serve: Any, tmp
 
 
 def test_a_run_whose_worker_dies_begins_again_but_not_for_ever(serve: Any) -> None:
-    with serve() as live:
+    with serve(**ROOM) as live:
         run_id = live.http.post("/api/v1/runs", json=long_run()).json()["id"]
         for _ in range(3):
             until_running(live, run_id)
@@ -175,7 +197,7 @@ def test_a_study_is_a_run_too(live: Any) -> None:
     few = {"study.runs": 4, "study.healthy_samples": 40_000, "study.signals": ["glr100.tone.healthy", "cusum.sum.m+5"]}
     body = {"scenario": "ch5-detectors", "set": {**few, "expect": []}, "seed": 3}
     found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
-    assert found["state"] == "done", found
+    assert found["state"] == "done", found["error"]
     expected = run(with_values(get("ch5-detectors"), body["set"]), 3).metrics
     metrics = found["summary"]["metrics"]
     assert metrics == json.loads(json.dumps(expected))

@@ -1,0 +1,39 @@
+"""How long a headless run may be: its ticks, and the memory of what it keeps of its signals."""
+
+from __future__ import annotations
+
+from scenarios.run import DEFAULT_SAMPLES, build, trace_bytes
+from scenarios.schema import Scenario
+from server.errors import ApiError
+from server.settings import Settings
+
+
+def check_length(scenario: Scenario, seeds: int, settings: Settings, what: str, field: str) -> None:
+    """Refuse a run that is too long for this server.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is to be run.
+    seeds : int
+        How often.
+    settings : Settings
+        Limits.
+    what, field : str
+        What the error calls it, and the field it names.
+
+    Raises
+    ------
+    ApiError
+        If it has too many ticks, or its outputs take too much memory.
+    """
+    samples = scenario.samples or DEFAULT_SAMPLES
+    if samples * seeds > settings.max_run_ticks:
+        text = f"{what} has {samples * seeds} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
+        raise ApiError(422, "too_long", text, field)
+    if scenario.study is not None:
+        return
+    needed = trace_bytes(build(scenario), samples, taps=False) / 1e6
+    if needed > settings.max_run_mb:
+        text = f"the outputs of {what} take {needed:.0f} MB, the limit is {settings.max_run_mb} (max_run_mb)"
+        raise ApiError(422, "too_long", text, field)
