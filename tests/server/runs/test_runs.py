@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+import os
+import signal
 import statistics
 import time
 from typing import Any
@@ -174,14 +176,24 @@ def test_a_run_a_crash_interrupted_begins_again_but_not_for_ever(serve: Any, tmp
         assert after["state"] == "aborted" and "stopped" in after["error"]["message"]
 
 
+def kill_workers(live: Any, killed: set[int]) -> set[int]:
+    """Kill the workers there are, but for those that were killed before; wait for some."""
+    end = time.monotonic() + 60
+    while not (fresh := set(getattr(live.service.jobs._pool, "_processes", None) or {}) - killed):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    for pid in fresh:
+        os.kill(pid, signal.SIGKILL)
+    return fresh
+
+
 def test_a_run_whose_worker_dies_begins_again_but_not_for_ever(serve: Any) -> None:
     with serve() as live:
         run_id = live.http.post("/api/v1/runs", json=long_run()).json()["id"]
+        killed: set[int] = set()
         for _ in range(3):
             until_running(live, run_id)
-            for process in list(live.service.jobs._pool._processes.values()):
-                process.kill()
-            time.sleep(0.3)
+            killed |= kill_workers(live, killed)
         found = wait(live, run_id)
         assert found["state"] == "aborted" and "died 3 times" in found["error"]["message"]
         again = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step"}).json()["id"]
@@ -203,6 +215,6 @@ def test_a_study_is_a_run_too(live: Any) -> None:
     expected = run(with_values(get("ch5-detectors"), body["set"]), 3).metrics
     metrics = found["summary"]["metrics"]
     assert metrics == json.loads(json.dumps(expected))
-    for signal in few["study.signals"]:
-        assert 0.5 < metrics[f"roc.{signal}.area"] <= 1.0 and metrics[f"detectors.{signal}.missed"] <= 1.0
+    for name in few["study.signals"]:
+        assert 0.5 < metrics[f"roc.{name}.area"] <= 1.0 and metrics[f"detectors.{name}.missed"] <= 1.0
     assert metrics["detectors.glr100.tone.healthy.delay"] > 0
