@@ -8,13 +8,12 @@ from typing import Any
 
 from core.board.commands import Command, LogEntry
 
-FINDINGS = ("truth_changed", "recognised", "warning")
-KEPT = 10_000
+KEPT = 4000
 """Findings kept at least: an intermittent fault makes thousands a second, and to repeat a run only deeds matter."""
 
 
 class Log(Sequence[LogEntry]):
-    """Entries in order; the oldest findings are forgotten, what was done never is."""
+    """Entries in order; what was done, and so has a command, is never forgotten, the oldest of what was found is."""
 
     def __init__(self) -> None:
         self._entries: list[LogEntry] = []
@@ -57,7 +56,7 @@ class Log(Sequence[LogEntry]):
             new=new,
         )
         self._entries.append(entry)
-        self._findings += kind in FINDINGS
+        self._findings += command is None
         if self._findings > 2 * KEPT:
             self._forget()
         return entry
@@ -77,7 +76,7 @@ class Log(Sequence[LogEntry]):
         excess = self._findings - KEPT
         kept: list[LogEntry] = []
         for entry in self._entries:
-            if excess > 0 and entry.kind in FINDINGS:
+            if excess > 0 and entry.command is None:
                 excess -= 1
             else:
                 kept.append(entry)

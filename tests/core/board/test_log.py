@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.board.commands import Heal
+from core.board.log import KEPT, Log
 from core.errors import InputError
 from scenarios.run import run
 from scenarios.schema import Scenario
@@ -30,6 +32,21 @@ def test_log_is_numbered_and_only_grows():
     for entry in seen:
         assert entry["time_ms"] == pytest.approx(entry["tick"] * 0.01)
         assert entry["text"] and "\n" not in entry["text"]
+
+
+@pytest.mark.parametrize("kind", ["recognised", "alarm", "verdict", "region", "unexcited"])
+def test_what_was_found_is_forgotten_in_time_what_was_done_never(kind):
+    log = Log()
+    deeds = []
+    for tick in range(5 * KEPT):
+        if tick % 100 == 0:
+            deeds.append(log.add(tick, 0.01 * tick, "test", "heal", "healed", command=Heal(kind="heal")))
+        log.add(tick, 0.01 * tick, "board", kind, "found something")
+    assert len(log) <= 2 * KEPT + len(deeds)
+    assert [entry for entry in log if entry.command is not None] == deeds
+    found = [entry.tick for entry in log if entry.command is None]
+    assert found == list(range(5 * KEPT - len(found), 5 * KEPT)) and len(found) >= KEPT
+    assert log.last == 5 * KEPT + len(deeds)
 
 
 def test_the_order_of_the_log_does_not_depend_on_chunks():
