@@ -1,5 +1,5 @@
 import type { DiagnosisTally, PointTally } from "../api/types";
-import type { ChartLine } from "../ui/line-chart";
+import type { ChartLine } from "../ui/line-field";
 
 /** Figures shown before anybody chooses. */
 const USUAL = [/\.correct_fraction$/, /\.mean_delay_samples$/, /\.false_switches$/, /^control\.rms_error_um$/];

@@ -4,11 +4,13 @@ import { api } from "../api/api";
 import type { InstabilityMap, MapSource } from "../api/types";
 import { useAsked } from "../api/use-asked";
 import { useScheme } from "../app/use-scheme";
+import { PictureMenu } from "../picture/picture-menu";
 import { formatNumber } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
 import { useCanvas } from "../ui/use-canvas";
 import { cellAt, FIELD, paintMap, STILL } from "./paint-map";
+import { printMap } from "./print-theory";
 import styles from "./theory.module.css";
 
 type Rule = NonNullable<MapSource["rule"]>;
@@ -80,6 +82,7 @@ export function Instability() {
             onCommit={setHighest}
           />
         </span>
+        {answer && <PictureMenu name="instability map" take={() => printMap(answer, chosen.label)} />}
       </div>
       <Formula latex={chosen.latex} />
       {refusal && (

@@ -1,4 +1,5 @@
 import type { InstabilityMap } from "../api/types";
+import type { Pen } from "../picture/pen";
 import { fontFor } from "../ui/canvas-font";
 import { formatNumber } from "../ui/format";
 import { CANVAS, type Scheme } from "../ui/palette";
@@ -13,13 +14,18 @@ export const STILL = 1e-7;
 const UNSTABLE = { dark: [255, 107, 96], light: [196, 38, 29] };
 const STABLE = { dark: [31, 120, 90], light: [120, 190, 160] };
 
-/** Frequency to the right, gain upward: red where something grows, the deeper the faster. */
+/** On white, as a legend has them. */
+export const GROWS = `rgb(${UNSTABLE.light.join(" ")})`;
+export const SETTLES = `rgb(${STABLE.light.join(" ")} / 0.6)`;
+
+/** Frequency to the right, gain upward: red where something grows, the deeper the faster; framed, the titles of the axes stand outside. */
 export function paintMap(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   { frequency, gain, growth, critical_gain_constant: critical }: InstabilityMap,
   width: number,
   height: number,
   scheme: Scheme,
+  isFramed = false,
 ): void {
   const { left, bottom, right, top } = FIELD;
   const wide = width - left - right;
@@ -52,14 +58,16 @@ export function paintMap(
   ctx.textAlign = "center";
   for (const tick of linearTicks(first, last, Math.max(2, wide / 70)))
     ctx.fillText(formatNumber(tick, 1), left + ((tick - first) / (last - first)) * wide, height - bottom + 12);
-  ctx.textAlign = "right";
-  ctx.fillText("drive frequency ω", left + wide, height - 6);
-  ctx.save();
-  ctx.translate(8, top + tall / 2);
-  ctx.rotate(-Math.PI / 2);
-  ctx.textAlign = "center";
-  ctx.fillText("adaptation gain", 0, 0);
-  ctx.restore();
+  if (!isFramed) {
+    ctx.textAlign = "right";
+    ctx.fillText("drive frequency ω", left + wide, height - 6);
+    ctx.save();
+    ctx.translate(8, top + tall / 2);
+    ctx.rotate(-Math.PI / 2);
+    ctx.textAlign = "center";
+    ctx.fillText("adaptation gain", 0, 0);
+    ctx.restore();
+  }
   if (critical === null) return;
   const y = top + tall - (critical / highest) * tall;
   ctx.strokeStyle = colours.text;

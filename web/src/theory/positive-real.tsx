@@ -2,8 +2,10 @@ import { Button, TextInput } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/use-asked";
+import { PictureMenu } from "../picture/picture-menu";
 import { formatNumber } from "../ui/format";
 import { Formula } from "../ui/formula";
+import { printRealPart } from "./print-theory";
 import { RealPart } from "./real-part";
 import styles from "./theory.module.css";
 import { highestFirst, NotRational, parseTransferFunction, transferLatex } from "./transfer-function";
@@ -90,6 +92,9 @@ export function PositiveReal() {
               </dd>
             </div>
           </dl>
+          <div className={styles.aside}>
+            <PictureMenu name="real part" take={() => printRealPart(answer, text)} />
+          </div>
           <RealPart found={answer} />
         </div>
       )}

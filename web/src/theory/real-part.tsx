@@ -4,13 +4,14 @@ import { linearTicks } from "../ui/ticks";
 import { useSize } from "../ui/use-size";
 import styles from "./theory.module.css";
 
-const HEIGHT = 270;
+export const HEIGHT = 270;
 const LEFT = 46;
 const BOTTOM = 34;
 
 /** Re G(jw) over frequency, and the curve of Nyquist beside it; what lies below zero is marked. */
 export function RealPart({ found }: { found: PositiveReal }) {
   const { element, size } = useSize<HTMLDivElement>();
+  const label = `Real part over frequency; least ${found.least_real === null ? "unbounded" : formatNumber(found.least_real, 4)}`;
   const split = size.width > 460;
   const width = split ? size.width * 0.58 : size.width;
   const second = split ? size.width - width : size.width;
@@ -18,26 +19,43 @@ export function RealPart({ found }: { found: PositiveReal }) {
     <div ref={element} className={styles.plots}>
       {size.width > 120 && (
         <>
-          <Plot
-            label={`Real part over frequency; least ${found.least_real === null ? "unbounded" : formatNumber(found.least_real, 4)}`}
-            width={width}
-            x={found.frequency.map(Math.log10)}
-            y={found.real}
-            across="ω"
-            up="Re G(jω)"
-            log
-          />
-          <Plot
-            label="Nyquist curve: imaginary over real part"
-            width={second}
-            x={found.real}
-            y={found.imaginary}
-            across="Re G(jω)"
-            up="Im G(jω)"
-          />
+          <OverFrequency found={found} label={label} width={width} />
+          <Nyquist found={found} width={second} />
         </>
       )}
     </div>
+  );
+}
+
+interface PartProps {
+  found: PositiveReal;
+  width: number;
+}
+
+export function OverFrequency({ found, label = "Real part over frequency", width }: PartProps & { label?: string }) {
+  return (
+    <Plot
+      label={label}
+      width={width}
+      x={found.frequency.map(Math.log10)}
+      y={found.real}
+      across="ω, rad per unit of time"
+      up="Re G(jω)"
+      log
+    />
+  );
+}
+
+export function Nyquist({ found, width }: PartProps) {
+  return (
+    <Plot
+      label="Nyquist curve: imaginary over real part"
+      width={width}
+      x={found.real}
+      y={found.imaginary}
+      across="Re G(jω)"
+      up="Im G(jω)"
+    />
   );
 }
 

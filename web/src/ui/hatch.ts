@@ -1,26 +1,22 @@
-const cache = new Map<string, CanvasPattern | null>();
+import type { Pen } from "../picture/pen";
 
-/** A diagonal hatch of a colour: a guess, as against the solid of what is known. */
-export function hatch(ctx: CanvasRenderingContext2D, colour: string): CanvasPattern | string {
-  let pattern = cache.get(colour);
-  if (pattern === undefined) {
-    const tile = document.createElement("canvas");
-    tile.width = tile.height = 8;
-    const t = tile.getContext("2d");
-    if (t) {
-      t.fillStyle = `${colour}40`;
-      t.fillRect(0, 0, 8, 8);
-      t.strokeStyle = colour;
-      t.lineWidth = 2.4;
-      t.beginPath();
-      for (const shift of [-8, 0, 8]) {
-        t.moveTo(shift - 1, 9);
-        t.lineTo(shift + 9, -1);
-      }
-      t.stroke();
-    }
-    pattern = ctx.createPattern(tile, "repeat");
-    cache.set(colour, pattern);
+const STEP = 8;
+
+/** Fill a field with the diagonal hatch of a colour: a guess, as against the solid of what is known. */
+export function fillHatched(pen: Pen, left: number, top: number, width: number, height: number, colour: string): void {
+  pen.fillStyle = `${colour}40`;
+  pen.fillRect(left, top, width, height);
+  pen.strokeStyle = colour;
+  pen.lineWidth = 2.4;
+  pen.beginPath();
+  const right = left + width;
+  const bottom = top + height;
+  // lines of one x + y each, so that the hatches of neighbours meet
+  for (let sum = Math.ceil((left + top) / STEP) * STEP; sum < right + bottom; sum += STEP) {
+    const from = Math.max(left, sum - bottom);
+    const to = Math.min(right, sum - top);
+    pen.moveTo(from, sum - from);
+    pen.lineTo(to, sum - to);
   }
-  return pattern ?? colour;
+  pen.stroke();
 }

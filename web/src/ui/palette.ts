@@ -47,3 +47,8 @@ export const CANVAS: Record<
     event: "#7a8795",
   },
 };
+
+/** A trace's colour on white, whatever it is on the screen. */
+export const onWhite = (colour: string): string =>
+  TRACE_COLOURS.light[TRACE_COLOURS.dark.indexOf(colour)] ??
+  (TRACE_COLOURS.light.includes(colour) ? colour : CANVAS.light.text);

@@ -1,5 +1,5 @@
 import { Button, NativeSelect } from "@mantine/core";
-import { useMemo, useState } from "react";
+import { useMemo, useRef, useState } from "react";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../app/actions";
@@ -7,6 +7,7 @@ import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { TRACE_COLOURS } from "../../ui/palette";
 import { LaneCanvas, type LanePainting } from "../lanes/lane-canvas";
 import { LaneTools } from "../lanes/lane-tools";
 import { useLaneTime } from "../lanes/use-lane-time";
@@ -14,6 +15,9 @@ import styles from "./adaptation.module.css";
 import { adaptiveUnits, signalsOf } from "./adaptation-strips";
 import { ExcitationMeter } from "./excitation-meter";
 import { AXIS_PX, gutter, paintStrips, RIGHT_PX, STRIP_PX } from "./paint-strips";
+import { IDEAL, printStrips } from "./print-strips";
+
+const LEGEND = [{ name: "now", colour: TRACE_COLOURS.light[1] }, IDEAL];
 
 /** What adapts, against what it should be: gains, V and its derivative, s, errors, and how much the input tells. */
 export function AdaptationPanel() {
@@ -38,10 +42,13 @@ export function AdaptationPanel() {
     units.find((u) => controllers?.includes(u.block)) ??
     units[0];
   const names = useMemo(() => unit?.strips.flatMap(signalsOf) ?? [], [unit]);
+  const shown = useRef<LanePainting | undefined>(undefined);
   const paint = useMemo(() => {
     const columnOf = new Map(names.map((name, i) => [name, i]));
-    return (ctx: CanvasRenderingContext2D, painting: LanePainting) =>
+    return (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
+      shown.current = painting;
       paintStrips(ctx, painting, unit?.strips ?? [], columnOf, scheme, fontSize);
+    };
   }, [names, unit, scheme, fontSize]);
   if (!unit)
     return (
@@ -50,6 +57,9 @@ export function AdaptationPanel() {
         appear here with the next bench that has one.
       </EmptyState>
     );
+  const take = () =>
+    shown.current &&
+    printStrips(shown.current, unit.strips, `Adaptation of ${unit.block.replaceAll("_", " ")}`, LEGEND);
   return (
     <section className={styles.panel} aria-label="Adaptation">
       <div className={styles.bar}>
@@ -66,7 +76,7 @@ export function AdaptationPanel() {
         <span className={styles.legend}>
           <i data-kind="now" /> now <i data-kind="ideal" /> ideal
         </span>
-        <LaneTools time={time} onWindow={setWindowMs} />
+        <LaneTools time={time} onWindow={setWindowMs} take={take} />
       </div>
       <ExcitationMeter />
       {unit.block !== controller && <Shadow block={unit.block} />}

@@ -1,3 +1,4 @@
+import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
 import { formatNumber, formatSi } from "../../ui/format";
 import { CANVAS, type Scheme, TRACE_COLOURS } from "../../ui/palette";
@@ -18,7 +19,7 @@ export const gutter = (fontSize: number) => fontSize * 13;
 
 /** Strips under one another: each an inner signal over time, dashed what it should be. */
 export function paintStrips(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   painting: LanePainting,
   strips: readonly Strip[],
   columnOf: ReadonlyMap<string, number>,
@@ -126,7 +127,7 @@ function inWords(value: number, unit: string): string {
 }
 
 function envelope(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   low: Float32Array,
   high: Float32Array,
   columnX: (c: number) => number,
@@ -151,7 +152,7 @@ function envelope(
 }
 
 function dashes(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   values: Float32Array,
   columnX: (c: number) => number,
   y: (value: number) => number,

@@ -1,16 +1,15 @@
 import type { AliasReport } from "../../api/types";
 import { useScheme } from "../../app/use-scheme";
-import { formatSi } from "../../ui/format";
-import { decadeTicks } from "../../ui/ticks";
-import { hypothesisStyle, traceColour } from "../../ui/trace-style";
+import { PictureMenu } from "../../picture/picture-menu";
 import { useSize } from "../../ui/use-size";
+import { Phasors, Sweep } from "./alias-parts";
 import styles from "./hypotheses.module.css";
+import { printAliases } from "./print-aliases";
 
 const HEIGHT = 230;
-const FEET = 30;
-
 /** The motion of every hypothesis at the drive, as a point: those that lie together cannot be told apart. */
 export function AliasPlot({ report }: { report: AliasReport }) {
+  const scheme = useScheme();
   const { element, size } = useSize<HTMLDivElement>();
   const split = size.width > 520;
   const width = split ? size.width / 2 : size.width;
@@ -18,122 +17,13 @@ export function AliasPlot({ report }: { report: AliasReport }) {
     <div ref={element} className={styles.plots}>
       {size.width > 120 && (
         <>
-          <Phasors report={report} width={width} />
-          <Sweep report={report} width={split ? size.width - width : size.width} />
+          <div className={styles.export}>
+            <PictureMenu take={() => printAliases(report)} />
+          </div>
+          <Phasors report={report} width={width} height={HEIGHT} scheme={scheme} />
+          <Sweep report={report} width={split ? size.width - width : size.width} height={HEIGHT} />
         </>
       )}
     </div>
   );
 }
-
-function Phasors({ report, width }: { report: AliasReport; width: number }) {
-  const scheme = useScheme();
-  const { responses, pairs } = report.map;
-  const points = responses.map(({ name, amplitudes_um: [a], phases_deg: [deg] }) => {
-    const angle = (deg * Math.PI) / 180;
-    return { name, x: a * Math.cos(angle), y: a * Math.sin(angle) };
-  });
-  const reach = spread(points.map((p) => p.x)) / width > spread(points.map((p) => p.y)) / HEIGHT;
-  const noise = report.sensor_noise_um;
-  const scale = reach
-    ? (0.62 * width) / Math.max(spread(points.map((p) => p.x)), 4 * noise, 1e-9)
-    : (0.62 * HEIGHT) / Math.max(spread(points.map((p) => p.y)), 4 * noise, 1e-9);
-  const cx = middle(points.map((p) => p.x));
-  const cy = middle(points.map((p) => p.y));
-  const px = (x: number) => width / 2 + (x - cx) * scale;
-  const py = (y: number) => HEIGHT / 2 - 8 - (y - cy) * scale;
-  const at = (name: string) => points.find((p) => p.name === name);
-  const close = pairs.filter((p) => p.coincident);
-  return (
-    <svg
-      width={width}
-      height={HEIGHT}
-      role="img"
-      aria-label="Motion of every hypothesis at the drive frequency, in the complex plane"
-    >
-      <text x={4} y={14} className={styles.tick}>
-        motion at the drive, in the complex plane
-      </text>
-      {close.map(({ first, second }) => {
-        const a = at(first);
-        const b = at(second);
-        return (
-          a &&
-          b && (
-            <path
-              key={`${first} ${second}`}
-              d={`M${px(a.x)} ${py(a.y)} L${px(b.x)} ${py(b.y)}`}
-              className={styles.alias}
-            />
-          )
-        );
-      })}
-      {points.map(({ name, x, y }, i) => (
-        <g key={name}>
-          <circle cx={px(x)} cy={py(y)} r={Math.min(80, noise * scale)} className={styles.noise} />
-          <circle cx={px(x)} cy={py(y)} r={5} fill={traceColour(hypothesisStyle(i), scheme)} />
-          <text x={px(x) + 8} y={py(y) - 6 + (i % 2) * 18} className={styles.point}>
-            {name}
-          </text>
-        </g>
-      ))}
-      <text x={4} y={HEIGHT - 8} className={styles.tick}>
-        rings: noise of one sample, {formatSi(noise, "um", 3)}
-      </text>
-    </svg>
-  );
-}
-
-/** Distance of the closest pair over the drive frequency. */
-function Sweep({ report, width }: { report: AliasReport; width: number }) {
-  const { frequency_hz: hertz, distance_um: distance } = report.sweep;
-  const tone = report.map.tones_hz[0];
-  const wide = width - 56;
-  const tall = HEIGHT - FEET - 20;
-  const logs = distance.map((d) => Math.log10(Math.max(d, 1e-7)));
-  const high = Math.ceil(Math.max(...logs, Math.log10(Math.max(report.sensor_noise_um, 1e-7))));
-  const low = Math.max(high - 5, Math.floor(Math.min(...logs)));
-  const x = (f: number) => 46 + (Math.log(f / hertz[0]) / Math.log(hertz[hertz.length - 1] / hertz[0])) * wide;
-  const y = (log: number) => 20 + tall - ((Math.max(log, low) - low) / (high - low)) * tall;
-  let last = Number.NEGATIVE_INFINITY;
-  return (
-    <svg width={width} height={HEIGHT} role="img" aria-label="Distance of the closest pair over the drive frequency">
-      <text x={46} y={14} className={styles.tick}>
-        closest pair over the drive frequency
-      </text>
-      {Array.from({ length: high - low + 1 }, (_, i) => low + i).map((power) => (
-        <g key={power}>
-          <path d={`M46 ${y(power)} H${46 + wide}`} className={styles.grid} />
-          <text x={40} y={y(power) + 4} textAnchor="end" className={styles.tick}>
-            {formatSi(10 ** power, "um", 1)}
-          </text>
-        </g>
-      ))}
-      {decadeTicks(hertz[0], hertz[hertz.length - 1]).map((f) => {
-        if (x(f) - last < 54 || x(f) > width - 30) return null;
-        last = x(f);
-        return (
-          <text key={f} x={x(f)} y={HEIGHT - 12} textAnchor="middle" className={styles.tick}>
-            {formatSi(f, "Hz", 1)}
-          </text>
-        );
-      })}
-      <path
-        d={`M46 ${y(Math.log10(Math.max(report.sensor_noise_um, 1e-7)))} H${46 + wide}`}
-        className={styles.noiseLine}
-      />
-      <path d={`M${x(report.f0_hz)} 20 V${20 + tall}`} className={styles.grid} />
-      <text x={x(report.f0_hz) + 3} y={20 + tall - 4} className={styles.tick}>
-        f₀
-      </text>
-      <path
-        d={hertz.map((f, i) => `${i ? "L" : "M"}${x(f).toFixed(1)} ${y(logs[i]).toFixed(1)}`).join("")}
-        className={styles.curve}
-      />
-      {tone > hertz[0] && <path d={`M${x(tone)} 20 V${20 + tall}`} className={styles.now} />}
-    </svg>
-  );
-}
-
-const spread = (values: number[]) => Math.max(...values) - Math.min(...values);
-const middle = (values: number[]) => (Math.max(...values) + Math.min(...values)) / 2;

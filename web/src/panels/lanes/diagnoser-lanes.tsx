@@ -1,4 +1,4 @@
-import { useMemo } from "react";
+import { useMemo, useRef } from "react";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
@@ -9,8 +9,9 @@ import { LaneTools } from "./lane-tools";
 import styles from "./lanes.module.css";
 import { LanesHeadline } from "./lanes-headline";
 import { lanesLayout } from "./lanes-layout";
-import { paintLanes } from "./paint-lanes";
+import { type LanesPicture, paintLanes } from "./paint-lanes";
 import { pickSample } from "./pick-sample";
+import { printLanes } from "./print-lanes";
 import type { LaneTime } from "./use-lane-time";
 
 interface DiagnoserLanesProps {
@@ -33,10 +34,11 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
     () => [...names.map((name) => `${id}.probability.${name}`), `${id}.winner`, `${id}.truth`],
     [id, names],
   );
+  const shown = useRef<LanesPicture | undefined>(undefined);
   const paint = useMemo<Parameters<typeof LaneCanvas>[0]["paint"]>(
     () =>
-      (ctx, { frame, span, width, height, hover }) =>
-        paintLanes(ctx, {
+      (ctx, { frame, span, width, height, hover }) => {
+        shown.current = {
           frame,
           span,
           names,
@@ -47,7 +49,9 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
           hover,
           picked,
           blind,
-        }),
+        };
+        paintLanes(ctx, shown.current);
+      },
     [names, fontSize, scheme, switches, picked, blind],
   );
   const edges = lanesLayout(1000, 400, names.length, fontSize);
@@ -56,7 +60,7 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
     <section className={styles.lanes} aria-label={`Diagnosis by ${id}`}>
       <div className={styles.toolbar}>
         <LanesHeadline id={id} names={names} switches={switches} />
-        <LaneTools time={time} onWindow={onWindow} />
+        <LaneTools time={time} onWindow={onWindow} take={() => shown.current && printLanes(shown.current, id)} />
       </div>
       <LaneCanvas
         label={`Probability of ${names.join(", ")} over time`}

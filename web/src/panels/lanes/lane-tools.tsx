@@ -1,11 +1,18 @@
 import { NativeSelect } from "@mantine/core";
+import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import scopeStyles from "../scope/scope.module.css";
 import type { LaneTime } from "./use-lane-time";
 
 export const WINDOWS_MS = [2, 4, 10, 20, 50, 100, 200, 500];
 
-/** How much time the lanes show, and the way back to now. */
-export function LaneTools({ time, onWindow }: { time: LaneTime; onWindow(ms: number): void }) {
+interface LaneToolsProps {
+  time: LaneTime;
+  onWindow(ms: number): void;
+  take: TakePicture;
+}
+
+/** How much time the lanes show, what they show as a file, and the way back to now. */
+export function LaneTools({ time, onWindow, take }: LaneToolsProps) {
   return (
     <>
       <NativeSelect
@@ -16,6 +23,7 @@ export function LaneTools({ time, onWindow }: { time: LaneTime; onWindow(ms: num
         data={WINDOWS_MS.map((ms) => ({ value: String(ms), label: `${ms}\u00a0ms` }))}
         onChange={(e) => onWindow(Number(e.currentTarget.value))}
       />
+      <PictureMenu take={take} />
       <button
         type="button"
         className={scopeStyles.live}

@@ -1,5 +1,6 @@
 import { NativeSelect } from "@mantine/core";
-import { useMemo, useState } from "react";
+import { useMemo, useRef, useState } from "react";
+import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { contestants } from "./contestants";
@@ -19,6 +20,7 @@ export function LanesPanel() {
   const [windowMs, setWindowMs] = useState(20);
   const [wanted, setWanted] = useState(ALL);
   const time = useLaneTime(windowMs, dtMs);
+  const picture = useRef<TakePicture>(null);
   const all = useMemo(
     () => contestants({ diagnosers: diagnosers ?? {}, signals: signals ?? [] }),
     [diagnosers, signals],
@@ -47,13 +49,13 @@ export function LanesPanel() {
             onChange={(e) => setWanted(e.currentTarget.value)}
           />
           <span className={styles.advice}>Click a sample to see why</span>
-          {!one && <LaneTools time={time} onWindow={setWindowMs} />}
+          {!one && <LaneTools time={time} onWindow={setWindowMs} take={() => picture.current?.()} />}
         </div>
       )}
       {one ? (
         <DiagnoserLanes id={one.id} names={one.names} time={time} onWindow={setWindowMs} />
       ) : (
-        <Race contestants={all} time={time} />
+        <Race contestants={all} time={time} picture={picture} />
       )}
     </div>
   );

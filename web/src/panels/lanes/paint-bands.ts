@@ -1,7 +1,9 @@
+import type { Pen } from "../../picture/pen";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
 import { inkOn } from "../../ui/contrast";
 import { formatNumber } from "../../ui/format";
+import { fillHatched } from "../../ui/hatch";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { timeLabels, timeSplits, timeUnit } from "../../ui/time-axis";
 import type { TruthSwitch } from "./delays";
@@ -20,12 +22,12 @@ export interface LanesGround {
 
 /** Stretches of an index signal as a band with names: solid for what is known, otherwise a guess. */
 export function paintBand(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   stretches: ReturnType<typeof runs>,
   columnX: (c: number) => number,
   top: number,
   height: number,
-  fill: (index: number) => string | CanvasPattern,
+  colour: (index: number) => string,
   names: string[],
   colours: (typeof CANVAS)["dark"],
   fontSize: number,
@@ -36,8 +38,10 @@ export function paintBand(
   for (const run of stretches) {
     const left = columnX(run.from);
     const width = columnX(run.to) - left;
-    ctx.fillStyle = run.value < 0 ? colours.axis : fill(run.value);
-    ctx.fillRect(left, top, width, height);
+    if (solid || run.value < 0) {
+      ctx.fillStyle = run.value < 0 ? colours.axis : colour(run.value);
+      ctx.fillRect(left, top, width, height);
+    } else fillHatched(ctx, left, top, width, height, colour(run.value));
     const label = names[run.value] ?? "none of these";
     const at = Math.max(left, columnX(0)) + 6;
     const needed = ctx.measureText(label).width;
@@ -46,14 +50,14 @@ export function paintBand(
       ctx.fillStyle = colours.panel;
       ctx.fillRect(at - 4, top + 2, needed + 8, height - 4);
     }
-    ctx.fillStyle = solid && run.value >= 0 ? inkOn(String(fill(run.value))) : colours.text;
+    ctx.fillStyle = solid && run.value >= 0 ? inkOn(colour(run.value)) : colours.text;
     ctx.fillText(label, at, top + height / 2 + 0.5);
   }
 }
 
 /** The sample that is being explained: a line with a flag. */
 export function paintPicked(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   tick: number | undefined,
   x: (tick: number) => number,
   bottom: number,
@@ -71,12 +75,7 @@ export function paintPicked(
 }
 
 /** Between the truth's change and its recognition stands a bar; its length is the delay. */
-export function paintDelays(
-  ctx: CanvasRenderingContext2D,
-  picture: LanesGround,
-  x: (tick: number) => number,
-  winner: Float32Array,
-): void {
+export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) => number, winner: Float32Array): void {
   const { layout, frame, switches, scheme, fontSize, span } = picture;
   const colours = CANVAS[scheme];
   const head = winner.length && !frame.frozen ? frame.endTick : span.end;
@@ -105,7 +104,7 @@ export function paintDelays(
 }
 
 export function paintTime(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   { layout, span, frame, scheme, fontSize }: Omit<LanesGround, "switches">,
   x: (tick: number) => number,
 ): void {

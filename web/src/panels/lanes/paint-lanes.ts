@@ -1,6 +1,6 @@
+import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
 import { formatNumber } from "../../ui/format";
-import { hatch } from "../../ui/hatch";
 import { CANVAS } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { columnAt } from "../scope/column-at";
@@ -17,7 +17,7 @@ export interface LanesPicture extends LanesGround {
 }
 
 /** Paint a bank: one filled lane per hypothesis, the guess hatched, the truth solid, the delay between them. */
-export function paintLanes(ctx: CanvasRenderingContext2D, picture: LanesPicture): void {
+export function paintLanes(ctx: Pen, picture: LanesPicture): void {
   const { frame, span, names, layout, scheme, fontSize } = picture;
   const colours = CANVAS[scheme];
   const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), scheme) : colours.muted);
@@ -61,7 +61,7 @@ export function paintLanes(ctx: CanvasRenderingContext2D, picture: LanesPicture)
     columnX,
     layout.winner,
     layout.band,
-    (i) => hatch(ctx, colour(i)),
+    colour,
     names,
     colours,
     fontSize,
@@ -111,13 +111,7 @@ export function paintLanes(ctx: CanvasRenderingContext2D, picture: LanesPicture)
   ctx.fillText("delay", layout.left - 10, layout.delay + layout.band / 2);
 }
 
-function fillSteps(
-  ctx: CanvasRenderingContext2D,
-  values: Float32Array,
-  columnX: (c: number) => number,
-  base: number,
-  tall: number,
-): void {
+function fillSteps(ctx: Pen, values: Float32Array, columnX: (c: number) => number, base: number, tall: number): void {
   let from = -1;
   let height = 0;
   for (let c = 0; c < values.length; c += 1) {

@@ -1,5 +1,5 @@
+import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
-import { hatch } from "../../ui/hatch";
 import { CANVAS } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import type { LanesLayout } from "./lanes-layout";
@@ -28,7 +28,7 @@ export function rowLayout(width: number, height: number, fontSize: number): Lane
 }
 
 /** One diagnoser of the race: what it believes as one filled field, what it says, and how long it took. */
-export function paintRow(ctx: CanvasRenderingContext2D, picture: RacePicture): void {
+export function paintRow(ctx: Pen, picture: RacePicture): void {
   const { frame, span, layout, scheme, names, probabilities } = picture;
   const colours = CANVAS[scheme];
   const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), scheme) : colours.muted);
@@ -56,7 +56,7 @@ export function paintRow(ctx: CanvasRenderingContext2D, picture: RacePicture): v
     columnX,
     layout.winner,
     layout.band - 1,
-    (i) => hatch(ctx, colour(i)),
+    colour,
     names,
     colours,
     picture.fontSize,
@@ -79,13 +79,21 @@ export function paintRow(ctx: CanvasRenderingContext2D, picture: RacePicture): v
 }
 
 /** The head of the race: the axis of time over what is true. */
-export function paintTruth(ctx: CanvasRenderingContext2D, picture: RacePicture): void {
+export function paintHead(ctx: Pen, picture: RacePicture): void {
+  const { span, layout } = picture;
+  const x = (tick: number) => ((tick - span.start) / (span.end - span.start)) * layout.right;
+  ctx.textBaseline = "middle";
+  paintTime(ctx, { ...picture, layout: { ...layout, axis: 0 } }, x);
+  paintTruth(ctx, picture);
+}
+
+/** What is true, as a band; its index is the only signal. */
+export function paintTruth(ctx: Pen, picture: RacePicture): void {
   const { frame, span, layout, scheme, names, fontSize } = picture;
   const colours = CANVAS[scheme];
   const x = (tick: number) => ((tick - span.start) / (span.end - span.start)) * layout.right;
   const perColumn = (frame.endTick - frame.startTick) / frame.columns;
   ctx.textBaseline = "middle";
-  paintTime(ctx, { ...picture, layout: { ...layout, axis: 0 } }, x);
   if (picture.blind) {
     ctx.font = fontFor(fontSize, 1, 600);
     ctx.textAlign = "left";
@@ -113,13 +121,7 @@ function column({ frame }: RacePicture, signal: number, part: number): Float32Ar
 
 const middle = (low: Float32Array, high: Float32Array) => low.map((value, i) => 0.5 * (value + high[i]));
 
-function fillBelow(
-  ctx: CanvasRenderingContext2D,
-  edge: Float32Array,
-  columnX: (c: number) => number,
-  top: number,
-  height: number,
-): void {
+function fillBelow(ctx: Pen, edge: Float32Array, columnX: (c: number) => number, top: number, height: number): void {
   let from = -1;
   for (let c = 0; c <= edge.length; c += 1) {
     if (c < edge.length && Number.isNaN(edge[c])) continue;
@@ -131,7 +133,7 @@ function fillBelow(
   }
 }
 
-function paintGrid(ctx: CanvasRenderingContext2D, picture: RacePicture, x: (tick: number) => number): void {
+function paintGrid(ctx: Pen, picture: RacePicture, x: (tick: number) => number): void {
   ctx.save();
   ctx.beginPath();
   ctx.rect(0, 0, picture.layout.right, picture.layout.axis);

@@ -7,7 +7,7 @@ import { formatNumber, formatPercent } from "../../ui/format";
 import type { Contestant } from "./contestants";
 import type { TruthSwitch } from "./delays";
 import { LaneCanvas, type LanePainting } from "./lane-canvas";
-import { paintRow, rowLayout } from "./paint-race";
+import { paintRow, type RacePicture, rowLayout } from "./paint-race";
 import { pickSample } from "./pick-sample";
 import styles from "./race.module.css";
 import type { LaneTime } from "./use-lane-time";
@@ -18,12 +18,13 @@ interface RaceRowProps {
   switches: TruthSwitch[];
   place: number | undefined;
   fontSize: number;
+  onPainted(id: string, shown: RacePicture): void;
 }
 
 const ORDINAL = ["", "1st", "2nd", "3rd"];
 
 /** One diagnoser of the race. */
-export function RaceRow({ contestant, time, switches, place, fontSize }: RaceRowProps) {
+export function RaceRow({ contestant, time, switches, place, fontSize, onPainted }: RaceRowProps) {
   const { id, names, probabilities, verdict, truth } = contestant;
   const scheme = useScheme();
   const blind = useView((s) => s.blind);
@@ -35,8 +36,8 @@ export function RaceRow({ contestant, time, switches, place, fontSize }: RaceRow
     [probabilities, verdict, truth, id],
   );
   const paint = useMemo(
-    () => (ctx: CanvasRenderingContext2D, painting: LanePainting) =>
-      paintRow(ctx, {
+    () => (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
+      const shown = {
         ...painting,
         layout: rowLayout(painting.width, painting.height, fontSize),
         scheme,
@@ -47,8 +48,11 @@ export function RaceRow({ contestant, time, switches, place, fontSize }: RaceRow
         probabilities: probabilities.length,
         picked,
         blind,
-      }),
-    [fontSize, scheme, names, switches, truth, probabilities, picked, blind],
+      };
+      paintRow(ctx, shown);
+      onPainted(id, shown);
+    },
+    [fontSize, scheme, names, switches, truth, probabilities, picked, blind, id, onPainted],
   );
   return (
     <section className={styles.row} aria-label={`Diagnosis by ${id}`}>

@@ -1,13 +1,15 @@
-import { useMemo } from "react";
+import { type Ref, useCallback, useImperativeHandle, useMemo, useRef } from "react";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
+import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/current-events";
 import { timeUnit } from "../../ui/time-axis";
 import type { Contestant } from "./contestants";
 import { type TruthSwitch, truthSwitches } from "./delays";
 import { LaneCanvas, type LanePainting } from "./lane-canvas";
-import { paintTruth, rowLayout } from "./paint-race";
+import { paintHead, type RacePicture, rowLayout } from "./paint-race";
+import { printRace } from "./print-race";
 import styles from "./race.module.css";
 import { racePlaces } from "./race-places";
 import { RaceRow } from "./race-row";
@@ -15,8 +17,14 @@ import type { LaneTime } from "./use-lane-time";
 
 const NONE: TruthSwitch[] = [];
 
+interface RaceProps {
+  contestants: Contestant[];
+  time: LaneTime;
+  picture: Ref<TakePicture>;
+}
+
 /** All diagnosers of the bench on one axis of time, under the truth: who finds it first, and who is right longest. */
-export function Race({ contestants, time }: { contestants: Contestant[]; time: LaneTime }) {
+export function Race({ contestants, time, picture }: RaceProps) {
   const scheme = useScheme();
   const blind = useView((s) => s.blind);
   const fontSize = useView((s) => (s.large ? 15 : 12));
@@ -29,11 +37,25 @@ export function Race({ contestants, time }: { contestants: Contestant[]; time: L
   const first = contestants.find((c) => c.truth);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const unit = timeUnit(time.view.kind === "past" ? (time.view.end - time.view.start) * dtMs : time.windowMs).unit;
+  const head = useRef<RacePicture | undefined>(undefined);
+  const rows = useRef(new Map<string, RacePicture>());
+  const keep = useCallback((id: string, row: RacePicture) => rows.current.set(id, row), []);
+  useImperativeHandle(
+    picture,
+    () => () => {
+      const shown = contestants.flatMap(({ id }) => {
+        const row = rows.current.get(id);
+        return row ? [{ id, row }] : [];
+      });
+      return printRace(head.current, shown);
+    },
+    [contestants],
+  );
   const truthSignals = useMemo(() => (first ? [`${first.id}.truth`] : []), [first]);
   const paint = useMemo(
     () => (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
       const layout = { ...rowLayout(painting.width, painting.height, fontSize), truth: fontSize + 10, axis: 4 };
-      paintTruth(ctx, {
+      head.current = {
         ...painting,
         layout,
         scheme,
@@ -44,7 +66,8 @@ export function Race({ contestants, time }: { contestants: Contestant[]; time: L
         probabilities: 0,
         picked: undefined,
         blind,
-      });
+      };
+      paintHead(ctx, head.current);
     },
     [scheme, fontSize, first, blind],
   );
@@ -77,6 +100,7 @@ export function Race({ contestants, time }: { contestants: Contestant[]; time: L
           switches={switches[contestant.id] ?? NONE}
           place={places[contestant.id]}
           fontSize={fontSize}
+          onPainted={keep}
         />
       ))}
     </div>

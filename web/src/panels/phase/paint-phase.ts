@@ -1,15 +1,22 @@
 import type { UnstableRegion } from "../../api/types";
+import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { linearTicks } from "../../ui/ticks";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { Range } from "./phase-range";
 
+export interface PhaseAxis {
+  range: Range;
+  scale: UnitScale;
+  name: string;
+}
+
 export interface PhasePicture {
   width: number;
   height: number;
-  x: { range: Range; scale: UnitScale; name: string };
-  y: { range: Range; scale: UnitScale; name: string };
+  x: PhaseAxis;
+  y: PhaseAxis;
   points: { x: Float32Array; y: Float32Array };
   /** The point under the pointer of another panel. */
   hovered: number | undefined;
@@ -19,6 +26,8 @@ export interface PhasePicture {
   colour: string;
   scheme: Scheme;
   fontSize: number;
+  /** The titles of the axes stand outside. */
+  isFramed?: boolean;
 }
 
 const LEFT = 58;
@@ -28,8 +37,10 @@ const RIGHT = 12;
 /** The trail fades in so many pieces. */
 const PIECES = 24;
 
+export const phaseTitle = ({ name, scale }: PhaseAxis) => (scale.unit ? `${name}, ${scale.unit}` : name);
+
 /** A trajectory over the map of the unstable region. */
-export function paintPhase(ctx: CanvasRenderingContext2D, picture: PhasePicture): void {
+export function paintPhase(ctx: Pen, picture: PhasePicture): void {
   const { width, height, scheme, fontSize } = picture;
   const ink = CANVAS[scheme];
   const right = width - RIGHT;
@@ -60,11 +71,13 @@ export function paintPhase(ctx: CanvasRenderingContext2D, picture: PhasePicture)
     line(ctx, LEFT, py(tick), right, py(tick));
     ctx.fillText(label(tick * picture.y.scale.factor), LEFT - 6, py(tick));
   }
-  ctx.textBaseline = "bottom";
-  ctx.fillText(`${picture.x.name}, ${picture.x.scale.unit}`, right, height - 2);
-  ctx.textAlign = "left";
-  ctx.textBaseline = "top";
-  ctx.fillText(`${picture.y.name}, ${picture.y.scale.unit}`, LEFT + 6, TOP + 2);
+  if (!picture.isFramed) {
+    ctx.textBaseline = "bottom";
+    ctx.fillText(phaseTitle(picture.x), right, height - 2);
+    ctx.textAlign = "left";
+    ctx.textBaseline = "top";
+    ctx.fillText(phaseTitle(picture.y), LEFT + 6, TOP + 2);
+  }
 
   ctx.save();
   ctx.beginPath();
@@ -84,7 +97,7 @@ export function paintPhase(ctx: CanvasRenderingContext2D, picture: PhasePicture)
 type Place = (value: number) => number;
 
 function paintMap(
-  ctx: CanvasRenderingContext2D,
+  ctx: Pen,
   { map, fits, x, fontSize }: PhasePicture,
   px: Place,
   py: Place,
@@ -94,19 +107,19 @@ function paintMap(
   const edge = fits.boundary ? map?.boundary : undefined;
   ctx.fillStyle = `${alarm}2e`;
   if (edge) {
+    const inside = [
+      ...edge.x_um.map((at, i) => [px(at), py(edge.speed_um_ms[i])] as const),
+      ...edge.x_um.map((at, i) => [px(at), py(-edge.speed_um_ms[i])] as const).reverse(),
+    ];
     ctx.beginPath();
     ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
-    const inside = new Path2D();
-    for (let i = 0; i < edge.x_um.length; i += 1) inside.lineTo(px(edge.x_um[i]), py(edge.speed_um_ms[i]));
-    for (let i = edge.x_um.length - 1; i >= 0; i -= 1) inside.lineTo(px(edge.x_um[i]), py(-edge.speed_um_ms[i]));
-    inside.closePath();
-    const whole = new Path2D();
-    whole.rect(LEFT, TOP, right - LEFT, bottom - TOP);
-    whole.addPath(inside);
-    ctx.fill(whole, "evenodd");
+    loop(ctx, inside);
+    ctx.fill("evenodd");
     ctx.strokeStyle = alarm;
     ctx.lineWidth = 1.5;
-    ctx.stroke(inside);
+    ctx.beginPath();
+    loop(ctx, inside);
+    ctx.stroke();
   }
   if (!fits.folds || !map) return;
   ctx.strokeStyle = alarm;
@@ -123,7 +136,7 @@ function paintMap(
   ctx.setLineDash([]);
 }
 
-function paintTrail(ctx: CanvasRenderingContext2D, { points, colour }: PhasePicture, px: Place, py: Place): void {
+function paintTrail(ctx: Pen, { points, colour }: PhasePicture, px: Place, py: Place): void {
   const count = points.x.length;
   ctx.strokeStyle = colour;
   ctx.lineWidth = 1.8;
@@ -151,14 +164,20 @@ function paintTrail(ctx: CanvasRenderingContext2D, { points, colour }: PhasePict
 }
 
 /** Ticks that are round in the unit shown. */
-function scaled({ range, scale }: PhasePicture["x"], count: number): number[] {
+function scaled({ range, scale }: PhaseAxis, count: number): number[] {
   return linearTicks(range[0] * scale.factor, range[1] * scale.factor, Math.max(2, count)).map((t) => t / scale.factor);
 }
 
 const label = (value: number) => String(Number(value.toPrecision(6))).replace("-", "−");
 const span = ([low, high]: Range) => high - low;
 
-function line(ctx: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+function loop(ctx: Pen, points: readonly (readonly [number, number])[]): void {
+  ctx.moveTo(...points[0]);
+  for (const point of points) ctx.lineTo(...point);
+  ctx.closePath();
+}
+
+function line(ctx: Pen, x1: number, y1: number, x2: number, y2: number): void {
   ctx.beginPath();
   ctx.moveTo(Math.round(x1) + 0.5, Math.round(y1) + 0.5);
   ctx.lineTo(Math.round(x2) + 0.5, Math.round(y2) + 0.5);

@@ -1,6 +1,7 @@
 import { Button, NativeSelect } from "@mantine/core";
-import { useState } from "react";
+import { useRef, useState } from "react";
 import { send } from "../../app/send";
+import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { NumberField } from "../../ui/number-field";
@@ -21,6 +22,7 @@ export function PhasePanel() {
   const [y, setY] = useState("plant.velocity");
   const [windowMs, setWindowMs] = useState(4);
   const [driveV, setDriveV] = useState(0);
+  const picture = useRef<TakePicture>(null);
   const { map, failed } = useUnstableRegion(driveV);
   if (!signals)
     return (
@@ -62,8 +64,16 @@ export function PhasePanel() {
             />
           </span>
         )}
+        <PictureMenu take={() => picture.current?.()} />
       </div>
-      <PhasePlot x={x} y={y} windowMs={windowMs} map={fits.folds && !flat ? map : undefined} fits={fits} />
+      <PhasePlot
+        x={x}
+        y={y}
+        windowMs={windowMs}
+        map={fits.folds && !flat ? map : undefined}
+        fits={fits}
+        picture={picture}
+      />
       <p className={styles.words}>
         {failed ??
           (flat ? (

@@ -1,7 +1,8 @@
-import { useEffect, useMemo, useRef } from "react";
+import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
 import type { UnstableRegion } from "../../api/types";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
+import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
@@ -12,9 +13,10 @@ import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
 import { useCanvas } from "../../ui/use-canvas";
 import { useTraces } from "../scope/use-traces";
-import { paintPhase } from "./paint-phase";
+import { type PhasePicture, paintPhase } from "./paint-phase";
 import styles from "./phase.module.css";
 import { extent, follow, type Range, union } from "./phase-range";
+import { printPhase } from "./print-phase";
 import { mapExtent } from "./unstable-map";
 
 const MOST_COLUMNS = 4096;
@@ -25,10 +27,11 @@ interface PhasePlotProps {
   windowMs: number;
   map: UnstableRegion | undefined;
   fits: { folds: boolean; boundary: boolean };
+  picture: Ref<TakePicture>;
 }
 
 /** The canvas of a phase plane: every tick of the window is a point. */
-export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
+export function PhasePlot({ x, y, windowMs, map, fits, picture }: PhasePlotProps) {
   const scheme = useScheme();
   const large = useView((s) => s.large);
   const visible = usePanelVisible();
@@ -40,6 +43,8 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
   const ranges = useRef<{ x: Range | undefined; y: Range | undefined }>({ x: undefined, y: undefined });
   const shown = useRef<{ start: number; end: number } | undefined>(undefined);
   const dirty = useRef(true);
+  const painted = useRef<PhasePicture | undefined>(undefined);
+  useImperativeHandle(picture, () => () => painted.current && printPhase(painted.current), []);
 
   const subscription = useMemo<Subscription | undefined>(() => {
     if (!dtMs) return undefined;
@@ -87,7 +92,7 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
       const up = axis("y", fits.boundary);
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
-      paintPhase(ctx, {
+      painted.current = {
         width: size.width,
         height: size.height,
         x: { range: across, scale: unitScale(first.unit, largest(across)), name: words(first.name) },
@@ -99,7 +104,8 @@ export function PhasePlot({ x, y, windowMs, map, fits }: PhasePlotProps) {
         colour: second.name === "plant.velocity" ? first.colour : second.colour,
         scheme,
         fontSize: large ? 15 : 12,
-      });
+      };
+      paintPhase(ctx, painted.current);
     });
   }, [visible, canvas, size, traces, map, fits.folds, fits.boundary, scheme, large, fits]);
 

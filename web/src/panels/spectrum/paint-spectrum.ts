@@ -1,3 +1,4 @@
+import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { linearTicks } from "../../ui/ticks";
@@ -15,6 +16,8 @@ export interface SpectrumPicture {
   colour: string;
   scheme: Scheme;
   fontSize: number;
+  /** The titles of the axes stand outside. */
+  isFramed?: boolean;
 }
 
 const LEFT = 58;
@@ -22,8 +25,10 @@ const RIGHT = 14;
 const TOP = 8;
 const BOTTOM = 36;
 
+export const amplitudeTitle = (unit: string) => (unit ? `amplitude, ${unit}` : "amplitude");
+
 /** Amplitude over frequency, logarithmic upwards; the largest of the bins that share a pixel is drawn. */
-export function paintSpectrum(ctx: CanvasRenderingContext2D, picture: SpectrumPicture): void {
+export function paintSpectrum(ctx: Pen, picture: SpectrumPicture): void {
   const { width, height, spectrum, highest, decades, scheme, fontSize } = picture;
   const ink = CANVAS[scheme];
   const right = width - RIGHT;
@@ -44,16 +49,18 @@ export function paintSpectrum(ctx: CanvasRenderingContext2D, picture: SpectrumPi
     ctx.fillText(String(tick), px(tick), bottom + 4);
   }
   ctx.textAlign = "right";
-  ctx.fillText("kHz", right, bottom + 4 + fontSize);
+  if (!picture.isFramed) ctx.fillText("kHz", right, bottom + 4 + fontSize);
   ctx.textBaseline = "middle";
   for (let power = decades[0]; power <= decades[1]; power += 1) {
     const y = py(10 ** power);
     line(ctx, LEFT, y, right, y);
     ctx.fillText(power >= -3 && power <= 3 ? String(Number((10 ** power).toPrecision(1))) : `1e${power}`, LEFT - 6, y);
   }
-  ctx.textAlign = "left";
-  ctx.textBaseline = "top";
-  ctx.fillText(picture.unit ? `amplitude, ${picture.unit}` : "amplitude", LEFT + 6, TOP + 2);
+  if (!picture.isFramed) {
+    ctx.textAlign = "left";
+    ctx.textBaseline = "top";
+    ctx.fillText(amplitudeTitle(picture.unit), LEFT + 6, TOP + 2);
+  }
 
   ctx.strokeStyle = picture.colour;
   ctx.lineWidth = 1.6;
@@ -70,7 +77,7 @@ export function paintSpectrum(ctx: CanvasRenderingContext2D, picture: SpectrumPi
   ctx.stroke();
 }
 
-function line(ctx: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+function line(ctx: Pen, x1: number, y1: number, x2: number, y2: number): void {
   ctx.beginPath();
   ctx.moveTo(Math.round(x1) + 0.5, Math.round(y1) + 0.5);
   ctx.lineTo(Math.round(x2) + 0.5, Math.round(y2) + 0.5);

@@ -1,5 +1,6 @@
 import { NativeSelect } from "@mantine/core";
-import { useState } from "react";
+import { useRef, useState } from "react";
+import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
@@ -17,6 +18,7 @@ export function SpectrumPanel() {
   const [signal, setSignal] = useState("sensor.displacement");
   const [ticks, setTicks] = useState(4096);
   const [share, setShare] = useState(5);
+  const picture = useRef<TakePicture>(null);
   if (!signals || !dtMs)
     return <EmptyState title="No bench yet">The tones of a signal appear as soon as a bench is connected.</EmptyState>;
   return (
@@ -44,8 +46,9 @@ export function SpectrumPanel() {
           onChange={(e) => setShare(Number(e.currentTarget.value))}
         />
         <span className={styles.held}>bins of {formatSi(1 / (ticks * dtMs), "kHz", 3)}, Hann window</span>
+        <PictureMenu take={() => picture.current?.()} />
       </div>
-      <SpectrumPlot signal={signal} ticks={ticks} dtMs={dtMs} highest={0.5 / dtMs / share} />
+      <SpectrumPlot signal={signal} ticks={ticks} dtMs={dtMs} highest={0.5 / dtMs / share} picture={picture} />
     </section>
   );
 }

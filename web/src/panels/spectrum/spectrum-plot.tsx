@@ -1,6 +1,7 @@
-import { useEffect, useMemo, useRef } from "react";
+import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
+import type { TakePicture } from "../../picture/picture-menu";
 import { middles } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
@@ -12,7 +13,8 @@ import { useCanvas } from "../../ui/use-canvas";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
 import { spectrum, strongest } from "./fourier";
-import { paintSpectrum } from "./paint-spectrum";
+import { paintSpectrum, type SpectrumPicture } from "./paint-spectrum";
+import { printSpectrum } from "./print-spectrum";
 
 /** A spectrum is read, not watched: ten a second are enough. */
 const EVERY_MS = 100;
@@ -27,10 +29,11 @@ interface SpectrumPlotProps {
   dtMs: number;
   /** Highest frequency shown, kHz. */
   highest: number;
+  picture: Ref<TakePicture>;
 }
 
 /** The canvas of a spectrum, and the strongest tone in words. */
-export function SpectrumPlot({ signal, ticks, dtMs, highest }: SpectrumPlotProps) {
+export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: SpectrumPlotProps) {
   const scheme = useScheme();
   const large = useView((s) => s.large);
   const visible = usePanelVisible();
@@ -41,6 +44,8 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest }: SpectrumPlotProps
   const samples = useRef(new Float32Array(0));
   const next = useRef(0);
   const top = useRef(LOWEST);
+  const shown = useRef<SpectrumPicture | undefined>(undefined);
+  useImperativeHandle(picture, () => () => shown.current && printSpectrum(shown.current, words(signal)), [signal]);
 
   const subscription = useMemo<Subscription>(
     () => ({ mode: "roll", signals: names, window_ms: ticks * dtMs, width: ticks }),
@@ -74,7 +79,7 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest }: SpectrumPlotProps
       const upper = Math.ceil(top.current);
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
-      paintSpectrum(ctx, {
+      shown.current = {
         width: size.width,
         height: size.height,
         spectrum: found,
@@ -84,7 +89,8 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest }: SpectrumPlotProps
         colour: trace.colour,
         scheme,
         fontSize: large ? 15 : 12,
-      });
+      };
+      paintSpectrum(ctx, shown.current);
     });
   }, [visible, canvas, size, trace, dtMs, highest, scheme, large]);
 
@@ -95,10 +101,12 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest }: SpectrumPlotProps
           ref={canvas}
           className={styles.canvas}
           role="img"
-          aria-label={`Amplitude spectrum of ${signal.replaceAll("_", " ")}`}
+          aria-label={`Amplitude spectrum of ${words(signal)}`}
         />
       </div>
       <p ref={reading} className={styles.words} />
     </>
   );
 }
+
+const words = (name: string) => name.replaceAll(/[._]/g, " ");

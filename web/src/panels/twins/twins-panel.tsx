@@ -1,10 +1,12 @@
-import { useMemo, useState } from "react";
+import { useMemo, useRef, useState } from "react";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { TRACE_COLOURS } from "../../ui/palette";
 import { signalsOf } from "../adaptation/adaptation-strips";
 import { AXIS_PX, gutter, paintStrips, RIGHT_PX } from "../adaptation/paint-strips";
+import { IDEAL, printStrips } from "../adaptation/print-strips";
 import { LaneCanvas, type LanePainting } from "../lanes/lane-canvas";
 import { LaneTools } from "../lanes/lane-tools";
 import { useLaneTime } from "../lanes/use-lane-time";
@@ -32,10 +34,13 @@ export function TwinsPanel() {
   );
   const strips = useMemo(() => (boards.length > 1 ? comparison(boards, signals ?? []) : []), [boards, signals]);
   const names = useMemo(() => strips.flatMap(signalsOf), [strips]);
+  const shown = useRef<LanePainting | undefined>(undefined);
   const paint = useMemo(() => {
     const columnOf = new Map(names.map((name, i) => [name, i]));
-    return (ctx: CanvasRenderingContext2D, painting: LanePainting) =>
+    return (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
+      shown.current = painting;
       paintStrips(ctx, painting, strips, columnOf, scheme, fontSize, EACH_PX);
+    };
   }, [names, strips, scheme, fontSize]);
   if (!id || boards.length === 0) return <EmptyState title="No bench yet">Twins begin with a bench.</EmptyState>;
   const form = <TwinsForm key={id} chosen={boards.slice(1).map((b) => b.controller)} />;
@@ -46,11 +51,13 @@ export function TwinsPanel() {
         controller. Choose up to three; the bench begins again at tick 0 with them beside it.
       </EmptyState>
     );
+  const legend = [...boards.map(({ name, slot }) => ({ name, colour: TRACE_COLOURS.light[slot] })), IDEAL];
+  const take = () => shown.current && printStrips(shown.current, strips, "Twins", legend);
   return (
     <section className={styles.panel} aria-label="Twins">
       <div className={styles.bar}>
         {form}
-        <LaneTools time={time} onWindow={setWindowMs} />
+        <LaneTools time={time} onWindow={setWindowMs} take={take} />
       </div>
       <TwinFigures boards={boards} />
       <div className={styles.strips} style={{ height: strips.length * EACH_PX + AXIS_PX }}>

@@ -44,7 +44,7 @@ export function BodePart(props: BodePartProps) {
         </g>
       ))}
       <text x={6} y={14} className={styles.unit}>
-        {unit === "dB" ? "dB re static" : "phase, °"}
+        {unit === "dB" ? "magnitude re static, dB" : "phase, °"}
       </text>
       {band && (
         <path

@@ -1,8 +1,11 @@
 // @vitest-environment jsdom
-import { expect, it } from "vitest";
+import { expect, it, vi } from "vitest";
+import { pictureSvg } from "../../picture/picture";
 import { TRACE_COLOURS } from "../../ui/palette";
+import { axisTitle, printScope } from "./print-scope";
 import type { ScopePicture } from "./scope-picture";
-import { axisTitle, scopeSvg } from "./scope-svg";
+
+vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 
 const flat = (values: number[]) => ({ low: Float32Array.from(values), high: Float32Array.from(values) });
 const MICRO = { factor: 1, unit: "µm", decimals: 3 };
@@ -34,10 +37,16 @@ const PICTURE: ScopePicture = {
   },
 };
 
-const parse = (svg: string) => new DOMParser().parseFromString(svg, "image/svg+xml");
+const drawn = (title: string) =>
+  new DOMParser().parseFromString(pictureSvg(printScope(PICTURE, title, "scope")), "image/svg+xml");
+/** Left, top, width and height of the field of the traces. */
+const fieldOf = (document: Document) =>
+  (/^M(\S+) (\S+)h(\S+)v(\S+)h/.exec(document.querySelector("clipPath path")?.getAttribute("d") ?? "") ?? [])
+    .slice(1)
+    .map(Number);
 
 it("is well-formed, with a title for each axis and a name for each trace", () => {
-  const document = parse(scopeSvg(PICTURE, "First look & more"));
+  const document = drawn("First look & more");
   expect(document.querySelector("parsererror")).toBeNull();
   const texts = [...document.querySelectorAll("text")].map((node) => node.textContent);
   expect(texts).toContain("First look & more");
@@ -48,29 +57,26 @@ it("is well-formed, with a title for each axis and a name for each trace", () =>
 });
 
 it("marks and tells the events in sight that speak, and bands the faults", () => {
-  const document = parse(scopeSvg(PICTURE, "t"));
+  const document = drawn("t");
   const texts = [...document.querySelectorAll("text")].map((node) => node.textContent ?? "");
-  expect(texts.filter((text) => text === "7")).toHaveLength(1);
-  expect(texts).toContain("7 at 1.500 ms: mass < 5 % & more");
+  expect(texts.filter((text) => text === "7")).toHaveLength(2); // at its line and in the list
+  expect(texts).toContain("at 1.500 ms: mass < 5 % & more");
   expect(texts.some((text) => /out of sight|quiet/.test(text))).toBe(false);
   const band = document.querySelector("rect[height='4']");
   // from the middle of the field to its right edge
-  const field = document.querySelector("clipPath rect");
-  expect(Number(band?.getAttribute("width"))).toBeCloseTo(Number(field?.getAttribute("width")) / 2, 0);
+  expect(Number(band?.getAttribute("width"))).toBeCloseTo(fieldOf(document)[2] / 2, 0);
 });
 
 it("draws every value where its axis says, in the colours of white paper", () => {
-  const document = parse(scopeSvg(PICTURE, "t"));
-  const field = document.querySelector("clipPath rect");
-  const top = Number(field?.getAttribute("y"));
-  const bottom = top + Number(field?.getAttribute("height"));
-  const paths = [...document.querySelectorAll("g path")];
-  const [motion] = paths;
+  const document = drawn("t");
+  const [, top, , height] = fieldOf(document);
+  const bottom = top + height;
+  const [motion, spike] = document.querySelectorAll("g[clip-path] path");
   expect(motion.getAttribute("stroke")).toBe(TRACE_COLOURS.light[1]);
   const heights = [...(motion.getAttribute("d") ?? "").matchAll(/[ML]\S+ (\S+?)(?=[ML]|$)/g)].map((m) => Number(m[1]));
   expect(heights).toEqual([bottom, (top + bottom) / 2, top]);
   // the column of the spike is a bar from floor to ceiling
-  expect(paths[1].getAttribute("d")).toMatch(new RegExp(`${bottom.toFixed(1)}V${top.toFixed(1)}$`));
+  expect(spike.getAttribute("d")).toMatch(new RegExp(`^M(\\S+) ${bottom}L\\1 ${top}$`));
 });
 
 it("says no more than three quantities on one axis", () => {

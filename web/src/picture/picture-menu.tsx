@@ -1,0 +1,47 @@
+import { ActionIcon, Menu } from "@mantine/core";
+import { IconDownload } from "@tabler/icons-react";
+import type { ReactNode } from "react";
+import { pngOf, saveFile } from "../ui/save-file";
+import { type Picture, pictureSvg } from "./picture";
+
+/** What is shown now; nothing before anything is. */
+export type TakePicture = () => Picture | undefined;
+
+interface PictureMenuProps {
+  take: TakePicture;
+  /** What is exported, where there are several. */
+  name?: string;
+  /** More that can be kept, below the picture. */
+  children?: ReactNode;
+}
+
+/** Keep what a panel shows as a picture with titled axes and events. */
+export function PictureMenu({ take, name, children }: PictureMenuProps) {
+  const keep = async (kind: "png" | "svg") => {
+    const picture = take();
+    if (!picture) return;
+    const svg = pictureSvg(picture);
+    const content = kind === "png" ? await pngOf(svg) : new Blob([svg], { type: "image/svg+xml" });
+    saveFile(`${picture.stem}.${kind}`, content);
+  };
+  return (
+    <Menu position="bottom-end" shadow="md">
+      <Menu.Target>
+        <ActionIcon
+          size={26}
+          variant="default"
+          aria-label={name ? `Export: ${name}` : "Export"}
+          title="Save what is shown as a file"
+        >
+          <IconDownload size={15} />
+        </ActionIcon>
+      </Menu.Target>
+      <Menu.Dropdown>
+        <Menu.Label>Picture, with titled axes</Menu.Label>
+        <Menu.Item onClick={() => keep("png")}>PNG</Menu.Item>
+        <Menu.Item onClick={() => keep("svg")}>SVG</Menu.Item>
+        {children}
+      </Menu.Dropdown>
+    </Menu>
+  );
+}

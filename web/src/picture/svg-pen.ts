@@ -1,0 +1,182 @@
+import type { Pen } from "./pen";
+import { svgPaint } from "./svg-colour";
+import { textWidth } from "./text-width";
+
+export const FAMILY = "IBM Plex Sans, system-ui, sans-serif";
+
+/** How far a line of text stands below its point, in sizes of the font: programs disagree on baselines by name. */
+const DROP: Record<CanvasTextBaseline, number> = {
+  top: 0.85,
+  hanging: 0.75,
+  middle: 0.35,
+  alphabetic: 0,
+  ideographic: 0,
+  bottom: -0.22,
+};
+const ANCHOR: Record<CanvasTextAlign, string> = {
+  left: "start",
+  start: "start",
+  center: "middle",
+  right: "end",
+  end: "end",
+};
+const STATE = [
+  "fillStyle",
+  "strokeStyle",
+  "lineWidth",
+  "lineJoin",
+  "font",
+  "textAlign",
+  "textBaseline",
+  "globalAlpha",
+  "dashes",
+  "opened",
+] as const;
+
+export const escaped = (text: string) =>
+  text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;").replaceAll('"', "&quot;");
+const n = (value: number) => String(Math.round(value * 100) / 100);
+const allFinite = (...values: number[]) => values.every(Number.isFinite);
+
+/** A pen that writes SVG. Like a canvas it passes over what has no place. */
+export class SvgPen implements Pen {
+  fillStyle: Pen["fillStyle"] = "#000000";
+  strokeStyle: Pen["strokeStyle"] = "#000000";
+  lineWidth = 1;
+  lineJoin: CanvasLineJoin = "miter";
+  font = "400 12px sans-serif";
+  textAlign: CanvasTextAlign = "left";
+  textBaseline: CanvasTextBaseline = "alphabetic";
+  globalAlpha = 1;
+  private dashes = "";
+  /** Groups begun since the last `save`. */
+  private opened = 0;
+  private path = "";
+  private clips = 0;
+  private readonly saved: Partial<SvgPen>[] = [];
+  private readonly out: string[] = [];
+
+  /** All that was drawn, on white. */
+  svg(width: number, height: number, title: string): string {
+    while (this.saved.length) this.restore();
+    return (
+      `<svg xmlns="http://www.w3.org/2000/svg" width="${n(width)}" height="${n(height)}" viewBox="0 0 ${n(width)} ${n(height)}" ` +
+      `font-family="${FAMILY}"><title>${escaped(title)}</title><rect width="100%" height="100%" fill="#ffffff"/>\n` +
+      `${this.out.join("\n")}${"</g>".repeat(this.opened)}</svg>\n`
+    );
+  }
+
+  /** SVG from elsewhere, at the origin. */
+  add(markup: string): void {
+    this.out.push(markup);
+  }
+
+  save(): void {
+    this.saved.push(Object.fromEntries(STATE.map((key) => [key, this[key]])));
+    this.opened = 0;
+  }
+
+  restore(): void {
+    const state = this.saved.pop();
+    if (!state) return;
+    if (this.opened) this.out.push("</g>".repeat(this.opened));
+    Object.assign(this, state);
+  }
+
+  translate(x: number, y: number): void {
+    this.open(`transform="translate(${n(x)} ${n(y)})"`);
+  }
+
+  rotate(angle: number): void {
+    this.open(`transform="rotate(${n((angle * 180) / Math.PI)})"`);
+  }
+
+  setLineDash(dashes: number[]): void {
+    this.dashes = dashes.join(" ");
+  }
+
+  beginPath(): void {
+    this.path = "";
+  }
+
+  closePath(): void {
+    if (this.path) this.path += "z";
+  }
+
+  moveTo(x: number, y: number): void {
+    if (allFinite(x, y)) this.path += `M${n(x)} ${n(y)}`;
+  }
+
+  lineTo(x: number, y: number): void {
+    if (allFinite(x, y)) this.path += `${this.path ? "L" : "M"}${n(x)} ${n(y)}`;
+  }
+
+  rect(x: number, y: number, width: number, height: number): void {
+    if (allFinite(x, y, width, height)) this.path += `M${n(x)} ${n(y)}h${n(width)}v${n(height)}h${n(-width)}z`;
+  }
+
+  arc(x: number, y: number, radius: number, from: number, to: number): void {
+    if (!allFinite(x, y, radius)) return;
+    this.lineTo(x + radius * Math.cos(from), y + radius * Math.sin(from));
+    // in two halves, for a whole circle ends where it begins
+    for (const angle of [(from + to) / 2, to])
+      this.path += `A${n(radius)} ${n(radius)} 0 0 1 ${n(x + radius * Math.cos(angle))} ${n(y + radius * Math.sin(angle))}`;
+  }
+
+  fill(rule?: CanvasFillRule): void {
+    if (!this.path) return;
+    this.out.push(`<path d="${this.path}" ${this.filled()}${rule === "evenodd" ? ' fill-rule="evenodd"' : ""}/>`);
+  }
+
+  stroke(): void {
+    if (!this.path) return;
+    const dashes = this.dashes ? ` stroke-dasharray="${this.dashes}"` : "";
+    const stroke = svgPaint("stroke", String(this.strokeStyle), this.globalAlpha);
+    this.out.push(
+      `<path d="${this.path}" fill="none" ${stroke} stroke-width="${n(this.lineWidth)}" stroke-linejoin="${this.lineJoin}"${dashes}/>`,
+    );
+  }
+
+  clip(): void {
+    this.clips += 1;
+    this.out.push(`<clipPath id="clip${this.clips}"><path d="${this.path}"/></clipPath>`);
+    this.open(`clip-path="url(#clip${this.clips})"`);
+  }
+
+  fillRect(x: number, y: number, width: number, height: number): void {
+    if (!allFinite(x, y, width, height) || width === 0 || height === 0) return;
+    const place = `x="${n(Math.min(x, x + width))}" y="${n(Math.min(y, y + height))}"`;
+    this.out.push(`<rect ${place} width="${n(Math.abs(width))}" height="${n(Math.abs(height))}" ${this.filled()}/>`);
+  }
+
+  fillText(text: string, x: number, y: number, maxWidth = Number.POSITIVE_INFINITY): void {
+    if (!allFinite(x, y)) return;
+    const { size, weight } = this.face;
+    const squeezed =
+      this.measureText(text).width > maxWidth ? ` textLength="${n(maxWidth)}" lengthAdjust="spacingAndGlyphs"` : "";
+    this.out.push(
+      `<text x="${n(x)}" y="${n(y + DROP[this.textBaseline] * size)}" font-size="${n(size)}" font-weight="${weight}" ` +
+        `text-anchor="${ANCHOR[this.textAlign]}" ${this.filled()}${squeezed}>${escaped(text)}</text>`,
+    );
+  }
+
+  measureText(text: string): { width: number } {
+    const { size, weight } = this.face;
+    return { width: textWidth(text, size, weight, FAMILY) };
+  }
+
+  /** Weights between the hundreds are known to variable fonts only. */
+  private get face(): { size: number; weight: number } {
+    const [, weight, size] = /^(\d+) ([\d.]+)px/.exec(this.font) ?? [];
+    return { size: Number(size ?? 12), weight: Math.floor(Number(weight ?? 400) / 100) * 100 };
+  }
+
+  private filled(): string {
+    return svgPaint("fill", String(this.fillStyle), this.globalAlpha);
+  }
+
+  private open(attributes: string): void {
+    this.out.push(`<g ${attributes}>`);
+    this.opened += 1;
+  }
+}

@@ -1,0 +1,150 @@
+import styles from "./line-chart.module.css";
+import { DASHES, type Scheme, TRACE_COLOURS } from "./palette";
+import { linearTicks } from "./ticks";
+
+export interface ChartLine {
+  name: string;
+  x: readonly number[];
+  y: readonly number[];
+  /** Half the length of the bar at each point. */
+  spread?: readonly number[];
+  isStepped?: boolean;
+}
+
+export interface LineFieldProps {
+  label: string;
+  xLabel: string;
+  yLabel: string;
+  lines: readonly ChartLine[];
+  xRange?: [number, number];
+  yRange?: [number, number];
+  width: number;
+  height: number;
+  scheme: Scheme;
+  /** What the point nearest to the pointer says. */
+  onRead?(said: string | undefined): void;
+}
+
+/** Room for the title of the upright axis, and for each digit of its numbers, px. */
+const TITLE = 24;
+const DIGIT = 7;
+const RIGHT = 12;
+const TOP = 8;
+const BOTTOM = 40;
+
+export const lineColour = (i: number, scheme: Scheme) =>
+  TRACE_COLOURS[scheme][1 + (i % (TRACE_COLOURS[scheme].length - 1))];
+export const lineDashes = (i: number) => DASHES[i % DASHES.length];
+
+/** Lines over two titled axes. */
+export function LineField(props: LineFieldProps) {
+  const { label, xLabel, yLabel, lines, xRange, yRange, width, height, scheme, onRead } = props;
+  const [x0, x1] = xRange ?? spanOf(lines.flatMap((l) => l.x));
+  const [y0, y1] =
+    yRange ?? spanOf(lines.flatMap((l) => l.y.flatMap((v, i) => [v - (l.spread?.[i] ?? 0), v + (l.spread?.[i] ?? 0)])));
+  const tall = Math.max(40, height - TOP - BOTTOM);
+  const rows = linearTicks(y0, y1, tall / 34);
+  const left = TITLE + DIGIT * Math.max(5, ...rows.map((t) => say(t).length));
+  const wide = Math.max(60, width - left - RIGHT);
+  const px = (x: number) => left + ((x - x0) / (x1 - x0)) * wide;
+  const py = (y: number) => TOP + tall - ((y - y0) / (y1 - y0)) * tall;
+  const colour = (i: number) => lineColour(i, scheme);
+  return (
+    <svg
+      width={width}
+      height={height}
+      role="img"
+      aria-label={label}
+      className={styles.field}
+      onPointerMove={({ nativeEvent: { offsetX, offsetY } }) => onRead?.(nearest(lines, px, py, offsetX, offsetY))}
+      onPointerLeave={() => onRead?.(undefined)}
+    >
+      {linearTicks(x0, x1, wide / 70).map((t) => (
+        <g key={`x${t}`}>
+          <path d={`M${px(t)} ${TOP}V${TOP + tall}`} className={styles.grid} />
+          <text x={px(t)} y={TOP + tall + 15} textAnchor="middle">
+            {say(t)}
+          </text>
+        </g>
+      ))}
+      {rows.map((t) => (
+        <g key={`y${t}`}>
+          <path d={`M${left} ${py(t)}H${left + wide}`} className={styles.grid} />
+          <text x={left - 6} y={py(t) + 4} textAnchor="end">
+            {say(t)}
+          </text>
+        </g>
+      ))}
+      <text x={left + wide / 2} y={height - 6} textAnchor="middle" className={styles.axis}>
+        {xLabel}
+      </text>
+      <text transform={`translate(12 ${TOP + tall / 2}) rotate(-90)`} textAnchor="middle" className={styles.axis}>
+        {yLabel}
+      </text>
+      {lines.map((line, i) => (
+        <g key={line.name} stroke={colour(i)} fill="none">
+          <path
+            d={pathOf(line, px, py)}
+            strokeWidth={2}
+            strokeDasharray={lineDashes(i).join(" ")}
+            strokeLinejoin="round"
+          />
+          {line.x.map((x, j) => {
+            const half = line.spread?.[j] ?? 0;
+            return half > 0 && <path key={x} d={`M${px(x)} ${py(line.y[j] - half)}V${py(line.y[j] + half)}`} />;
+          })}
+          {(line.spread || line.x.length === 1) &&
+            line.x.map((x, j) => <circle key={x} cx={px(x)} cy={py(line.y[j])} r={3} fill={colour(i)} />)}
+        </g>
+      ))}
+    </svg>
+  );
+}
+
+const say = (value: number) => String(Number(value.toPrecision(6))).replace("-", "−");
+
+function pathOf(line: ChartLine, px: (x: number) => number, py: (y: number) => number): string {
+  return line.x
+    .map((x, i) => {
+      const X = px(x).toFixed(1);
+      const Y = py(line.y[i]).toFixed(1);
+      return i === 0 ? `M${X} ${Y}` : line.isStepped ? `H${X}V${Y}` : `L${X} ${Y}`;
+    })
+    .join("");
+}
+
+/** A range with some air around the values. */
+function spanOf(values: readonly number[]): [number, number] {
+  const finite = values.filter(Number.isFinite);
+  if (finite.length === 0) return [0, 1];
+  const low = finite.reduce((a, b) => Math.min(a, b));
+  const high = finite.reduce((a, b) => Math.max(a, b));
+  if (high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high))) {
+    const air = 0.5 * Math.abs(high) || 0.5;
+    return [low - air, high + air];
+  }
+  return [low - 0.04 * (high - low), high + 0.04 * (high - low)];
+}
+
+const REACH_PX = 40;
+
+/** What the point nearest to the pointer says. */
+function nearest(
+  lines: readonly ChartLine[],
+  px: (x: number) => number,
+  py: (y: number) => number,
+  atX: number,
+  atY: number,
+): string | undefined {
+  let best = REACH_PX;
+  let found: string | undefined;
+  for (const line of lines)
+    line.x.forEach((x, i) => {
+      const far = Math.hypot(px(x) - atX, py(line.y[i]) - atY);
+      if (far >= best) return;
+      best = far;
+      const spread = line.spread?.[i] ? ` ± ${say(Number(line.spread[i].toPrecision(3)))}` : "";
+      found = `${line.name ? `${line.name}: ` : ""}${say(Number(x.toPrecision(4)))}, ${say(Number(line.y[i].toPrecision(4)))}${spread}`;
+    });
+  return found;
+}
