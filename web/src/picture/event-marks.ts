@@ -58,6 +58,7 @@ export function markEvents(pen: Pen, events: readonly LogEntry[], { span, marks 
     const tone = eventTone(event);
     const colour = tone === "alarm" ? INK.alarm : tone === "found" ? INK.accent : INK.event;
     pen.strokeStyle = colour;
+    pen.globalAlpha = 0.75; // what it crosses stays readable
     pen.lineWidth = 1;
     pen.setLineDash(tone === "alarm" ? [] : [4, 3]);
     pen.beginPath();
@@ -69,6 +70,7 @@ export function markEvents(pen: Pen, events: readonly LogEntry[], { span, marks 
     else labels.push({ at, from: event.seq, to: event.seq, colour });
   }
   pen.setLineDash([]);
+  pen.globalAlpha = 1;
   for (const label of labels) {
     pen.fillStyle = label.colour;
     pen.fillText(spoken(label), label.at, top - 12);

@@ -6,6 +6,7 @@ import { useAnswer } from "../api/use-answer";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { LineChart } from "../ui/line-chart";
+import { metricName, metricTitle } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { ReportButton, ScriptButton } from "./file-buttons";
@@ -91,7 +92,13 @@ function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }
   return (
     <div className={styles.charts}>
       {charts.map(({ axis, metric, lines }) => (
-        <LineChart key={axis + metric} title={metric} xLabel={axis} yLabel="mean ± std" lines={lines} />
+        <LineChart
+          key={axis + metric}
+          title={`${metricName(metric)} over ${metricName(axis)}`}
+          xLabel={metricTitle(axis.split(".").at(-1) ?? axis)}
+          yLabel={`${metricTitle(metric)}: mean ± std`}
+          lines={lines}
+        />
       ))}
     </div>
   );

@@ -44,8 +44,8 @@ export function DiagnosisCharts({ points }: { points: PointTally[] }) {
       <div className={styles.charts}>
         <LineChart
           title="Receiver operating characteristic, sample by sample"
-          xLabel="false alarms"
-          yLabel="detections"
+          xLabel="share of false alarms"
+          yLabel="share of detections"
           xRange={UNIT}
           yRange={UNIT}
           lines={drawn.flatMap(({ name, tally }) =>
@@ -62,7 +62,7 @@ export function DiagnosisCharts({ points }: { points: PointTally[] }) {
         />
         <LineChart
           title="Detection delay"
-          xLabel="samples"
+          xLabel="delay, samples"
           yLabel="share found by then"
           yRange={UNIT}
           lines={drawn.map(({ name, tally }) => delayLine(name, tally))}

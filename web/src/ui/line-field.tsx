@@ -27,7 +27,9 @@ export interface LineFieldProps {
 
 /** Room for the title of the upright axis, and for each digit of its numbers, px. */
 const TITLE = 24;
-const DIGIT = 7;
+const DIGIT = 8;
+/** Width of a letter of that title, px. */
+const LETTER = 6.2;
 const RIGHT = 12;
 const TOP = 8;
 const BOTTOM = 40;
@@ -78,7 +80,12 @@ export function LineField(props: LineFieldProps) {
       <text x={left + wide / 2} y={height - 6} textAnchor="middle" className={styles.axis}>
         {xLabel}
       </text>
-      <text transform={`translate(12 ${TOP + tall / 2}) rotate(-90)`} textAnchor="middle" className={styles.axis}>
+      <text
+        transform={`translate(12 ${height / 2}) rotate(-90)`}
+        textAnchor="middle"
+        className={styles.axis}
+        {...(LETTER * yLabel.length > height && { textLength: height - 8, lengthAdjust: "spacingAndGlyphs" })}
+      >
         {yLabel}
       </text>
       {lines.map((line, i) => (

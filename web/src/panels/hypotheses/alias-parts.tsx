@@ -126,7 +126,14 @@ export function Sweep({ report, width, height, isFramed }: AliasPartProps) {
         d={hertz.map((f, i) => `${i ? "L" : "M"}${x(f).toFixed(1)} ${y(logs[i]).toFixed(1)}`).join("")}
         className={styles.curve}
       />
-      {tone > hertz[0] && <path d={`M${x(tone)} 20 V${20 + tall}`} className={styles.now} />}
+      {tone > hertz[0] && (
+        <>
+          <path d={`M${x(tone)} 20 V${20 + tall}`} className={styles.now} />
+          <text x={x(tone) - 5} y={34} textAnchor="end" className={styles.tick}>
+            drive
+          </text>
+        </>
+      )}
     </svg>
   );
 }
@@ -147,7 +154,7 @@ function PlaneAxes({ px, py, cx, cy, scale, width, height }: PlaneAxesProps) {
   const left = 56;
   const bottom = height - 40;
   const half = { x: (0.5 * width) / scale, y: (0.5 * height) / scale };
-  const columns = linearTicks(cx - half.x, cx + half.x, 4).filter((t) => px(t) > left + 20 && px(t) < width - 20);
+  const columns = linearTicks(cx - half.x, cx + half.x, 4).filter((t) => px(t) > left + 20 && px(t) < width - 30);
   const rows = linearTicks(cy - half.y, cy + half.y, 5).filter((t) => py(t) > 30 && py(t) < bottom - 10);
   return (
     <g>

@@ -16,10 +16,10 @@ export function printAliases(report: AliasReport): Picture {
     })),
     height: 420,
     paint(pen, { width, height }) {
-      const size = { width: width / 2, height, isFramed: true };
+      const size = { width: width / 2 - 20, height, isFramed: true };
       pen.add(drawnSvg(<Phasors report={report} {...size} scheme="light" />));
       pen.save();
-      pen.translate(width / 2, 0);
+      pen.translate(width / 2 + 20, 0);
       pen.add(drawnSvg(<Sweep report={report} {...size} />));
       pen.restore();
     },

@@ -9,10 +9,10 @@ const ALARM = CANVAS.light.alarm;
 export function printPhase(shown: PhasePicture): Picture {
   const { x, y, map, fits } = shown;
   const colour = onWhite(shown.colour);
-  const trail = { name: `${y.name} over ${x.name}, the latest darkest`, colour };
+  const trail = { name: "the latest darkest", colour };
   const ofPaper = { ...shown, colour, scheme: "light", fontSize: 13, hovered: undefined, isFramed: true } as const;
   return {
-    ...pictureName(`${y.name} over ${x.name}`),
+    ...pictureName("Phase plane"),
     across: phaseTitle(x),
     up: phaseTitle(y),
     legend: map && fits.folds ? [trail, { name: "unstable", colour: `${ALARM}2e`, mark: "field" }] : [trail],

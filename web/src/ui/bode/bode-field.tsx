@@ -12,18 +12,23 @@ export interface BodeFieldProps {
   degrees?: [number, number];
   width: number;
   height: number;
+  /** With upright titles beside the fields, which have no room in a panel. */
+  isFramed?: boolean;
   /** Index of the frequency that is read. */
   read?: number;
   onRead?(index: number | undefined): void;
 }
 
 const LEFT = 48;
+const TITLED_LEFT = 68;
 const RIGHT = 14;
 const AXIS = 30;
 const BETWEEN = 22;
 
 /** Magnitude over phase, on one logarithmic axis of frequency. */
-export function BodeField({ label, curves, band, points, degrees = [-180, 0], read, onRead, ...size }: BodeFieldProps) {
+export function BodeField(props: BodeFieldProps) {
+  const { label, curves, band, points, degrees = [-180, 0], isFramed, read, onRead, ...size } = props;
+  const left = isFramed ? TITLED_LEFT : LEFT;
   const hertz = curves[0].hertz;
   const low = hertz[0];
   const high = hertz[hertz.length - 1];
@@ -31,7 +36,7 @@ export function BodeField({ label, curves, band, points, degrees = [-180, 0], re
     () => dbRange([...curves.flatMap((c) => c.db), ...(band?.db.high ?? []), ...(points?.db ?? [])]),
     [curves, band, points],
   );
-  const width = Math.max(60, size.width - LEFT - RIGHT);
+  const width = Math.max(60, size.width - left - RIGHT);
   const upper = Math.max(40, (size.height - AXIS - BETWEEN) * 0.62);
   const lower = Math.max(30, size.height - AXIS - BETWEEN - upper);
   const x = (f: number) => (Math.log(f / low) / Math.log(high / low)) * width;
@@ -42,13 +47,14 @@ export function BodeField({ label, curves, band, points, degrees = [-180, 0], re
       role="img"
       aria-label={label}
       onPointerMove={(event) => {
-        const share = (event.nativeEvent.offsetX - LEFT) / width;
+        const share = (event.nativeEvent.offsetX - left) / width;
         onRead?.(share < 0 || share > 1 ? undefined : nearest(hertz, low * (high / low) ** share));
       }}
       onPointerLeave={() => onRead?.(undefined)}
     >
       <BodePart
-        left={LEFT}
+        left={left}
+        isFramed={isFramed}
         top={6}
         width={width}
         height={upper}
@@ -63,7 +69,8 @@ export function BodeField({ label, curves, band, points, degrees = [-180, 0], re
         at={read === undefined ? undefined : hertz[read]}
       />
       <BodePart
-        left={LEFT}
+        left={left}
+        isFramed={isFramed}
         top={upper + BETWEEN}
         width={width}
         height={lower}

@@ -17,13 +17,16 @@ interface BodePartProps {
   band?: { hertz: number[]; low: number[]; high: number[] };
   points?: { colour: string; hertz: number[]; values: number[]; errors: number[] | undefined };
   at: number | undefined;
+  /** Whether the title stands upright beside the field. */
+  isFramed?: boolean;
 }
 
 const LABEL_PX = 46;
 
 /** One of the two fields of a Bode diagram. */
 export function BodePart(props: BodePartProps) {
-  const { left, top, width, height, x, range, ticks, unit, frequencies, labelled, lines, band, points, at } = props;
+  const { left, top, width, height, x, range, ticks, unit, frequencies, labelled, lines, band, points, at, isFramed } =
+    props;
   const y = (value: number) => {
     const clipped = Math.min(Math.max(value, range[0]), range[1]);
     return height - ((clipped - range[0]) / (range[1] - range[0])) * height;
@@ -43,7 +46,12 @@ export function BodePart(props: BodePartProps) {
           </text>
         </g>
       ))}
-      <text x={6} y={14} className={styles.unit}>
+      <text
+        {...(isFramed
+          ? { transform: `translate(-50 ${height / 2}) rotate(-90)`, textAnchor: "middle" }
+          : { x: 6, y: 14 })}
+        className={styles.unit}
+      >
         {unit === "dB" ? "magnitude re static, dB" : "phase, °"}
       </text>
       {band && (

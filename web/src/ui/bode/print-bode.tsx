@@ -28,6 +28,6 @@ export function printBode(
     legend,
     height: 460,
     paint: (pen, box) =>
-      pen.add(drawnSvg(<BodeField label={title} {...ofPaper} band={band} degrees={degrees} {...box} />)),
+      pen.add(drawnSvg(<BodeField label={title} {...ofPaper} band={band} degrees={degrees} {...box} isFramed />)),
   };
 }

@@ -1,0 +1,126 @@
+import { readFileSync } from "node:fs";
+import type { Locator, Page } from "@playwright/test";
+import { expect, HYPOTHESES, test } from "./lab";
+
+test.use({ colorScheme: "dark" });
+
+/** Keep what a panel shows, as a person does. */
+async function keep(page: Page, within: Locator, kind: "PNG" | "SVG"): Promise<Buffer> {
+  await within
+    .getByRole("button", { name: /^Export/ })
+    .first()
+    .click();
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("menuitem", { name: kind, exact: true }).click(),
+  ]);
+  expect(download.suggestedFilename()).toMatch(new RegExp(`^[a-z0-9-]+\\.${kind.toLowerCase()}$`));
+  return readFileSync(await download.path());
+}
+
+/** Read a drawing with a browser that has no page around it: what it says, and what is wrong with it. */
+async function examine(page: Page, svg: string) {
+  const sheet = await page.context().newPage();
+  await sheet.setContent(svg);
+  const found = await sheet.evaluate((text) => {
+    const parsed = new DOMParser().parseFromString(text, "image/svg+xml");
+    const wrong: string[] = parsed.querySelector("parsererror") ? ["it is no XML"] : [];
+    const root = document.querySelector("svg") as SVGSVGElement;
+    for (const node of Array.from(root.querySelectorAll("*")))
+      for (const { name, value } of Array.from(node.attributes))
+        if (/NaN|Infinity|undefined|var\(|null/.test(value)) wrong.push(`${node.nodeName} ${name}="${value}"`);
+    for (const path of Array.from(root.querySelectorAll("path")))
+      if (!path.getAttribute("d")) wrong.push("an empty path");
+    const { width, height, left, top } = root.getBoundingClientRect();
+    for (const node of Array.from(root.querySelectorAll("text"))) {
+      const box = node.getBoundingClientRect();
+      const outside = box.left < left || box.top < top || box.right > left + width || box.bottom > top + height;
+      if (outside) wrong.push(`"${node.textContent}" lies outside`);
+    }
+    const curves = Array.from(root.querySelectorAll("path"), (path) => path.getTotalLength());
+    return {
+      wrong,
+      texts: Array.from(root.querySelectorAll("text"), (t) => t.textContent ?? ""),
+      longest: Math.max(...curves),
+    };
+  }, svg);
+  await sheet.close();
+  expect(found.wrong).toEqual([]);
+  // more than grid lines
+  expect(found.longest).toBeGreaterThan(400);
+  return found.texts;
+}
+
+const svgOf = async (page: Page, within: Locator) => examine(page, (await keep(page, within, "SVG")).toString());
+
+test("spectrum, phase plane and lanes are kept with titled axes, and lanes with their events", async ({
+  page,
+  openBench,
+}) => {
+  await openBench("lab");
+  const front = async (tab: string) => {
+    await page.getByRole("tab", { name: tab, exact: true }).click();
+    return page.getByRole("region", { name: tab, exact: true });
+  };
+  const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
+  await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
+  await expect(lanes.getByText(/^m\+5/).first()).toBeVisible();
+  const told = await svgOf(page, lanes);
+  expect(told).toEqual(expect.arrayContaining(["probability of each hypothesis, 0 to 1", "time of the device, ms"]));
+  expect(told).toEqual(expect.arrayContaining(HYPOTHESES.map(({ name }) => name)));
+  expect(told.some((text) => /^at [\d\s.]+ ms: .*mass/i.test(text))).toBe(true);
+
+  const spectrum = await front("Spectrum");
+  await expect(spectrum.getByText(/^Strongest/)).toBeVisible();
+  expect(await svgOf(page, spectrum)).toEqual(expect.arrayContaining(["frequency, kHz", "amplitude, µm"]));
+  const png = await keep(page, spectrum, "PNG");
+  expect(png.subarray(1, 4).toString()).toBe("PNG");
+  // twice the pixels of the drawing, from the header
+  expect(png.readUInt32BE(16)).toBe(2 * 960);
+
+  const phase = await front("Phase plane");
+  await phase.getByRole("button", { name: "Use the planar plant" }).click();
+  await expect(phase.getByText(/a slow drive folds/)).toBeVisible();
+  const plane = await svgOf(page, phase);
+  expect(plane).toContain("unstable");
+  expect(plane).toEqual(expect.arrayContaining([expect.stringMatching(/^plant displacement, [nµ]m$/)]));
+  expect(plane).toEqual(expect.arrayContaining([expect.stringMatching(/^plant velocity, [mµ]?m\/s$/)]));
+});
+
+test("Bode diagrams, charts of a campaign and plots of theory are kept, in light colours from a dark page", async ({
+  page,
+  openBench,
+  server,
+}) => {
+  await openBench("lab");
+  await page.keyboard.press("g");
+  await expect(page.getByRole("img", { name: /^Bode diagram/ })).toBeVisible();
+  const bode = (await keep(page, page.locator("section", { hasText: "Frequency response" }).last(), "SVG")).toString();
+  expect(await examine(page, bode)).toEqual(
+    expect.arrayContaining(["magnitude re static, dB", "phase, °", "frequency, Hz", "This device"]),
+  );
+  expect(bode).toContain('stroke="#0072b2"');
+  expect(bode).not.toMatch(/#56b4e9|#262e37|#e8ecf1/i);
+
+  await page.keyboard.press("t");
+  const real = page.getByRole("region", { name: "Positive real" });
+  await expect(real.getByRole("img", { name: /^Real part/ })).toBeVisible();
+  expect(await svgOf(page, real)).toEqual(expect.arrayContaining(["ω, rad per unit of time", "Re G(jω)", "Im G(jω)"]));
+  const map = page.getByRole("region", { name: "Instability map" });
+  await expect(map.getByText(/of the map is unstable/)).toBeVisible();
+  expect(await svgOf(page, map)).toContain("adaptation gain");
+
+  const { id } = await server.ask<{ id: string }>("POST", "/sweeps", {
+    sweep: {
+      schema: 1,
+      scenario: "ch5-seven-step",
+      seeds: { first: 1, count: 2 },
+      grid: { "sensor.noise_um": [0.05, 0.2] },
+    },
+  });
+  const state = () => server.ask<{ state: string }>("GET", `/sweeps/${id}`).then((found) => found.state);
+  await expect.poll(state, { timeout: 60_000 }).toBe("done");
+  await page.goto(`${server.origin}/?page=runs&sweep=${id}`);
+  const chart = page.getByRole("figure").filter({ hasText: "Detection delay" });
+  expect(await svgOf(page, chart)).toEqual(expect.arrayContaining(["delay, samples", "share found by then"]));
+});
