@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import type { Locator, Page } from "@playwright/test";
-import { expect, HYPOTHESES, test } from "./lab";
+import { expect, HYPOTHESES, pictureOf, test } from "./lab";
 
 test.use({ colorScheme: "dark" });
 
@@ -123,4 +123,41 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
   await page.goto(`${server.origin}/?page=runs&sweep=${id}`);
   const chart = page.getByRole("figure").filter({ hasText: "Detection delay" });
   expect(await svgOf(page, chart)).toEqual(expect.arrayContaining(["delay, samples", "share found by then"]));
+});
+
+test("a race, what adapts, aliases and a swept sine are kept", async ({ page, openBench }) => {
+  await openBench("lab", { "diagnosers.imm": { kind: "imm", hypotheses: HYPOTHESES } });
+  const front = async (tab: string) => {
+    await page.getByRole("tab", { name: tab, exact: true }).click();
+    return page.getByRole("region", { name: tab, exact: true });
+  };
+  const race = page
+    .locator("div", { has: page.getByRole("combobox", { name: "Diagnosers shown" }) })
+    .filter({ has: page.getByRole("button", { name: "LIVE" }) })
+    .last();
+  await expect(page.getByRole("region", { name: "Diagnosis by imm" })).toBeAttached();
+  await page.waitForFunction(() => document.querySelectorAll("canvas[aria-label$='over time']").length >= 3);
+  const field = await svgOf(page, race);
+  expect(field).toEqual(expect.arrayContaining(["truth", "kalman", "imm", "time of the device, ms"]));
+  expect(field).toContain("probabilities, stacked from 0 to 1");
+
+  const adaptation = await front("Adaptation");
+  const canvas = "section[aria-label='Adaptation'] canvas";
+  const blank = await pictureOf(page, canvas);
+  await expect.poll(() => pictureOf(page, canvas)).not.toBe(blank);
+  expect(await svgOf(page, adaptation)).toEqual(expect.arrayContaining(["now", "ideal", "time of the device, ms"]));
+
+  const hypotheses = await front("Hypotheses");
+  await expect(hypotheses.getByRole("img", { name: /in the complex plane/ })).toBeVisible();
+  expect(await svgOf(page, hypotheses)).toEqual(
+    expect.arrayContaining([
+      "real part of the motion",
+      "distance of the closest pair, µm, over the drive frequency, Hz",
+    ]),
+  );
+
+  const sweep = await front("Swept sine");
+  await sweep.getByRole("button", { name: "Sweep the device" }).click();
+  await expect(sweep.getByRole("row", { name: /^Resonance/ })).toBeVisible();
+  expect(await svgOf(page, sweep)).toEqual(expect.arrayContaining(["magnitude re static, dB", "frequency, Hz"]));
 });

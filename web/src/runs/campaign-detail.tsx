@@ -6,7 +6,7 @@ import { useAnswer } from "../api/use-answer";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { LineChart } from "../ui/line-chart";
-import { metricName, metricTitle } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { ReportButton, ScriptButton } from "./file-buttons";
@@ -94,7 +94,7 @@ function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }
       {charts.map(({ axis, metric, lines }) => (
         <LineChart
           key={axis + metric}
-          title={`${metricName(metric)} over ${metricName(axis)}`}
+          title={`${bare(metric)} over ${bare(axis)}`}
           xLabel={metricTitle(axis.split(".").at(-1) ?? axis)}
           yLabel={`${metricTitle(metric)}: mean ± std`}
           lines={lines}
@@ -103,3 +103,6 @@ function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }
     </div>
   );
 }
+
+/** A quantity without its unit. */
+const bare = (metric: string) => metricTitle(metric).replace(/, .*$/, "");
