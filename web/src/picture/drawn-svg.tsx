@@ -2,7 +2,7 @@ import type { ReactElement } from "react";
 import { flushSync } from "react-dom";
 import { createRoot } from "react-dom/client";
 import { svgColour } from "./svg-colour";
-import { FAMILY } from "./svg-pen";
+import { FAMILY } from "./svg-text";
 
 const PAINTS = ["fill", "stroke"] as const;
 /** What else a style sheet may say of a shape, and what need not be said. */

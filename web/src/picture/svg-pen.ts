@@ -1,25 +1,7 @@
 import type { Pen } from "./pen";
 import { svgPaint } from "./svg-colour";
-import { textWidth } from "./text-width";
+import { escaped, FAMILY, svgText, widthIn } from "./svg-text";
 
-export const FAMILY = "IBM Plex Sans, system-ui, sans-serif";
-
-/** How far a line of text stands below its point, in sizes of the font: programs disagree on baselines by name. */
-const DROP: Record<CanvasTextBaseline, number> = {
-  top: 0.85,
-  hanging: 0.75,
-  middle: 0.35,
-  alphabetic: 0,
-  ideographic: 0,
-  bottom: -0.22,
-};
-const ANCHOR: Record<CanvasTextAlign, string> = {
-  left: "start",
-  start: "start",
-  center: "middle",
-  right: "end",
-  end: "end",
-};
 const STATE = [
   "fillStyle",
   "strokeStyle",
@@ -33,8 +15,6 @@ const STATE = [
   "opened",
 ] as const;
 
-export const escaped = (text: string) =>
-  text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;").replaceAll('"', "&quot;");
 const n = (value: number) => String(Math.round(value * 100) / 100);
 const allFinite = (...values: number[]) => values.every(Number.isFinite);
 
@@ -151,24 +131,11 @@ export class SvgPen implements Pen {
 
   fillText(text: string, x: number, y: number, maxWidth = Number.POSITIVE_INFINITY): void {
     if (!allFinite(x, y)) return;
-    const { size, weight } = this.face;
-    const squeezed =
-      this.measureText(text).width > maxWidth ? ` textLength="${n(maxWidth)}" lengthAdjust="spacingAndGlyphs"` : "";
-    this.out.push(
-      `<text x="${n(x)}" y="${n(y + DROP[this.textBaseline] * size)}" font-size="${n(size)}" font-weight="${weight}" ` +
-        `text-anchor="${ANCHOR[this.textAlign]}" ${this.filled()}${squeezed}>${escaped(text)}</text>`,
-    );
+    this.out.push(svgText(text, n(x), y, maxWidth, this, this.filled()));
   }
 
   measureText(text: string): { width: number } {
-    const { size, weight } = this.face;
-    return { width: textWidth(text, size, weight, FAMILY) };
-  }
-
-  /** Weights between the hundreds are known to variable fonts only. */
-  private get face(): { size: number; weight: number } {
-    const [, weight, size] = /^(\d+) ([\d.]+)px/.exec(this.font) ?? [];
-    return { size: Number(size ?? 12), weight: Math.floor(Number(weight ?? 400) / 100) * 100 };
+    return { width: widthIn(this.font, text) };
   }
 
   private filled(): string {

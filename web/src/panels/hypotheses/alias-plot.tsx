@@ -2,8 +2,9 @@ import type { AliasReport } from "../../api/types";
 import { useScheme } from "../../app/use-scheme";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useSize } from "../../ui/use-size";
-import { Phasors, Sweep } from "./alias-parts";
+import { AliasSweep } from "./alias-sweep";
 import styles from "./hypotheses.module.css";
+import { Phasors } from "./phasors";
 import { printAliases } from "./print-aliases";
 
 const HEIGHT = 230;
@@ -21,7 +22,7 @@ export function AliasPlot({ report }: { report: AliasReport }) {
             <PictureMenu take={() => printAliases(report)} />
           </div>
           <Phasors report={report} width={width} height={HEIGHT} scheme={scheme} />
-          <Sweep report={report} width={split ? size.width - width : size.width} height={HEIGHT} />
+          <AliasSweep report={report} width={split ? size.width - width : size.width} height={HEIGHT} />
         </>
       )}
     </div>

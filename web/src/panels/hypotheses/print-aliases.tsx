@@ -3,7 +3,8 @@ import { drawnSvg } from "../../picture/drawn-svg";
 import type { Picture } from "../../picture/picture";
 import { pictureName } from "../../picture/picture-name";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
-import { Phasors, Sweep } from "./alias-parts";
+import { AliasSweep } from "./alias-sweep";
+import { Phasors } from "./phasors";
 
 /** Which hypotheses coincide, as a picture. */
 export function printAliases(report: AliasReport): Picture {
@@ -20,7 +21,7 @@ export function printAliases(report: AliasReport): Picture {
       pen.add(drawnSvg(<Phasors report={report} {...size} scheme="light" />));
       pen.save();
       pen.translate(width / 2 + 20, 0);
-      pen.add(drawnSvg(<Sweep report={report} {...size} />));
+      pen.add(drawnSvg(<AliasSweep report={report} {...size} />));
       pen.restore();
     },
   };
