@@ -97,7 +97,7 @@ export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) =>
     ctx.fillStyle = change.delay === undefined ? colours.alarm : colours.accent;
     ctx.fillRect(left, middle - 3, Math.max(2, x(found) - left), 6);
     const at = Math.max(x(found), layout.left) + 6;
-    const room = i + 1 < switches.length ? x(next) - at - 4 : Number.POSITIVE_INFINITY;
+    const room = Math.min(layout.right, i + 1 < switches.length ? x(next) - 4 : layout.right) - at;
     const text = delayWords(change.delay, frame.dtMs).find((words) => ctx.measureText(words).width <= room);
     if (text) ctx.fillText(text, at, middle + 0.5);
   });
