@@ -26,7 +26,8 @@ def measurement_step(p: Any, s: Any, w: Any, io: Any) -> None:
     if w[io[QUANTUM]] != 0.0:
         z = w[io[QUANTUM]] * math.floor(z / w[io[QUANTUM]] + 0.5)
     w[io[MEASURED]] = z
-    fresh = int(w[TICK]) % int(p[EVERY]) == 0 and math.isfinite(z)
+    # a division costs more than the rest of this step, and most sensors run at every tick
+    fresh = (p[EVERY] == 1.0 or int(w[TICK]) % int(p[EVERY]) == 0) and math.isfinite(z)
     variance = p[VARIANCE] + w[io[QUANTUM]] * w[io[QUANTUM]] / 12.0
     note(w, io[PAST], z, w[io[APPLIED]], variance if fresh else 0.0)
 

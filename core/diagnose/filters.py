@@ -48,7 +48,7 @@ def driven(p: Any, s: Any) -> bool:
 @kernel
 def informed(p: Any, s: Any, w: Any, io: Any) -> bool:
     """Say whether this sample is evidence: it was measured, and there is drive enough."""
-    return math.isfinite(w[io[MEASURED]]) and s[LEVEL] >= p[LEAST_DRIVE]
+    return math.isfinite(w[io[MEASURED]]) and driven(p, s)
 
 
 @inlined

@@ -29,7 +29,7 @@ from core.diagnose.filters import (
 from core.diagnose.hypothesis import Hypothesis
 from core.diagnose.kalman import FilterParams, KalmanBank
 from core.diagnose.lanes import LANE
-from core.diagnose.weights import weigh
+from core.diagnose.weights import floored, weigh
 
 FLOOR, LOG_FLOOR, MOVE_ABOVE, SPACING = range(4)
 LOG, LIKELIHOOD, CENTRE = DEPTH, DEPTH + 1, DEPTH + 2
@@ -122,8 +122,7 @@ class MovingBank(KalmanBank):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
-        floor = params.probability_floor
-        own = [floor, math.log(floor), params.move_above, params.spacing]
+        own = [*floored(params.probability_floor), params.move_above, params.spacing]
         return np.array(cls.filters(params, context, params.models) + own)
 
     @classmethod
