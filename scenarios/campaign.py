@@ -13,7 +13,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from statistics import fmean
 from typing import Any, Protocol
 
-from scenarios.executor import LOST, open_executor, submit, width_of
+from scenarios.executor import LOST, open_executor, width_of
 from scenarios.key import code_version
 from scenarios.outcome import outcome
 from scenarios.schema import Scenario
@@ -151,7 +151,7 @@ class Campaign:
             try:
                 width = width_of(executor, self._workers)
                 while waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * width:
-                    pending.add(submit(executor, compute, self._batch(waiting, width), code_version()))
+                    pending.add(executor.submit(compute, self._batch(waiting, width), code_version()))
             except LOST as error:
                 lost = error
             done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)

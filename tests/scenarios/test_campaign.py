@@ -101,9 +101,49 @@ def test_a_worker_process_that_is_killed_is_replaced() -> None:
 
 def test_without_a_scheduler_a_campaign_stops_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("scenarios.campaign.PATIENCE", 2)
-    monkeypatch.setattr("scenarios.executor.CONNECT_S", 0.2)
+    monkeypatch.setattr("scenarios.cluster.CONNECT_S", 0.2)
     with pytest.raises(Stopped, match=r"lost the scheduler at tcp://127.0.0.1.* 0 of 12"):
         Campaign(small(), Memory(), scheduler=f"tcp://127.0.0.1:{free_port()}").run()
+
+
+def test_a_batch_that_is_done_but_cannot_be_fetched_is_computed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As when the scheduler goes while it hands over what a worker has done."""
+    from distributed import Client
+
+    gather, failed = Client._gather, list[bool]()
+
+    async def gather_at_last(self: Client, *arguments: Any, **named: Any) -> Any:
+        if not failed:
+            failed.append(True)
+            raise ConnectionResetError("gone")
+        return await gather(self, *arguments, **named)
+
+    monkeypatch.setattr(Client, "_gather", gather_at_last)
+    sweep, table = small(), Memory()
+    with Cluster(tmp_path) as cluster:
+        cluster.start_worker()
+        campaign = Campaign(sweep, table, scheduler=cluster.address)
+        thread = threading.Thread(target=campaign.run, daemon=True)
+        thread.start()
+        thread.join(60)
+        assert not thread.is_alive() and failed
+    assert len(table.puts) == len(set(table.puts)) == 12
+
+
+def test_a_campaign_on_a_cluster_is_cancelled(tmp_path: Path) -> None:
+    table = Memory()
+    with Cluster(tmp_path) as cluster:
+        cluster.start_worker()
+        campaign = Campaign(
+            small(50, 9000),
+            table,
+            scheduler=cluster.address,
+            on_progress=lambda done, _: campaign.cancel() if done else None,
+        )
+        assert not campaign.run()
+    assert 0 < len(table.puts) == campaign.done < 100
 
 
 def test_a_cluster_gives_what_single_runs_give_though_worker_and_scheduler_are_killed(tmp_path: Path) -> None:
@@ -111,7 +151,7 @@ def test_a_cluster_gives_what_single_runs_give_though_worker_and_scheduler_are_k
     with Cluster(tmp_path) as cluster:
         first = [cluster.start_worker(), cluster.start_worker()]
         campaign = Campaign(sweep, table, scheduler=cluster.address)
-        thread = threading.Thread(target=campaign.run)
+        thread = threading.Thread(target=campaign.run, daemon=True)
         thread.start()
 
         def until(done: int) -> None:
