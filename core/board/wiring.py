@@ -45,6 +45,10 @@ class Wiring:
     s: FloatArray
     w: FloatArray
     io: IntArray
+    unread: list[bool]
+    """Of every row: whether it is a sensor that nobody reads."""
+    tap_rows: IntArray
+    """The row that every tap comes from."""
     resting: set[int] = field(default_factory=set)
 
     def row(self, key: str) -> int:
@@ -61,9 +65,8 @@ class Wiring:
     def rest(self, spec: Spec) -> list[int]:
         """Return the rows that run; make those that rest as new, and their signals 0."""
         running = []
-        read = needed(spec)
         for row, instance in enumerate(self.instances):
-            if not rests(spec, instance, read):
+            if not (self.unread[row] or absent(instance)):
                 running.append(row)
                 self.resting.discard(row)
                 continue
@@ -78,8 +81,9 @@ class Wiring:
 
     def idle(self, running: list[int]) -> BoolArray:
         """Return which taps stay 0 while these rows run."""
-        keys = {self.instances[row].key for row in running}
-        return np.array([signal.block not in keys for signal in self.signals.taps], dtype=np.bool_)
+        idle = np.ones(len(self.instances), dtype=np.bool_)
+        idle[running] = False
+        return idle[self.tap_rows]
 
 
 def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
@@ -171,23 +175,26 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
     for port in Effects.outputs:
         w[index[f"effects.{port.name}"]] = port.neutral
     engage(spec, index, w)
+    signals = SignalTable(shown)
+    read = needed(spec)
+    rows = {instance.key: row for row, instance in enumerate(order)}
     return Wiring(
         instances=order,
-        signals=SignalTable(shown),
+        signals=signals,
         index=index,
         table=table,
         p=np.concatenate(p_parts),
         s=np.concatenate(s_parts),
         w=w,
         io=np.concatenate(io_parts),
+        unread=[i.key in spec.sensors and issubclass(i.block, Sensor) and i.key not in read for i in order],
+        tap_rows=np.array([rows[signal.block] for signal in signals.taps], dtype=np.int64),
     )
 
 
-def rests(spec: Spec, instance: Instance, read: set[str]) -> bool:
-    """Say whether a block need not run: a fault that is not there, a sensor that is not among those read."""
-    if isinstance(instance.params, FaultParams):
-        return instance.params.severity == 0.0
-    return instance.key in spec.sensors and issubclass(instance.block, Sensor) and instance.key not in read
+def absent(instance: Instance) -> bool:
+    """Say whether a block is a fault that is not there, so that it need not run."""
+    return isinstance(instance.params, FaultParams) and instance.params.severity == 0.0
 
 
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
