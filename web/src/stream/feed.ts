@@ -10,13 +10,18 @@ export class Feed {
   revision = 0;
   frame: PanelFrame | undefined;
   dirty = false;
+  /** Least time between two drawings, ms: figures that change faster cannot be read. */
+  readonly everyMs: number;
+  /** When it may be drawn again. */
+  due = 0;
   /** The server refused something, so its count of our subscriptions may lag behind ours. */
   uncertain = false;
 
-  constructor(panel: number, subscription: Subscription, draw: (frame: PanelFrame) => void) {
+  constructor(panel: number, subscription: Subscription, draw: (frame: PanelFrame) => void, everyMs: number) {
     this.panel = panel;
     this.subscription = subscription;
     this.draw = draw;
+    this.everyMs = everyMs;
   }
 
   /** Take a picture from the wire, unless it answers an older subscription. */

@@ -53,6 +53,24 @@ describe("Feeds", () => {
     expect(sent.filter((m) => m.type === "ack")).toHaveLength(1);
   });
 
+  it("draws what cannot be read faster only now and then, but the newest in the end", () => {
+    const now = vi.spyOn(performance, "now").mockReturnValue(1000);
+    const draw = vi.fn();
+    const feed = feeds.open(roll, draw, 100);
+    const [first, skipped, last] = [1, 2, 3].map(() => picture(feed.panel, 1));
+    feeds.receive(frame(1, first));
+    expect(feeds.draw()).toBe(1);
+    now.mockReturnValue(1050);
+    feeds.receive(frame(2, skipped));
+    feeds.receive(frame(3, last));
+    expect(feeds.draw()).toBe(0);
+    expect(sent.at(-1)).toEqual({ type: "ack", frame: 3 });
+    now.mockReturnValue(1100);
+    expect(feeds.draw()).toBe(1);
+    expect(draw.mock.calls).toEqual([[first], [last]]);
+    now.mockRestore();
+  });
+
   it("ignores a picture that answers an older subscription, but still acknowledges it", () => {
     const draw = vi.fn();
     const feed = feeds.open(roll, draw);

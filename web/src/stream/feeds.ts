@@ -25,9 +25,9 @@ export class Feeds {
     return this.feeds.size;
   }
 
-  open(subscription: Subscription, draw: (frame: PanelFrame) => void): Feed {
+  open(subscription: Subscription, draw: (frame: PanelFrame) => void, everyMs = 0): Feed {
     while (this.feeds.has(this.nextPanel)) this.nextPanel = (this.nextPanel % PANEL_IDS) + 1;
-    const feed = new Feed(this.nextPanel, subscription, draw);
+    const feed = new Feed(this.nextPanel, subscription, draw, everyMs);
     this.nextPanel = (this.nextPanel % PANEL_IDS) + 1;
     this.feeds.set(feed.panel, feed);
     this.subscribe(feed);
@@ -68,12 +68,14 @@ export class Feeds {
     for (const picture of frame.panels) this.feeds.get(picture.panel)?.store(picture);
   }
 
-  /** Draw what is new and say so. Returns how many panels were drawn. */
+  /** Draw what is new and due, and say what has arrived. Returns how many panels were drawn. */
   draw(): number {
     let drawn = 0;
+    const now = performance.now();
     for (const feed of this.feeds.values()) {
-      if (!feed.dirty || !feed.frame) continue;
+      if (!feed.dirty || !feed.frame || now < feed.due) continue;
       feed.dirty = false;
+      feed.due = now + feed.everyMs;
       drawn += 1;
       try {
         feed.draw(feed.frame);

@@ -7,9 +7,9 @@ import type { Subscription } from "./wire";
 
 /**
  * Stream to `draw` while the panel is visible; `draw` runs in the animation loop and must not set React state
- * per frame.
+ * per frame. With `everyMs` it runs no more often than that, and always on the newest picture in the end.
  */
-export function useFeed(subscription: Subscription | undefined, draw: (frame: PanelFrame) => void) {
+export function useFeed(subscription: Subscription | undefined, draw: (frame: PanelFrame) => void, everyMs = 0) {
   const visible = usePanelVisible();
   const feed = useRef<Feed | undefined>(undefined);
   const painter = useRef(draw);
@@ -24,9 +24,9 @@ export function useFeed(subscription: Subscription | undefined, draw: (frame: Pa
     } else if (feed.current) {
       feeds.change(feed.current, JSON.parse(wanted) as Subscription);
     } else {
-      feed.current = feeds.open(JSON.parse(wanted) as Subscription, (frame) => painter.current(frame));
+      feed.current = feeds.open(JSON.parse(wanted) as Subscription, (frame) => painter.current(frame), everyMs);
     }
-  }, [wanted]);
+  }, [wanted, everyMs]);
 
   useEffect(
     () => () => {

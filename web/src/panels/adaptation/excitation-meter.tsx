@@ -22,7 +22,6 @@ export function ExcitationMeter() {
   const least = section?.least_excitation ?? USUAL_LEAST;
   const fill = useRef<HTMLDivElement>(null);
   const words = useRef<HTMLElement>(null);
-  const last = useRef(0);
   const subscription = useMemo(
     () =>
       source
@@ -35,17 +34,19 @@ export function ExcitationMeter() {
         : undefined,
     [source],
   );
-  useFeed(subscription, (frame) => {
-    const now = performance.now();
-    if (now - last.current < EVERY_MS || !fill.current || !words.current) return;
-    last.current = now;
-    const [relative, , identifiable] = frame.latest;
-    fill.current.style.setProperty("--share", `${100 * meterShare(relative)}%`);
-    fill.current.dataset.enough = String(identifiable > 0);
-    words.current.textContent = `${relative > 0 ? relative.toExponential(1).replace("-", "−") : "0"}: ${
-      identifiable > 0 ? "tells all parameters apart" : "the parameters cannot be told apart from this input"
-    }`;
-  });
+  useFeed(
+    subscription,
+    (frame) => {
+      if (!fill.current || !words.current) return;
+      const [relative, , identifiable] = frame.latest;
+      fill.current.style.setProperty("--share", `${100 * meterShare(relative)}%`);
+      fill.current.dataset.enough = String(identifiable > 0);
+      words.current.textContent = `${relative > 0 ? relative.toExponential(1).replace("-", "−") : "0"}: ${
+        identifiable > 0 ? "tells all parameters apart" : "the parameters cannot be told apart from this input"
+      }`;
+    },
+    EVERY_MS,
+  );
 
   if (!source) {
     const add = () => {

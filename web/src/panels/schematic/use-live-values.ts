@@ -14,7 +14,6 @@ export function useLiveValues(shown: Record<string, string>) {
   const signals = useBench((s) => s.bench?.signals);
   const elements = useRef(new Map<string, Element>());
   const peaks = useRef(new Map<string, number>());
-  const last = useRef(0);
   const entries = useMemo(
     () =>
       Object.entries(shown).flatMap(([key, name]) => {
@@ -30,25 +29,26 @@ export function useLiveValues(shown: Record<string, string>) {
         : undefined,
     [entries],
   );
-  useFeed(subscription, (frame) => {
-    const now = performance.now();
-    if (now - last.current < EVERY_MS) return;
-    last.current = now;
-    entries.forEach(({ key, unit }, i) => {
-      const value = frame.latest[i];
-      const high = Math.max(Math.abs(frame.data[i * 2 * frame.columns]) || 0, Math.abs(value) || 0);
-      const element = elements.current.get(key);
-      if (!element) return;
-      if (!Number.isFinite(value) || high > IMMENSE) {
-        element.textContent = "not finite";
-        return;
-      }
-      const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
-      peaks.current.set(key, peak);
-      const scale = unitScale(unit, peak, 3);
-      element.textContent = `${formatOn(scale, value)} ${scale.unit}`;
-    });
-  });
+  useFeed(
+    subscription,
+    (frame) => {
+      entries.forEach(({ key, unit }, i) => {
+        const value = frame.latest[i];
+        const high = Math.max(Math.abs(frame.data[i * 2 * frame.columns]) || 0, Math.abs(value) || 0);
+        const element = elements.current.get(key);
+        if (!element) return;
+        if (!Number.isFinite(value) || high > IMMENSE) {
+          element.textContent = "not finite";
+          return;
+        }
+        const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
+        peaks.current.set(key, peak);
+        const scale = unitScale(unit, peak, 3);
+        element.textContent = `${formatOn(scale, value)} ${scale.unit}`;
+      });
+    },
+    EVERY_MS,
+  );
   return useCallback(
     (key: string) => (element: Element | null) => {
       if (element) elements.current.set(key, element);

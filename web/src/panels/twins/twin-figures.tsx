@@ -1,4 +1,4 @@
-import { useMemo, useRef, useState } from "react";
+import { useMemo, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { useScheme } from "../../app/use-scheme";
 import { useBench } from "../../stream/bench-store";
@@ -21,7 +21,6 @@ export function TwinFigures({ boards }: { boards: Board[] }) {
   const period = useBench((s) => s.bench?.drive_period_ticks);
   const { block } = useCatalog();
   const [figures, setFigures] = useState<TrackingFigures[]>([]);
-  const last = useRef(0);
   const ticks = Math.min(MOST_TICKS, Math.round(period ? PERIODS * period : USUAL_TICKS));
   const subscription = useMemo(
     () => ({
@@ -35,12 +34,13 @@ export function TwinFigures({ boards }: { boards: Board[] }) {
     }),
     [boards, ticks, dtMs],
   );
-  useFeed(dtMs > 0 ? subscription : undefined, (frame) => {
-    const now = performance.now();
-    if (now - last.current < EVERY_MS) return;
-    last.current = now;
-    setFigures(boards.map((_, i) => trackingFigures(frame, 1 + 2 * i, 0, 2 + 2 * i)));
-  });
+  useFeed(
+    dtMs > 0 ? subscription : undefined,
+    (frame) => {
+      setFigures(boards.map((_, i) => trackingFigures(frame, 1 + 2 * i, 0, 2 + 2 * i)));
+    },
+    EVERY_MS,
+  );
   const best = Math.min(...figures.map((f) => f.rmsError).filter(Number.isFinite));
   return (
     <div className={styles.scroll}>
