@@ -6,7 +6,7 @@ from typing import Any
 
 from core.block import inlined, settled
 from core.diagnose.filters import INVERSE, MEMORY, OWN, RESIDUAL
-from core.diagnose.lanes import LANE, whole
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import likeliest
 
 LEAST_INFORMATION = 1e-3
@@ -25,12 +25,12 @@ def nearest_rival(p: Any, s: Any, separation: int, n: int, w: Any, probability: 
     """
     winner = likeliest(w, probability, n)
     own = s[OWN + RESIDUAL * LANE + winner]
-    for i in range(whole(n)):
-        apart = s[OWN + RESIDUAL * LANE + i] - own
-        gain = 0.5 * apart * apart * s[OWN + INVERSE * LANE + i]
-        s[separation + i] = settled(p[MEMORY] * s[separation + i] + (1.0 - p[MEMORY]) * gain)
     nearest = 1e300
     for i in range(n):
-        if i != winner:
-            nearest = min(nearest, s[separation + i])
+        apart = s[OWN + RESIDUAL * LANE + i] - own
+        gain = 0.5 * apart * apart * s[OWN + INVERSE * LANE + i]
+        mean = p[MEMORY] * s[separation + i] + (1.0 - p[MEMORY]) * gain
+        s[separation + i] = settled(mean)
+        if i != winner and mean < nearest:
+            nearest = mean
     return nearest

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from core.block import inlined, kernel, settled
-from core.diagnose.lanes import LANE, whole
+from core.diagnose.lanes import LANE
 
 COUNT, PROCESS, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(10)
 """Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
@@ -131,10 +131,10 @@ def filters_step(p: Any, s: Any, w: Any, io: Any, n: int, u: float, residual_tap
     s[STARTED] = 1.0
     changed = 0
     if p[STEADY] == 0.0:
-        for i in range(whole(n)):
+        for i in range(n):
             changed += filter_step(p, s, i, LANE, u, z, first, seen)
     else:
-        for i in range(whole(n)):
+        for i in range(n):
             a = LANES + i
             psi = p[a + PSI * LANE]
             correct_state(
@@ -160,13 +160,13 @@ def take_logarithms(s: Any, n: int) -> None:
 @inlined
 def judge(s: Any, log: int, likelihood: int, n: int, evidence: bool) -> float:
     """Write the logarithms the residuals leave, from those at ``log`` to ``likelihood``; return the largest."""
-    for i in range(whole(n)):
-        before = s[log + i]
-        after = before - (0.5 * s[OWN + NIS * LANE + i] + s[OWN + HALF_LOG * LANE + i])
-        s[likelihood + i] = after if evidence else before
     best = -math.inf
     for i in range(n):
-        best = max(best, s[likelihood + i])
+        before = s[log + i]
+        after = before - (0.5 * s[OWN + NIS * LANE + i] + s[OWN + HALF_LOG * LANE + i])
+        after = after if evidence else before
+        s[likelihood + i] = after
+        best = max(best, after)
     return best
 
 

@@ -29,7 +29,7 @@ from core.diagnose.filters import (
     informed,
 )
 from core.diagnose.kalman import KalmanBank, KalmanParams
-from core.diagnose.lanes import LANE, whole
+from core.diagnose.lanes import LANE
 
 OTHER = 0
 """Parameter of its own."""
@@ -64,7 +64,7 @@ def mix(s: Any, n: int, other: float) -> None:
         m11 += weight * (s[b + P11 * LANE] + d1 * d1)
         m12 += weight * (s[b + P12 * LANE] + d1 * d2)
         m22 += weight * (s[b + P22 * LANE] + d2 * d2)
-    for i in range(whole(n)):
+    for i in range(n):
         b = OWN + i
         own = keep * s[b + WEIGHT * LANE]
         before = other + own

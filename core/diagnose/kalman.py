@@ -100,11 +100,9 @@ class KalmanBank(Block):
             if steady:
                 table[GAIN1 : PSI + 1, i] = steady_gain(phi, gamma, q, r, printed)
                 table[INVERSE_PSI, i] = 1.0 / table[PSI, i]
-        count = len(hypotheses)
-        table[:, count:] = table[:, count - 1 : count]
         memory = memory_ms(context)
         head = [
-            count,
+            len(hypotheses),
             q,
             r,
             steady,

@@ -9,23 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.block import FloatArray, inlined
+from core.block import FloatArray
 
 LANE = 16
 """Length of a lane: the most hypotheses there may be."""
-REGISTER = 4
-"""Numbers a processor works on at once; those that work on more or on fewer lose nothing."""
 
 
 def lanes(rows: int, models: int) -> FloatArray:
     """Return empty lanes; what works on its models one by one may have more than others have room for."""
     return np.zeros((rows, max(models, LANE)))
-
-
-@inlined
-def whole(n: int) -> int:
-    """Return n models as whole registers: working on the last one alone would cost as much as on a register.
-
-    Beyond the models stands the last of them again; nobody reads what comes of it.
-    """
-    return REGISTER * ((n + REGISTER - 1) // REGISTER)

@@ -13,7 +13,7 @@ from typing import Any
 
 from core.block import TICK, Context, inlined, kernel
 from core.diagnose.filters import COVARIANCE, OWN, RESIDUAL
-from core.diagnose.lanes import LANE, whole
+from core.diagnose.lanes import LANE
 
 LENGTH, PLACE, HEAD = range(3)
 COSINE_SUM, SINE_SUM, POWER_SUM, COSINE_NEW, SINE_NEW, POWER_NEW, SUMS = range(7)
@@ -67,7 +67,7 @@ def push(s: Any, at: int, n: int, capacity: int, place: int, cosine: float, sine
     s[ring + place] = cosine
     s[ring + capacity + place] = sine
     row = rows + LANE * place
-    for i in range(whole(n)):
+    for i in range(n):
         value = s[OWN + RESIDUAL * LANE + i] / math.sqrt(s[OWN + COVARIANCE * LANE + i])
         old = s[row + i]
         s[row + i] = value
