@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -147,9 +148,9 @@ def identify_metrics(board: Board, name: str, error: FloatArray | None, options:
 
 
 def step_lengths(truth: FloatArray) -> list[int]:
-    """Return the number of samples of each stretch of one truth."""
-    edges = np.flatnonzero(np.diff(truth)) + 1
-    return [int(length) for length in np.diff([0, *edges.tolist(), len(truth)])]
+    """Return the number of samples of each stretch in which one hypothesis is true."""
+    edges = [0, *(np.flatnonzero(np.diff(truth)) + 1).tolist(), len(truth)]
+    return [end - start for start, end in itertools.pairwise(edges) if truth[start] >= 0.0]
 
 
 def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:

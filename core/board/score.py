@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,8 @@ def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Name the winner and the truth, and count."""
     n = int(p[COUNT])
     winner = likeliest(w, io[PROBABILITY], n)
+    if not math.isfinite(w[io[PROBABILITY] + winner]):
+        winner = -1
     truth = -1
     for i in range(n):
         a = FACTORS + 4 * i
@@ -45,12 +48,13 @@ def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
         s[RUN] = 0.0
         s[FOUND] = 0.0
         s[WAS_RIGHT] = 0.0
-        s[STEP] += 1.0
-        if s[STEP] <= STEPS:
-            s[DELAYS + int(s[STEP]) - 1] = -1.0
+        if truth >= 0:  # what no hypothesis names is never found
+            s[STEP] += 1.0
+            if s[STEP] <= STEPS:
+                s[DELAYS + int(s[STEP]) - 1] = -1.0
         w[io[DELAY]] = -1.0
     s[TOTAL] += 1.0
-    right = winner == truth
+    right = winner == truth and truth >= 0
     if right:
         s[RIGHT] += 1.0
         s[RUN] += 1.0
@@ -65,7 +69,7 @@ def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
         if s[FOUND] != 0.0 and s[WAS_RIGHT] != 0.0:
             s[EXITS] += 1.0
     s[WAS_RIGHT] = 1.0 if right else 0.0
-    if truth >= 0:
+    if truth >= 0 and winner >= 0:
         s[CONFUSION + truth * n + winner] += 1.0
         s[NIS_SUM] += w[io[NIS] + truth]
         s[NIS_COUNT] += 1.0
@@ -81,7 +85,8 @@ class Score(Block):
     The delay is the number of samples from the change to the first of 20 right verdicts in a row; a false switch
     is an exit from the truth after that; the share counts every sample, transitions included. The truth is the
     hypothesis whose factors are those of the plant at this moment, -1 when there is none, as while a fault is there
-    that no factor can say.
+    that no factor can say; then there is nothing to find, and no delay. A bank whose probabilities are no numbers
+    has no winner, and is not right.
     """
 
     title = "Score"
@@ -95,7 +100,7 @@ class Score(Block):
         Port("other", "1", "not zero while no hypothesis can be true", source="effects.other"),
     )
     outputs = (
-        Port("winner", "1", "index of the most probable hypothesis"),
+        Port("winner", "1", "index of the most probable hypothesis, -1 when probabilities are no numbers"),
         Port("truth", "1", "index of the hypothesis that is true, -1 for none"),
     )
     taps = (

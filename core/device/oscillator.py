@@ -15,7 +15,11 @@ def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple
         \begin{bmatrix} c+\sigma s & s\\ -\omega_0^2 s & c-\sigma s\end{bmatrix},
         \quad \sigma=\frac{\beta}{2m},\; s=\frac{\sin\omega_d h}{\omega_d},\; c=\cos\omega_d h
 
-    with hyperbolic functions beyond critical damping.
+    Beyond critical damping the two rates of decay, :math:`r_{1,2}=\sigma\mp\sqrt{\sigma^2-\omega_0^2}`, take the place
+    of the oscillation, each from what does not cancel, and no factor of a product grows beyond all bounds:
+
+    .. math:: e^{-\sigma h}s=e^{-r_1h}\frac{1-e^{-(r_2-r_1)h}}{r_2-r_1},\quad
+        e^{-\sigma h}c=\tfrac12(e^{-r_1h}+e^{-r_2h})
 
     Parameters
     ----------
@@ -32,15 +36,18 @@ def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple
     sigma = damping / (2.0 * mass)
     square = stiffness / mass
     discriminant = square - sigma * sigma
+    if discriminant < 0.0:
+        apart = math.copysign(2.0 * math.sqrt(-discriminant), sigma)
+        fast = sigma + 0.5 * apart
+        slow = square / fast
+        c = 0.5 * (math.exp(-slow * h) + math.exp(-fast * h))
+        s = math.exp(-slow * h) * -math.expm1(-apart * h) / apart
+        return c + sigma * s, s, -square * s, c - sigma * s
     decay = math.exp(-sigma * h)
     if discriminant > 0.0:
         omega = math.sqrt(discriminant)
         c = math.cos(omega * h)
         s = math.sin(omega * h) / omega
-    elif discriminant < 0.0:
-        omega = math.sqrt(-discriminant)
-        c = math.cosh(omega * h)
-        s = math.sinh(omega * h) / omega
     else:
         c = 1.0
         s = h

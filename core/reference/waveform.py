@@ -57,8 +57,9 @@ class Waveform(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the shared parameters, then those of the waveform."""
-        shared = [context.dt_ms, float(context.analogue), params.volts(context), params.offset_v]
+        """Pack the shared parameters, then those of the waveform; what plays every N ticks is held over them."""
+        analogue = context.analogue and context.every == 1
+        shared = [context.dt_ms / context.every, float(analogue), params.volts(context), params.offset_v]
         return np.array([*shared, *cls.shape_parameters(params, context)], dtype=np.float64)
 
     @classmethod

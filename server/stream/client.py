@@ -106,9 +106,7 @@ class Client:
         """Note that the client has taken every frame up to this one."""
         self._acked = max(self._acked, min(frame, self._frame))
         self._taken_at = time.monotonic()
-        if self._owes_frame and not self.session.is_running:
-            self._cuts.refresh()
-            self.offer_frame()  # nothing else would: a paused bench has no next round
+        self._catch_up()
 
     def resume(self, after: int) -> None:
         """Send the events after this one (again)."""
@@ -126,6 +124,12 @@ class Client:
         self.closed.set()
         self._wake.set()
 
+    def _catch_up(self) -> None:
+        """Offer the frame that is owed: nothing else would, as a bench that stands still has no next round."""
+        if self._owes_frame and not self.session.is_running:
+            self._cuts.refresh()
+            self.offer_frame()
+
     # What it does.
 
     async def run(self) -> None:
@@ -142,6 +146,7 @@ class Client:
             if self._wants_frame:
                 self._wants_frame = False
                 await self._send_frame()
+            self._catch_up()
 
     async def _send_status(self) -> None:
         """Send the status; the scenario as it is now only if something happened since."""

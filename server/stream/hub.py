@@ -98,13 +98,15 @@ class Hub:
         for bench_id, clients in self._clients.items():
             session = next(iter(clients)).session
             head, last = self._heads.get(bench_id, (-1, -1))
-            new_head = self._cuts[bench_id].refresh() if frame_due else head
+            # a bench that stands still has no later round that would show where it came to
+            due = frame_due or not session.is_running
+            new_head = self._cuts[bench_id].refresh() if due else head
             new_last = session.events.last
             for client in clients:
                 if new_last != last:
                     client.offer_events()
                     client.offer_status()
-                if frame_due and new_head != head:
+                if new_head != head:
                     client.offer_frame()
             self._heads[bench_id] = (new_head, new_last)
 

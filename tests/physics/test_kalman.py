@@ -102,3 +102,12 @@ def test_assumed_noise_scales_variances():
     late = slice(300, None)
     np.testing.assert_allclose(of_bank(plain, "residual")[late], of_bank(scaled, "residual")[late], atol=1e-8)
     np.testing.assert_allclose(of_bank(plain, "nis")[late], 4 * of_bank(scaled, "nis")[late], rtol=1e-6, atol=1e-12)
+
+
+@pytest.mark.parametrize("form", ["recursive", "steady"])
+def test_a_hypothesis_far_beyond_critical_damping_stays_a_number(form):
+    thick = [{"name": "healthy"}, {"name": "thick", "mass": 0.01, "damping": 100.0}]
+    bank = {"kind": "mmae", "form": form, "hypotheses": thick}
+    trace = signals(2000, {"sample_rate_khz": 10, "diagnosers": {"kalman": bank}})
+    assert all(np.all(np.isfinite(trace[f"kalman.{port}.thick"])) for port in ("probability", "residual", "nis"))
+    assert np.all(trace["kalman.winner"][100:] == 0.0)

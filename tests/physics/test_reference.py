@@ -48,6 +48,16 @@ def test_chirp_against_scipy():
     np.testing.assert_allclose(found[1001:2000], one[1:], atol=1e-9)  # and again from the start
 
 
+@pytest.mark.parametrize("every", [2, 3, 7])
+@pytest.mark.parametrize("drive", ["held", "analogue"])
+def test_what_plays_every_few_ticks_is_the_same_wave_held_over_them(every, drive):
+    tables = {"plant": {"model": "linear", "drive": drive}, "guard": {"travel_um": 1000.0}}
+    wave = {"kind": "sine", "amplitude_v": 3.0, "frequency_hz": 700.0}
+    each = play(make({**tables, "reference": wave}), 500)["reference.voltage"]
+    found = play(make({**tables, "reference": {**wave, "every": every}}), 500)["reference.voltage"]
+    np.testing.assert_array_equal(found, each[np.arange(500) // every * every])
+
+
 @pytest.mark.parametrize("duty", [0.5, 0.25, 1.0])
 def test_square(duty):
     found = voltage(kind="square", amplitude_v=5.0, frequency_hz=250.0, duty=duty, offset_v=1.0)

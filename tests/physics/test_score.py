@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from core.block import Context
 from core.board import score
 from core.diagnose.hypothesis import Hypothesis
 from core.faults.fault import FaultParams
+from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
 from tests.lab import make, play
@@ -27,7 +29,8 @@ def by_definition(winner: np.ndarray, truth: np.ndarray) -> tuple[float, int, li
     for start, end in itertools.pairwise(edges):
         right = winner[start:end] == truth[start:end]
         found = next((i for i in range(len(right) - 19) if right[i : i + 20].all()), None)
-        delays.append(found)
+        if truth[start] >= 0:
+            delays.append(found)
         if found is not None:
             after = right[found:]
             exits += int(np.sum(after[:-1] & ~after[1:]))
@@ -107,3 +110,35 @@ def test_a_hypothesis_on_the_drive_is_not_the_truth_of_a_healthy_device():
     trace = play(make({**BENCH, "diagnosers": {"kalman": bank}}), 400)
     assert np.all(trace["kalman.truth"] == 1)
     assert trace["kalman.correct_fraction"][-1] > 0.9
+
+
+def test_what_no_hypothesis_names_is_no_step_and_is_never_missed():
+    """A ramp passes through masses that none of the hypotheses has."""
+    events = [
+        {
+            "fault": "added_mass",
+            "severity": 0.05,
+            "profile": {"kind": "ramp", "duration_ms": 20.0},
+            "at_ms": 10,
+        }
+    ]
+    scenario = with_values(get("ch5-seven-step"), {"events": events, "samples": 3000, "expect": []})
+    result = run(scenario, seed=11)
+    truth = result.signal("kalman.truth")
+    assert set(truth[600:1400]) == {-1.0} and truth[-1] == 1.0
+    assert result.metrics["diagnosis.kalman.missed_steps"] == 0.0
+    assert "diagnosis.kalman.delay_samples.3" not in result.metrics
+    assert result.metrics["diagnosis.kalman.mean_delay_samples"] == result.metrics["diagnosis.kalman.delay_samples.2"]
+
+
+def test_probabilities_that_are_no_numbers_are_not_right():
+    params = score.Score.Params(hypotheses=[Hypothesis(name="healthy"), Hypothesis(name="m+5", mass=1.05)])
+    context = Context(dt_ms=0.01, every=1, seed=0, device=NOMINAL, model=NOMINAL)
+    p, s = score.Score.pack(params, context), score.Score.state(params, context)
+    w = np.ones(32)
+    w[2:4] = math.nan
+    w[11] = 0.0
+    score.Score.step(p, s, w, np.array([2, 5, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]))
+    assert w[12] == -1.0 and w[13] == 0.0
+    found = score.read(s, ["healthy", "m+5"], -1)
+    assert found.correct_fraction == 0.0 and found.confusion == [[0, 0], [0, 0]]

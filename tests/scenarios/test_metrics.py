@@ -124,7 +124,7 @@ def test_device_metrics():
 
 
 def test_step_lengths():
-    assert step_lengths(np.array([0, 0, 1, 1, 1, -1, 0])) == [2, 3, 1, 1]
+    assert step_lengths(np.array([0, 0, 1, 1, 1, -1, 0])) == [2, 3, 1]
     assert step_lengths(np.array([3.0])) == [1]
 
 
