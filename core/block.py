@@ -229,6 +229,8 @@ class Block:
     taps: ClassVar[tuple[Port, ...]] = ()
     equations: ClassVar[tuple[Equation, ...]] = ()
     step: ClassVar[Step]
+    every_tick: ClassVar[bool] = False
+    """Whether the step is called at every tick though the block runs every N, because it has to do between."""
 
     def __init_subclass__(cls) -> None:
         """Name the block after its file and its family after its folder."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -9,12 +10,14 @@ import numpy as np
 
 from core.block import FloatArray, IntArray, kernel
 from core.board.spec import Spec
-from core.board.wiring import Wiring, scored
+from core.board.wiring import Instance, Wiring, scored
 from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
 from core.diagnose.regions import REGIONS
 
 Finding = dict[str, Any]
+MOST_LOST = 1e-3
+"""Share of the amplitude of the reference that a block may lose unsaid by taking the voltage for held at its mean."""
 
 
 @kernel
@@ -68,20 +71,23 @@ class Observer:
         self._columns = np.array(sorted(start), dtype=np.int64)
         self._last = np.array([start[column] for column in self._columns.tolist()])
         self._found = np.zeros((64, 2), dtype=np.int64)
+        self._averaging = [instance.key for instance in wiring.instances if _averages(instance)]
+        self._cautioned: Spec | None = None
+        self._cautions: set[str] = set()
 
     def look(self, spec: Spec, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
         """Return what happened in some rows of a bench as it is now, as the fields of log entries."""
         if not len(outputs):
             return []
+        found = self._caution(spec, first_tick)
         changes = self._changes(outputs, taps)
         if not changes:
-            return []
+            return found
 
         def column(index: int) -> FloatArray:
             width = outputs.shape[1]
             return outputs[:, index] if index < width else taps[:, index - width]
 
-        found: list[Finding] = []
         for at, text in self._warnings.items():
             rises = [row for row in changes.get(at, ()) if column(at)[row] > 0.0]
             found += [{"kind": "warning", "text": text, "tick": first_tick + row} for row in rises]
@@ -96,6 +102,29 @@ class Observer:
                 text = self._text(spec, name, port, value, i, column)
                 found.append({"kind": port, "text": f"{name}: {text}", "tick": first_tick + i, "new": text})
         return sorted(found, key=lambda finding: int(finding["tick"]))
+
+    def _caution(self, spec: Spec, tick: int) -> list[Finding]:
+        r"""Warn, once for each, of what takes the voltage between its runs for held though the reference moves.
+
+        A staircase of means over T has :math:`(\sin x/x)^2,\;x=\omega T/2`, of the amplitude of a sine.
+        """
+        if spec is self._cautioned:
+            return []
+        self._cautioned = spec
+        found: list[Finding] = []
+        _, hz = max((abs(volts), hz) for hz, volts in (*_tones(spec), (0.0, 0.0)))
+        for name in self._averaging:
+            section = spec.diagnosers.get(name) or spec.identifiers[name]
+            angle = math.pi * 1e-3 * hz * section.every * spec.dt_ms
+            lost = 1.0 - (math.sin(angle) / angle) ** 2 if angle > 0.0 else 0.0
+            text = (
+                f"{name} runs every {section.every} ticks and takes their voltages for held at the mean: "
+                f"{100.0 * lost:.2g} % of the drive at {hz:g} Hz are lost to it"
+            )
+            if lost > MOST_LOST and text not in self._cautions:
+                self._cautions.add(text)
+                found.append({"kind": "warning", "text": text, "tick": tick})
+        return found
 
     def _changes(self, outputs: FloatArray, taps: FloatArray) -> dict[int, list[int]]:
         """Return the rows in which each watched signal is not what it was before."""
@@ -147,11 +176,24 @@ class Observer:
         return f"{VERDICTS[value]}: {', '.join(left)}{aliases}"
 
 
+def _averages(instance: Instance) -> bool:
+    """Say whether a block is given the mean voltage of the ticks between two of its runs."""
+    reads = any(port.source == "drive.charge" for port in instance.block.inputs)
+    return reads and instance.every > 1 and not instance.block.every_tick
+
+
+def _tones(spec: Spec) -> list[tuple[float, float]]:
+    """Return frequency and amplitude of the tones of the reference."""
+    waveform: Any = spec.reference.block
+    found: list[tuple[float, float]] = waveform.tones(spec.reference.params, spec.context())
+    return found
+
+
 def _aliases(spec: Spec, name: str, label: str) -> str:
     """Name the changes that have the same response at the tones of the drive as a hypothesis."""
-    waveform: Any = spec.reference.block
     hypotheses: Any = getattr(spec.diagnosers[name].params, "hypotheses")  # noqa: B009
-    context = spec.context()
-    tones = waveform.tones(spec.reference.params, context)
-    found = [f"{part} x {factor:.4g}" for part, factor in equivalents(hypotheses, label, context.device, tones).items()]
+    found = [
+        f"{part} x {factor:.4g}"
+        for part, factor in equivalents(hypotheses, label, spec.context().device, _tones(spec)).items()
+    ]
     return f" (the same here: {', '.join(found)})" if found else ""

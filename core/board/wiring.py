@@ -166,7 +166,8 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
         p = np.ascontiguousarray(instance.block.pack(instance.params, context), dtype=np.float64)
         s = np.ascontiguousarray(instance.block.state(instance.params, context), dtype=np.float64)
         io = ports_of(spec, instance, index)
-        table[row, 1:] = (p_size, s_size, io_size, instance.every)
+        every = 1 if instance.block.every_tick else instance.every
+        table[row, 1:] = (p_size, s_size, io_size, every)
         p_parts.append(p)
         s_parts.append(s)
         io_parts.append(io)

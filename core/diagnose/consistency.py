@@ -10,7 +10,18 @@ from scipy.special import chdtri
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
-from core.diagnose.filters import COUNT, DEPTH, LANES, OWN, PROBABILITY, WIDTH, applied_voltage, driven, filters_step
+from core.diagnose.filters import (
+    COUNT,
+    DEPTH,
+    LANES,
+    OWN,
+    PROBABILITY,
+    WIDTH,
+    applied_voltage,
+    coasts,
+    driven,
+    filters_step,
+)
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 
@@ -24,6 +35,8 @@ VERDICTS = ("normal", "detected", "isolated", "ambiguous", "unknown fault")
 
 def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, test every hypothesis, conclude."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
     u = applied_voltage(p, s, w, io)

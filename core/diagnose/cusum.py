@@ -17,6 +17,7 @@ from core.diagnose.filters import (
     PROBABILITY,
     WIDTH,
     applied_voltage,
+    coasts,
     filters_step,
     informed,
     take_logarithms,
@@ -33,6 +34,8 @@ RESIDUAL_TAP, NIS_TAP, SUM_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
 
 def cusum_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, add up, compare with the threshold."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     threshold = p[LANES + WIDTH * LANE + THRESHOLD]
     u = applied_voltage(p, s, w, io)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import inlined, kernel, settled
+from core.block import TICK, inlined, kernel, settled
 from core.diagnose.lanes import LANE
 
 COUNT, PROCESS, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(10)
 """Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
-PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI, INVERSE_PSI, WIDTH = range(11)
-"""Lanes of the parameters."""
+PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI, INVERSE_PSI = range(10)
+MOVE11, MOVE12, MOVE21, MOVE22, PUSH1, PUSH2, WIDTH = range(10, 17)
+"""Lanes of the parameters: over the interval of the bank, then transition and effect of a volt over one tick."""
 STARTED, LAST_CHARGE, LEVEL, OWN = range(4)
 """State of every bank; the lanes of the filters follow, then a bank's own."""
 X1, X2, P11, P12, P22, RESIDUAL, NIS, COVARIANCE, INVERSE, HALF_LOG, DEPTH = range(11)
@@ -24,19 +25,34 @@ LEAST = 1e-12
 
 @kernel
 def applied_voltage(p: Any, s: Any, w: Any, io: Any) -> float:
-    """Return the voltage of the interval that ends now, and keep its mean square over the shuttle's own memory.
+    """Return the voltage of the tick that ends now, and keep its mean square over the shuttle's own memory.
 
-    A bank that runs every N ticks is given the mean voltage of the ticks between.
+    Of a bank that runs every N ticks it is the square of their mean that counts.
     """
-    if p[EVERY] != 1.0:
-        u = (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
-    elif p[AT_START] != 0.0:
-        u = w[io[APPLIED]]
-    else:
-        u = w[io[MIDDLE]]
+    u = w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]]
+    mean = u if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
     s[LAST_CHARGE] = w[io[CHARGE]]
-    s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * u * u)
+    s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * mean * mean)
     return float(u)
+
+
+@kernel
+def coasts(p: Any, s: Any, w: Any, io: Any, lane: int) -> bool:
+    """Say whether a bank that runs every N ticks is between two of its turns; then its states follow the voltage.
+
+    The voltage changes at every tick: were it taken for held at its mean, a bank would be sure of the wrong model.
+    """
+    if p[EVERY] == 1.0 or w[TICK] % p[EVERY] == 0.0:
+        return False
+    u = w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]]
+    for i in range(int(p[COUNT])):
+        a = LANES + i
+        b = OWN + i
+        x1 = s[b + X1 * lane]
+        x2 = s[b + X2 * lane]
+        s[b + X1 * lane] = settled(p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + p[a + PUSH1 * lane] * u)
+        s[b + X2 * lane] = settled(p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + p[a + PUSH2 * lane] * u)
+    return True
 
 
 @kernel
@@ -107,8 +123,8 @@ def correct_state(
     b = OWN + i
     x1 = s[b + X1 * lane]
     x2 = s[b + X2 * lane]
-    moved1 = p[a + PHI11 * lane] * x1 + p[a + PHI12 * lane] * x2 + p[a + GAMMA1 * lane] * u
-    moved2 = p[a + PHI21 * lane] * x1 + p[a + PHI22 * lane] * x2 + p[a + GAMMA2 * lane] * u
+    moved1 = p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + p[a + PUSH1 * lane] * u
+    moved2 = p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + p[a + PUSH2 * lane] * u
     x1 = x1 if first else moved1
     x2 = x2 if first else moved2
     residual = settled(z - x1) if seen else 0.0

@@ -25,6 +25,7 @@ from core.diagnose.filters import (
     X1,
     X2,
     applied_voltage,
+    coasts,
     filters_step,
     informed,
 )
@@ -84,6 +85,8 @@ def mix(s: Any, n: int, other: float) -> None:
 
 def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Mix, predict and correct, weigh."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     u = applied_voltage(p, s, w, io)
     evidence = informed(p, s, w, io)

@@ -10,7 +10,7 @@ from scipy.linalg import solve_discrete_are
 
 from core.block import Block, BlockParams, Context, Oscillator, Port, parameter
 from core.device.oscillator import transition
-from core.diagnose.filters import DEPTH, GAIN1, INVERSE_PSI, LEAST, OWN, P11, P22, PSI, WIDTH
+from core.diagnose.filters import DEPTH, GAIN1, INVERSE_PSI, LEAST, MOVE11, OWN, P11, P22, PSI, WIDTH
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
 from core.diagnose.lanes import lanes
 
@@ -63,6 +63,8 @@ class KalmanBank(Block):
         ),
     )
 
+    every_tick: ClassVar[bool] = True
+
     sample_by_sample: ClassVar[bool] = True
     """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
 
@@ -97,6 +99,8 @@ class KalmanBank(Block):
             rest = device.static_gain
             gamma = ((1.0 - phi[0]) * rest, -phi[2] * rest)
             table[:6, i] = (*phi, *gamma)
+            tick = transition(device.mass, device.damping, device.stiffness, context.dt_ms / context.every)
+            table[MOVE11:, i] = (*tick, (1.0 - tick[0]) * rest, -tick[2] * rest)
             if steady:
                 table[GAIN1 : PSI + 1, i] = steady_gain(phi, gamma, q, r, printed)
                 table[INVERSE_PSI, i] = 1.0 / table[PSI, i]

@@ -9,7 +9,18 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
-from core.diagnose.filters import COUNT, DEPTH, LANES, OWN, PROBABILITY, WIDTH, applied_voltage, filters_step, informed
+from core.diagnose.filters import (
+    COUNT,
+    DEPTH,
+    LANES,
+    OWN,
+    PROBABILITY,
+    WIDTH,
+    applied_voltage,
+    coasts,
+    filters_step,
+    informed,
+)
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
@@ -21,6 +32,8 @@ RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 1, PROBABILITY + 4)
 
 def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
     u = applied_voltage(p, s, w, io)

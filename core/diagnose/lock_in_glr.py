@@ -9,7 +9,18 @@ import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port, parameter
 from core.diagnose import window
-from core.diagnose.filters import COUNT, DEPTH, LANES, OWN, PROBABILITY, WIDTH, applied_voltage, driven, filters_step
+from core.diagnose.filters import (
+    COUNT,
+    DEPTH,
+    LANES,
+    OWN,
+    PROBABILITY,
+    WIDTH,
+    applied_voltage,
+    coasts,
+    driven,
+    filters_step,
+)
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import share_out
@@ -22,6 +33,8 @@ RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
 
 def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, demodulate, compare with the threshold."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
     u = applied_voltage(p, s, w, io)

@@ -19,6 +19,7 @@ from core.diagnose.filters import (
     PROBABILITY,
     WIDTH,
     applied_voltage,
+    coasts,
     filters_step,
     informed,
     judge,
@@ -62,6 +63,8 @@ def multiply(s: Any, n: int, w: Any, probability: int, floor: float, evidence: b
 
 def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict and correct every filter, then weigh the hypotheses."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
     u = applied_voltage(p, s, w, io)

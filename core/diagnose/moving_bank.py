@@ -22,6 +22,7 @@ from core.diagnose.filters import (
     STARTED,
     WIDTH,
     applied_voltage,
+    coasts,
     driven,
     filter_step,
     hand_over,
@@ -41,6 +42,8 @@ def moving_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Run the filter in the centre and its two neighbours; go where the evidence is."""
     n = int(p[COUNT])
     lane = max(n, LANE)
+    if coasts(p, s, w, io, lane):
+        return
     own = LANES + WIDTH * lane
     z = w[io[MEASURED]]
     u = applied_voltage(p, s, w, io)

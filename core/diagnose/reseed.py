@@ -16,6 +16,7 @@ from core.diagnose.filters import (
     PROBABILITY,
     WIDTH,
     applied_voltage,
+    coasts,
     filters_step,
     hand_over,
     informed,
@@ -44,6 +45,8 @@ def reseed(s: Any, n: int, w: Any, probability: int, sure: float, hopeless: floa
 
 def reseed_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, weigh; now and then seed anew."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
     u = applied_voltage(p, s, w, io)

@@ -23,6 +23,7 @@ from core.diagnose.filters import (
     X1,
     X2,
     applied_voltage,
+    coasts,
     driven,
     filters_step,
     take_logarithms,
@@ -53,6 +54,8 @@ def correct_velocity(p: Any, s: Any, i: int, residual: float, psi: float) -> Non
 
 def two_output_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct by one output and then by the other, weigh."""
+    if coasts(p, s, w, io, LANE):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * LANE
     zv = w[io[VELOCITY]]

@@ -214,3 +214,31 @@ def test_delay_of_a_slower_bank_counts_from_the_change():
     first = int(np.argmax(right))
     assert np.all(right[first:])
     assert board.scores()["kalman"].delays == [first]
+
+
+@pytest.mark.parametrize("every", [2, 3, 7])
+@pytest.mark.parametrize("kind", ["mmae", "lock_in", "lock_in_glr", "consistency", "cusum", "reseed", "moving_bank"])
+def test_a_bank_that_runs_now_and_then_follows_the_voltage_of_every_tick(kind, every):
+    """Without noise the true model then predicts to rounding, however often the bank corrects."""
+    bench = {
+        "plant": {"model": "linear", "drive_noise_v": 0.0, "thermal_noise": False},
+        "sensor": {"kind": "ideal", "noise_um": 0.0},
+        "reference": {"kind": "multi_sine", "amplitude_v": 5.0},
+        "diagnosers": {"slow": {"kind": kind, "every": every, "sensor_noise_um": 0.05}},
+    }
+    trace = play(make({**BENCH, **bench}), 1500)
+    name = "centre" if kind == "moving_bank" else "healthy"
+    assert np.max(np.abs(trace["plant.displacement"])) > 0.5
+    assert np.max(np.abs(trace[f"slow.residual.{name}"])) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("kind", "every", "is_told"), [("self_tuning", 1, False), ("self_tuning", 4, True), ("mmae", 4, False)]
+)
+def test_what_takes_the_voltage_for_held_at_its_mean_is_told_of(kind, every, is_told):
+    """A staircase of means over 80 us is 1 - (sin x / x)^2 = 8.1 % short of a sine of 2 kHz, x = 0.503."""
+    board = make({**BENCH, "diagnosers": {"slow": {"kind": kind, "every": every}}})
+    play(board, 600)
+    told = [entry.text for entry in board.log if entry.kind == "warning" and entry.text.startswith("slow runs")]
+    assert len(told) == is_told
+    assert all("8.1 % of the drive at 2000 Hz" in text for text in told)
