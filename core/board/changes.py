@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from core import registry
@@ -133,7 +134,10 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
         raise InputError(f"{name} drives already", "controller", "choose another, or a cold start", "conflict")
     spec = parse(with_values(board.spec.document, {"controller.kind": name}))
     _rewire(board, spec)
-    if command.cold:
+    ran_away = not np.all(np.isfinite(board.wiring.state_of(name)))
+    if ran_away:  # nothing in shadow trips the board, and no number comes of what is none
+        board._note("board", "warning", f"{name} had run away in shadow, so it starts anew")
+    if command.cold or ran_away:
         instance = board.wiring.instances[board.wiring.row(name)]
         board.wiring.state_of(name)[:] = instance.block.state(instance.params, spec.context(instance.every))
     return old, name

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
+from core.board.commands import parse_command
 from tests.lab import do, inject, make, play, rms
 
 LABELS = ("r", "w1", "w2", "y")
@@ -105,3 +108,23 @@ def test_a_shadow_that_adapts_is_ready():
     ideal = np.array([trace[f"mrac.gain_ideal.{name}"][-1] for name in LABELS])
     assert not np.allclose([trace[f"mrac.gain.{name}"][-1] for name in LABELS], ideal * 0 + [1, 0, 0, 0], atol=0.05)
     assert rms(trace["mrac.augmented_error"][-2000:]) < 0.05 * rms(trace["mrac.augmented_error"][:500])
+
+
+def test_what_ran_away_in_shadow_takes_over_anew():
+    """On the device of chapter 4 at resonance the self-sliding law, not driving, adapts without end."""
+    bench = {
+        "device": {"id": "ch4"},
+        "sample_rate_khz": 50,
+        "seed": 101,
+        "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 2000.0},
+        "sensor": {"kind": "ideal", "noise_um": 0.05},
+        "controller": {"kind": "open_loop"},
+    }
+    board = make(bench)
+    play(board, 4000)
+    assert board.trip is None and not math.isfinite(board.value("self_sliding.voltage"))
+    board.apply(parse_command({"kind": "switch", "controller": "self_sliding"}))
+    warning, switched = list(board.log)[-2:]
+    assert switched.kind == "switch" and "self_sliding had run away" in warning.text
+    trace = play(board, 500)
+    assert board.trip is None and np.all(np.isfinite(trace["self_sliding.voltage"]))
