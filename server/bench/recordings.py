@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,27 @@ from server.errors import not_found
 
 if TYPE_CHECKING:
     from server.bench.session import Session
+
+
+def _concerning(events: Sequence[Event], first: int) -> list[Event]:
+    """Return what happened from a tick on, behind the injections that act at it still."""
+    acting: dict[str, Event] = {}
+    since: list[Event] = []
+    for event in events:
+        command = event.command or {}
+        if event.kind in ("reset", "restored"):  # what came after the tick gone back to was undone
+            acting = {
+                fault: done for fault, done in acting.items() if done.tick <= event.tick and event.kind != "reset"
+            }
+            since = [done for done in since if done.tick <= event.tick and event.kind != "reset"]
+        elif event.tick >= first:
+            since.append(event)
+        elif event.kind == "inject":
+            acting[command["fault"]] = event
+        elif event.kind == "heal":
+            healed = command["faults"]
+            acting = {fault: done for fault, done in acting.items() if healed != "all" and fault not in healed}
+    return [*acting.values(), *since]
 
 
 @dataclass(frozen=True)
@@ -112,6 +134,8 @@ class Recordings:
         end = session.board.tick
         first = min(max(at - past, history.first_tick), end) if history.end_tick == end else end
         after = None if ticks is None else max(0, ticks - (end - at))
+        for event in _concerning(session.events.after(0)[1], first):
+            recorder.note(event.model_dump_json())
         recorder.begin(Past(lambda start, stop: history.read(columns, start, stop), first, end), after)
         self.under_way[recorder.id] = recorder
         if not recorder.is_open:

@@ -116,6 +116,22 @@ def test_a_recording_says_all_it_takes_to_repeat_it(live: Any) -> None:
     np.testing.assert_array_equal(table(live, started["id"])["plant.displacement"].to_numpy(), np.float32(again))
 
 
+def test_a_recording_knows_the_faults_that_act_at_its_start_and_the_events_of_its_past(live: Any) -> None:
+    bench = stepped(live, 100)
+    for fault in ("damping", "stiffness", "added_mass"):
+        live.command(bench["id"], "inject", fault=fault, severity=0.2)
+    live.command(bench["id"], "heal", faults=["damping"])
+    live.command(bench["id"], "inject", fault="stiffness", severity=0.3)
+    live.command(bench["id"], "step", ticks=400)
+    live.command(bench["id"], "inject", fault="drive_gain", severity=-0.1)
+    live.command(bench["id"], "step", ticks=100)
+    kept = live.http.post(recordings(bench), json={"past_ticks": 200, "ticks": 0}).json()
+    events = ended(live, kept["id"])["events"]
+    injected = [(e["tick"], e["command"]["fault"], e["command"]["severity"]) for e in events if e["kind"] == "inject"]
+    assert injected == [(100, "stiffness", 0.3), (100, "added_mass", 0.2), (500, "drive_gain", -0.1)]
+    assert kept["start_tick"] == 400 and not any(event["kind"] == "heal" for event in events)
+
+
 def test_a_part_of_a_trace_is_downloaded(live: Any) -> None:
     bench = stepped(live, 3000)
     kept = live.http.post(recordings(bench), json={"past_ticks": 3000, "ticks": 0}).json()
