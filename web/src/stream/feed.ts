@@ -31,6 +31,18 @@ export class Feed {
     this.dirty = true;
   }
 
+  /** Ask for another subscription; the picture of other signals says nothing about these. */
+  ask(subscription: Subscription): void {
+    if (subscription.signals.join() !== this.subscription.signals.join()) this.frame = undefined;
+    this.subscription = subscription;
+  }
+
+  /** Draw the newest picture again: the panel has a new plot, and a bench that stands still sends no other. */
+  redraw(): void {
+    this.dirty = true;
+    this.due = 0;
+  }
+
   private fits(frame: PanelFrame): boolean {
     return frame.signals === this.subscription.signals.length && frame.frozen === (this.subscription.mode === "frozen");
   }

@@ -71,6 +71,25 @@ describe("Feeds", () => {
     now.mockRestore();
   });
 
+  it("draws the newest picture again on a new plot, unless it is one of other signals", () => {
+    const draw = vi.fn();
+    const feed = feeds.open(roll, draw);
+    const newest = picture(feed.panel, 1);
+    feed.redraw();
+    expect(feeds.draw()).toBe(0);
+    feeds.receive(frame(1, newest));
+    feeds.draw();
+    feed.redraw();
+    feeds.draw();
+    expect(draw.mock.calls).toEqual([[newest], [newest]]);
+    feeds.change(feed, { ...roll, window_ms: 8 });
+    feed.redraw();
+    expect(feeds.draw()).toBe(1);
+    feeds.change(feed, { ...roll, signals: ["b"] });
+    feed.redraw();
+    expect(feeds.draw()).toBe(0);
+  });
+
   it("ignores a picture that answers an older subscription, but still acknowledges it", () => {
     const draw = vi.fn();
     const feed = feeds.open(roll, draw);

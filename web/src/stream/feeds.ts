@@ -35,7 +35,7 @@ export class Feeds {
   }
 
   change(feed: Feed, subscription: Subscription): void {
-    feed.subscription = subscription;
+    feed.ask(subscription);
     this.subscribe(feed);
   }
 
