@@ -77,9 +77,9 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     add(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.26, h: 0.34 },
-      motion: { h: 0.36 },
-      voltage: { h: 0.22 },
-      lanes: { h: 0.42 },
+      motion: { h: 0.34 },
+      voltage: { h: 0.26 },
+      lanes: { h: 0.4 },
     });
   },
   research(api, width, height) {

@@ -75,20 +75,17 @@ export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
   const { readings, deltaMs, exact } = found;
   return (
     <section className={styles.measure} aria-label="Measurements">
-      <p>
-        Δt <b>{formatSi(deltaMs, "ms")}</b> 1/Δt <b>{deltaMs ? formatSi(1 / deltaMs, "kHz") : "–"}</b>
-        {!exact && <small>figures from minima and maxima: the span is longer than {MOST_COLUMNS} ticks</small>}
-      </p>
       <table>
         <thead>
           <tr>
-            {["", "A", "B", "B − A", "RMS", "peak", "frequency", "overshoot", "settles in", "lag", "ratio"].map(
-              (name) => (
-                <th key={name} scope="col" title={MEANINGS[name]}>
-                  {name}
-                </th>
-              ),
-            )}
+            <th scope="col" className={styles.between}>
+              Δt <b>{formatSi(deltaMs, "ms")}</b> 1/Δt <b>{deltaMs ? formatSi(1 / deltaMs, "kHz") : "–"}</b>
+            </th>
+            {["A", "B", "B − A", "RMS", "peak", "frequency", "overshoot", "settles in", "lag", "ratio"].map((name) => (
+              <th key={name} scope="col" title={MEANINGS[name]}>
+                {name}
+              </th>
+            ))}
           </tr>
         </thead>
         <tbody>
@@ -116,6 +113,7 @@ export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
           })}
         </tbody>
       </table>
+      {!exact && <small>Figures from minima and maxima: the span is longer than {MOST_COLUMNS} ticks.</small>}
     </section>
   );
 }

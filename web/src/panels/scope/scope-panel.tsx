@@ -44,6 +44,18 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
   const [cursors, setCursors] = useState<CursorPair>([0.25, 0.75]);
   const [trigger, setTrigger] = useState<TriggerState>("none");
 
+  const subscription = useMemo(() => {
+    if (!dtMs || traces.length === 0 || pixels < 20) return undefined;
+    return scopeSubscription({ ...config, signals: traces.map((t) => t.name) }, view, pixels, dtMs);
+  }, [config, traces, view, pixels, dtMs]);
+
+  const feed = useFeed(subscription, (frame) => {
+    if (frame.frozen !== (span.current !== undefined)) return;
+    plot.current?.draw(frame, span.current);
+    const state: TriggerState = frame.waiting ? "waiting" : frame.triggered ? "triggered" : "none";
+    if (state !== trigger) setTrigger(state);
+  });
+
   useEffect(() => {
     if (!host.current || traces.length === 0) return;
     const made = new ScopePlot({
@@ -57,6 +69,7 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
       gestures: { onSpan: look, onLive: goLive },
     });
     plot.current = made;
+    feed.current?.redraw();
     const measured = () => {
       setPixels(made.pixels);
       setArea(made.area);
@@ -72,19 +85,7 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
       made.destroy();
       plot.current = undefined;
     };
-  }, [traces, scheme, large, look, goLive]);
-
-  const subscription = useMemo(() => {
-    if (!dtMs || traces.length === 0 || pixels < 20) return undefined;
-    return scopeSubscription({ ...config, signals: traces.map((t) => t.name) }, view, pixels, dtMs);
-  }, [config, traces, view, pixels, dtMs]);
-
-  const feed = useFeed(subscription, (frame) => {
-    if (frame.frozen !== (span.current !== undefined)) return;
-    plot.current?.draw(frame, span.current);
-    const state: TriggerState = frame.waiting ? "waiting" : frame.triggered ? "triggered" : "none";
-    if (state !== trigger) setTrigger(state);
-  });
+  }, [traces, scheme, large, look, goLive, feed]);
 
   const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
   const sayTime = (share: number) => {
@@ -107,11 +108,13 @@ export function ScopePanel({ config, onChange }: ScopePanelProps) {
           trigger={trigger}
           exporter={traces.length > 0 && <ExportMenu plot={plot} />}
         >
-          <ScopeLegend
-            traces={traces}
-            plot={plot}
-            onRemove={(name) => onChange({ ...config, signals: config.signals.filter((s) => s !== name) })}
-          />
+          {!config.measure && ( // the table names them too, and its rows want the room
+            <ScopeLegend
+              traces={traces}
+              plot={plot}
+              onRemove={(name) => onChange({ ...config, signals: config.signals.filter((s) => s !== name) })}
+            />
+          )}
           <SignalPicker chosen={config.signals} onChange={(signals) => onChange({ ...config, signals })} />
         </ScopeToolbar>
       </RearmContext>
