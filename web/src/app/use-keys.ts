@@ -7,6 +7,13 @@ import { useScheme } from "./use-scheme";
 const TYPING =
   "input, textarea, select, [contenteditable], [role=slider], [role=menu], [role=listbox], [role=radiogroup]";
 
+const CHOSEN = "select, input[type=radio], input[type=checkbox]";
+
+/** What was chosen with the pointer gives the keys back; who chooses with keys stays where they are. */
+function giveBack({ target }: Event): void {
+  if (target instanceof HTMLElement && target.matches(CHOSEN) && !target.matches(":focus-visible")) target.blur();
+}
+
 /** Listens for the page's keys, except while something else wants them. */
 export function useKeys(): void {
   const scheme = useScheme();
@@ -27,6 +34,10 @@ export function useKeys(): void {
       binding.run();
     };
     window.addEventListener("keydown", listen);
-    return () => window.removeEventListener("keydown", listen);
+    window.addEventListener("change", giveBack);
+    return () => {
+      window.removeEventListener("keydown", listen);
+      window.removeEventListener("change", giveBack);
+    };
   }, []);
 }
