@@ -25,3 +25,20 @@ it("does not wait for a truth that is none of the hypotheses", () => {
   ];
   expect(truthSwitches(log, "kalman")[0].findable).toBe(false);
 });
+
+it("measures a twin's diagnoser by the truth of the board, whose faults it shares", () => {
+  const log = [
+    entry(100, "truth_changed", "kalman: the truth is m+5", null, "m+5"),
+    entry(300, "truth_changed", "kalman: the truth is healthy", null, "healthy"),
+    entry(156, "recognised", "mrac: kalman found m+5 after 19 samples (0.38 ms)", 19, "m+5"),
+  ];
+  const delays = (id: string) => truthSwitches(log, id).map((change) => [change.tick, change.delay]);
+  const late = [
+    [100, 19],
+    [300, undefined],
+  ];
+  expect(delays("mrac:kalman")).toEqual(late);
+  expect(delays("kalman").map(([, delay]) => delay)).toEqual([undefined, undefined]);
+  // a bank that only the twin has
+  expect(delays("mrac:imm").map(([tick]) => tick)).toEqual([100, 300]);
+});

@@ -12,14 +12,24 @@ export interface TruthSwitch {
 
 const NONE = "none of the hypotheses";
 
-/** The truth's changes as one diagnoser met them, from the log. */
+/**
+ * The truth's changes as one diagnoser met them, from the log. A twin's log is not kept: what it found is
+ * repeated behind its name, and the truth is that of the board, which has the same faults.
+ */
 export function truthSwitches(events: readonly LogEntry[], diagnoser: string): TruthSwitch[] {
-  const found: TruthSwitch[] = [];
+  const [own, twin] = diagnoser.split(":").reverse();
+  const told = events.filter((event) => event.kind === "truth_changed");
+  const teller = !twin || told.some((e) => e.text.startsWith(`${own}:`)) ? own : told[0]?.text.split(":")[0];
+  const found = told
+    .filter((event) => event.text.startsWith(`${teller}:`))
+    .map(({ tick, new: label }): TruthSwitch => {
+      return { tick, label: String(label), delay: undefined, findable: label !== NONE };
+    });
+  const head = twin ? `${twin}: ${own} ` : `${own} `;
   for (const event of events) {
-    if (event.kind === "truth_changed" && event.text.startsWith(`${diagnoser}:`))
-      found.push({ tick: event.tick, label: String(event.new), delay: undefined, findable: event.new !== NONE });
-    const last = found.at(-1);
-    if (event.kind === "recognised" && last && event.text.startsWith(`${diagnoser} `)) last.delay = Number(event.old);
+    if (event.kind !== "recognised" || !event.text.startsWith(head)) continue;
+    const change = found.findLast(({ tick }) => tick <= event.tick);
+    if (change) change.delay = Number(event.old);
   }
   return found;
 }

@@ -88,17 +88,12 @@ export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) =>
     ctx.fillStyle = colours.event;
     for (let y = 0; y < layout.axis; y += 6) ctx.fillRect(Math.round(left), y, 1, 3);
     const middle = layout.delay + layout.band / 2;
-    if (!change.findable) {
-      ctx.fillStyle = colours.muted;
-      ctx.fillText("not among the hypotheses", Math.max(left, layout.left) + 6, middle + 0.5);
-      return;
-    }
-    const found = change.delay === undefined ? next : change.tick + change.delay;
-    ctx.fillStyle = change.delay === undefined ? colours.alarm : colours.accent;
-    ctx.fillRect(left, middle - 3, Math.max(2, x(found) - left), 6);
+    const found = !change.findable ? change.tick : change.delay === undefined ? next : change.tick + change.delay;
+    ctx.fillStyle = !change.findable ? colours.muted : change.delay === undefined ? colours.alarm : colours.accent;
+    if (change.findable) ctx.fillRect(left, middle - 3, Math.max(2, x(found) - left), 6);
     const at = Math.max(x(found), layout.left) + 6;
     const room = Math.min(layout.right, i + 1 < switches.length ? x(next) - 4 : layout.right) - at;
-    const text = delayWords(change.delay, frame.dtMs).find((words) => ctx.measureText(words).width <= room);
+    const text = delayWords(change, frame.dtMs).find((words) => ctx.measureText(words).width <= room);
     if (text) ctx.fillText(text, at, middle + 0.5);
   });
 }
@@ -129,7 +124,8 @@ export function paintTime(
 }
 
 /** A delay in words, the longest first; the picture takes what fits. */
-function delayWords(delay: number | undefined, dtMs: number): string[] {
+function delayWords({ delay, findable }: TruthSwitch, dtMs: number): string[] {
+  if (!findable) return ["not among the hypotheses", "not among them", "none"];
   if (delay === undefined) return ["not found yet", "not yet"];
   const ms = `${formatNumber(delay * dtMs, 2)} ms`;
   return [`${delay} samples · ${ms}`, `${delay} · ${ms}`, ms, String(delay)];
