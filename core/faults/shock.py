@@ -45,13 +45,13 @@ class Shock(Fault):
     )
     suggested = 20.0
     inputs = channels("acceleration", "acceleration_side", "other")
-    outputs = (Port("severity", "1", "acceleration of the frame now, g"),)
+    outputs = (Port("severity", "g", "acceleration of the frame now"),)
     equations = (Equation("pulse", r"a=a_0\sin(\pi t/T),\quad m\ddot x=\dots-ma", "1.3.1"),)
 
     class Params(FaultParams):
         """Severity is the peak in g."""
 
-        severity: float = parameter(0.0, "peak of the acceleration, g", "1", ge=-1e5, le=1e5)
+        severity: float = parameter(0.0, "peak of the acceleration", "g", ge=-1e5, le=1e5)
         pulse_ms: float = parameter(1.0, "length of the half sine", "ms", gt=0, le=1e4)
         axis: Literal["x", "y"] = parameter("x", "direction: x is the drive, y sideways in the plane")
 

@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { BlockCard } from "../../api/types";
-import { injectCommand, newDraft, ownParameters } from "./fault-draft";
+import { injectCommand, newDraft, ownParameters, refusals, scaled } from "./fault-draft";
 
 it("injects a step now by default", () => {
   expect(injectCommand("added_mass", newDraft(0.05))).toEqual({
@@ -32,4 +32,21 @@ it("says where and on which part, as far as that was chosen", () => {
   expect(ownParameters(fault as unknown as BlockCard).map((p) => p.name)).toEqual(["beam"]);
   const draft = { ...newDraft(1), parameters: { beam: "outer", position: 0.4 } };
   expect(injectCommand("point_adhesion", draft)).toMatchObject({ parameters: { beam: "outer", position: 0.4 } });
+});
+
+it("refuses a blank or a wrong number in words, where it is used", () => {
+  const blank = { ...newDraft(0.05), durationMs: "", periodMs: 0, duty: "", atMs: "-" };
+  expect(refusals(blank)).toEqual({});
+  expect(refusals({ ...blank, profile: "ramp" })).toEqual({ durationMs: "Say over how many ms" });
+  expect(Object.keys(refusals({ ...blank, profile: "intermittent" }))).toEqual(["periodMs", "duty"]);
+  expect(refusals({ ...blank, moment: "at" })).toEqual({ atMs: "Say at how many ms" });
+  expect(refusals({ ...blank, severity: "", moment: "when", when: " " })).toEqual({
+    severity: "Say how much",
+    when: "Say on what condition",
+  });
+});
+
+it("changes the unit of a number and leaves what is none", () => {
+  expect(scaled(7, 0.01)).toBe(0.07);
+  expect(scaled("-", 100)).toBe("-");
 });

@@ -1,13 +1,16 @@
 import type { BlockCard, Command, FaultProfile, Parameter } from "../../api/types";
 
+/** A number, or what stands in a field that holds none. */
+export type Entry = number | string;
+
 export interface FaultDraft {
-  severity: number;
+  severity: Entry;
   profile: FaultProfile["kind"];
-  durationMs: number;
-  periodMs: number;
-  duty: number;
+  durationMs: Entry;
+  periodMs: Entry;
+  duty: Entry;
   moment: "now" | "at" | "when";
-  atMs: number;
+  atMs: Entry;
   when: string;
   /** What else the fault lets one choose, as far as it was chosen. */
   parameters: Record<string, unknown>;
@@ -33,17 +36,38 @@ export function newDraft(severity: number): FaultDraft {
   };
 }
 
-/** The command that does what the form says. */
+/** What keeps the form from being sent, in words, by field; only fields that the choices use count. */
+export function refusals(draft: FaultDraft): Partial<Record<keyof FaultDraft, string>> {
+  const { severity, profile, durationMs, periodMs, duty, moment, atMs, when } = draft;
+  const found: Partial<Record<keyof FaultDraft, string>> = {};
+  if (!isNumber(severity)) found.severity = "Say how much";
+  if (profile === "ramp" && !(isNumber(durationMs) && durationMs > 0)) found.durationMs = "Say over how many ms";
+  if (profile === "intermittent") {
+    if (!(isNumber(periodMs) && periodMs > 0)) found.periodMs = "Say every how many ms";
+    if (!(isNumber(duty) && duty > 0 && duty <= 1)) found.duty = "Say for how much of it";
+  }
+  if (moment === "at" && !(isNumber(atMs) && atMs >= 0)) found.atMs = "Say at how many ms";
+  if (moment === "when" && when.trim() === "") found.when = "Say on what condition";
+  return found;
+}
+
+const isNumber = (entry: Entry): entry is number => typeof entry === "number" && Number.isFinite(entry);
+
+/** An entry in another unit; what is no number stays as it was typed. */
+export const scaled = (entry: Entry, factor: number): Entry =>
+  typeof entry === "number" ? Number((entry * factor).toPrecision(10)) : entry;
+
+/** The command that does what the form says; ask first what keeps it from being sent. */
 export function injectCommand(fault: string, draft: FaultDraft): Command {
   const profile: FaultProfile =
     draft.profile === "ramp"
-      ? { kind: "ramp", duration_ms: draft.durationMs }
+      ? { kind: "ramp", duration_ms: Number(draft.durationMs) }
       : draft.profile === "intermittent"
-        ? { kind: "intermittent", period_ms: draft.periodMs, duty: draft.duty }
+        ? { kind: "intermittent", period_ms: Number(draft.periodMs), duty: Number(draft.duty) }
         : { kind: "step" };
-  const command: Command = { kind: "inject", fault, severity: draft.severity, profile };
+  const command: Command = { kind: "inject", fault, severity: Number(draft.severity), profile };
   if (Object.keys(draft.parameters).length > 0) command.parameters = draft.parameters;
-  if (draft.moment === "at") return { ...command, at_ms: draft.atMs };
+  if (draft.moment === "at") return { ...command, at_ms: Number(draft.atMs) };
   if (draft.moment === "when") return { ...command, when: draft.when };
   return command;
 }

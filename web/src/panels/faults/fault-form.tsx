@@ -3,9 +3,9 @@ import type { BlockCard, Parameter } from "../../api/types";
 import { Formula } from "../../ui/formula";
 import { unitText } from "../../ui/unit-scale";
 import { ParameterRow } from "../card/parameter-row";
-import { type FaultDraft, ownParameters } from "./fault-draft";
+import { type Entry, type FaultDraft, ownParameters, refusals, scaled } from "./fault-draft";
 import styles from "./faults.module.css";
-import { type SeverityScale, severityText } from "./severity";
+import { draftSeverity, type SeverityScale, severityText } from "./severity";
 
 interface FaultFormProps {
   fault: BlockCard;
@@ -20,8 +20,12 @@ interface FaultFormProps {
 /** How much, how it comes, and when. */
 export function FaultForm({ fault, parameter, scale, suggested, draft, onChange, onInject }: FaultFormProps) {
   const set = (part: Partial<FaultDraft>) => onChange({ ...draft, ...part });
-  const number = (key: "durationMs" | "periodMs" | "atMs") => (value: string | number) =>
-    typeof value === "number" && set({ [key]: value });
+  const wrong = refusals(draft);
+  const number = (key: "severity" | "durationMs" | "periodMs" | "duty" | "atMs", factor = 1) => ({
+    value: scaled(draft[key], factor),
+    error: wrong[key],
+    onChange: (value: Entry) => set({ [key]: scaled(value, 1 / factor) }),
+  });
   const own = ownParameters(fault);
   const factor = scale.percent ? 100 : 1;
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
@@ -39,7 +43,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             min={scale.low * factor}
             max={scale.high * factor}
             step={(scale.high - scale.low) * factor > 40 ? 1 : 0.1}
-            value={draft.severity * factor}
+            value={Number(draft.severity) * factor || 0}
             label={null}
             thumbLabel={`Severity of ${fault.title}`}
             marks={[scale.low, 0, suggested, scale.high]
@@ -58,8 +62,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             suffix={` ${unit}`}
             min={scale.minimum * factor}
             max={scale.maximum * factor}
-            value={Number((draft.severity * factor).toPrecision(6))}
-            onChange={(value) => typeof value === "number" && set({ severity: value / factor })}
+            {...number("severity", factor)}
           />
         </Group>
         {own.length > 0 && (
@@ -84,34 +87,12 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           onChange={(profile) => set({ profile: profile as FaultDraft["profile"] })}
         />
         {draft.profile === "ramp" && (
-          <NumberInput
-            size="xs"
-            label="Over"
-            suffix=" ms"
-            min={0.01}
-            value={draft.durationMs}
-            onChange={number("durationMs")}
-          />
+          <NumberInput size="xs" label="Over" suffix=" ms" min={0.01} {...number("durationMs")} />
         )}
         {draft.profile === "intermittent" && (
           <Group grow gap="sm">
-            <NumberInput
-              size="xs"
-              label="Every"
-              suffix=" ms"
-              min={0.01}
-              value={draft.periodMs}
-              onChange={number("periodMs")}
-            />
-            <NumberInput
-              size="xs"
-              label="On for"
-              suffix=" %"
-              min={1}
-              max={100}
-              value={draft.duty * 100}
-              onChange={(v) => typeof v === "number" && set({ duty: v / 100 })}
-            />
+            <NumberInput size="xs" label="Every" suffix=" ms" min={0.01} {...number("periodMs")} />
+            <NumberInput size="xs" label="On for" suffix=" %" min={1} max={100} {...number("duty", 100)} />
           </Group>
         )}
         <SegmentedControl
@@ -127,14 +108,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           onChange={(moment) => set({ moment: moment as FaultDraft["moment"] })}
         />
         {draft.moment === "at" && (
-          <NumberInput
-            size="xs"
-            label="At device time"
-            suffix=" ms"
-            min={0}
-            value={draft.atMs}
-            onChange={number("atMs")}
-          />
+          <NumberInput size="xs" label="At device time" suffix=" ms" min={0} {...number("atMs")} />
         )}
         {draft.moment === "when" && (
           <TextInput
@@ -142,11 +116,12 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             label="When"
             description="A signal, > or <, and a value"
             value={draft.when}
+            error={wrong.when}
             onChange={(e) => set({ when: e.currentTarget.value })}
           />
         )}
         <Button size="xs" onClick={onInject}>
-          {draft.moment === "now" ? "Inject" : "Let it wait for its moment"} {severityText(draft.severity, scale, unit)}
+          {draft.moment === "now" ? "Inject" : "Let it wait for its moment"} {draftSeverity(draft, scale, unit)}
         </Button>
       </Stack>
     </div>

@@ -6,10 +6,11 @@ import { send } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
 import { formatNumber } from "../../ui/format";
 import { unitText } from "../../ui/unit-scale";
-import { injectCommand, newDraft, ownParameters } from "./fault-draft";
+import { parameterTitle } from "../card/parameter-title";
+import { injectCommand, newDraft, ownParameters, refusals } from "./fault-draft";
 import { FaultForm } from "./fault-form";
 import styles from "./faults.module.css";
-import { severityScale, severityText } from "./severity";
+import { draftSeverity, severityScale, severityText } from "./severity";
 
 interface FaultRowProps {
   fault: BlockCard;
@@ -26,11 +27,16 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const scale = severityScale(parameter, suggested);
   const unit = parameter?.unit ?? "";
-  const inject = () =>
-    send(
+  const inject = () => {
+    if (Object.keys(refusals(draft)).length > 0) {
+      if (!open) onToggle(); // the form says what is missing
+      return;
+    }
+    void send(
       injectCommand(fault.name, draft),
-      `${fault.title} ${severityText(draft.severity, scale, unit)} ${draft.moment === "now" ? "injected" : "is waiting"}`,
+      `${fault.title} ${draftSeverity(draft, scale, unit)} ${draft.moment === "now" ? "injected" : "is waiting"}`,
     );
+  };
 
   return (
     <li className={styles.fault} data-active={active !== undefined}>
@@ -58,9 +64,9 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
             size="compact-sm"
             variant="light"
             onClick={inject}
-            aria-label={`Inject ${severityText(draft.severity, scale, unit)}: ${fault.title}`}
+            aria-label={`Inject ${draftSeverity(draft, scale, unit)}: ${fault.title}`}
           >
-            Inject {severityText(draft.severity, scale, unit)}
+            Inject {draftSeverity(draft, scale, unit)}
           </Button>
         )}
       </div>
@@ -88,7 +94,7 @@ function Chosen({ fault, active }: { fault: BlockCard; active: ActiveFault }) {
     .map((p) => {
       const value = values[p.name];
       const unit = unitText(p.unit);
-      return `${p.label}: ${typeof value === "number" ? Number(value.toPrecision(4)) : String(value)}${unit && `\u00a0${unit}`}`;
+      return `${parameterTitle(p).toLowerCase()}: ${typeof value === "number" ? Number(value.toPrecision(4)) : String(value)}${unit && `\u00a0${unit}`}`;
     });
   return words.length > 0 && <p className={styles.chosen}>{words.join(", ")}</p>;
 }

@@ -1,6 +1,7 @@
 import type { Parameter } from "../../api/types";
 import { formatNumber } from "../../ui/format";
 import { unitText } from "../../ui/unit-scale";
+import type { FaultDraft } from "./fault-draft";
 
 export interface SeverityScale {
   /** The severity parameter is a share, shown in percent. */
@@ -32,6 +33,13 @@ export function severityText(value: number, scale: SeverityScale, unit: string):
   const text = formatNumber(shown, Math.abs(shown) < 10 && shown % 1 !== 0 ? 1 : 0);
   return `${value > 0 ? "+" : ""}${text}\u00a0${scale.percent ? "%" : plural(unitText(unit), shown)}`;
 }
+
+/** The severity a draft asks for; a dash while its field holds no number. */
+export const draftSeverity = (
+  { severity }: Pick<FaultDraft, "severity">,
+  scale: SeverityScale,
+  unit: string,
+): string => (typeof severity === "number" ? severityText(severity, scale, unit) : "–");
 
 /** Units that are words have a plural. */
 const plural = (unit: string, count: number) => (/^[a-z]{4,}$/.test(unit) && Math.abs(count) !== 1 ? `${unit}s` : unit);
