@@ -23,6 +23,27 @@ export const LOOP: LoopBox[] = [
   { id: "identifier", title: "Identifier", x: 119, y: 198 },
 ];
 
+/** From the names of faults to the box on which they act. */
+export const FAULT_ARROWS: Record<FaultedBox, string> = {
+  plant: "M288 196 V176",
+  sensor: "M231 200 V186 H205 V176",
+  drive: "M345 196 V35 H341",
+};
+
+export type FaultedBox = "plant" | "sensor" | "drive";
+
+/** The box on which a fault is seen; all parts but sensor and drive belong to the device. */
+export const boxOf = (shows: string | null | undefined): FaultedBox =>
+  shows === "sensor" || shows === "drive" ? shows : "plant";
+
+const MOST_NAMES = 4;
+
+/** Names of faults as lines with room for them: the first few, and how many more. */
+export function faultLines(titles: readonly string[]): string[] {
+  if (titles.length <= MOST_NAMES) return [...titles];
+  return [...titles.slice(0, MOST_NAMES - 1), `and ${titles.length - MOST_NAMES + 1} more`];
+}
+
 /** Signal paths between the boxes. */
 export const WIRES: { id: string; d: string; label: string; at: [number, number] }[] = [
   { id: "r", d: "M103 35 H119", label: "r", at: [108, 29] },

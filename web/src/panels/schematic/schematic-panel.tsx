@@ -5,7 +5,7 @@ import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { instances } from "../card/instances";
-import { BOX, LOOP, type LoopBox, WIRES } from "./loop";
+import { BOX, boxOf, FAULT_ARROWS, faultLines, LOOP, type LoopBox, WIRES } from "./loop";
 import styles from "./schematic.module.css";
 import { useLiveValues } from "./use-live-values";
 
@@ -58,6 +58,8 @@ export function SchematicPanel() {
   const verdict =
     typeof score?.winner === "number" ? diagnosers[diagnoser].names[score.winner] : (score?.winner ?? "–");
   const acting = faults?.filter((f) => f.severity !== 0) ?? [];
+  const faulted = new Set<string>(acting.map((f) => boxOf(block("faults", f.name)?.shows)));
+  const titles = acting.map((f) => block("faults", f.name)?.title ?? f.name.replaceAll("_", " "));
   const open = (id: string | undefined) => {
     if (!id) return;
     useView.setState({ card: id });
@@ -68,7 +70,7 @@ export function SchematicPanel() {
     <section className={styles.panel} aria-label="The loop">
       {/* biome-ignore lint/a11y/useSemanticElements: boxes of a drawing */}
       <svg
-        viewBox="0 0 340 266"
+        viewBox="0 0 348 266"
         className={styles.drawing}
         role="group"
         aria-label="Signal flow from the reference around the loop"
@@ -96,10 +98,15 @@ export function SchematicPanel() {
         ))}
         {acting.length > 0 && (
           <g className={styles.fault}>
-            <path d="M288 198 V176" markerEnd="url(#arrow)" />
-            <text x="278" y="194" textAnchor="end">
-              {acting.map((f) => f.name.replaceAll("_", " ")).join(", ")}
-            </text>
+            <title>{titles.join(", ")}</title>
+            {Object.entries(FAULT_ARROWS).map(
+              ([box, d]) => faulted.has(box) && <path key={box} d={d} markerEnd="url(#arrow)" />,
+            )}
+            {faultLines(titles).map((line, i) => (
+              <text key={line} x="229" y={212 + 16 * i}>
+                {line}
+              </text>
+            ))}
           </g>
         )}
         {LOOP.map((box) => (
@@ -110,7 +117,7 @@ export function SchematicPanel() {
             tabIndex={0}
             className={styles.box}
             data-chosen={cards[box.id] === card}
-            data-faulty={box.id === "plant" && acting.length > 0}
+            data-faulty={faulted.has(box.id)}
             transform={`translate(${box.x} ${box.y})`}
             onClick={() => open(cards[box.id])}
             onKeyDown={(event) => {
