@@ -181,7 +181,9 @@ def place_of(part: str, layout: Layout) -> Place:
 def words(fault: Active) -> str:
     """Name a fault, with its severity where that has a unit."""
     unit = fault.block.outputs[0].unit
-    return fault.block.title if unit == "1" else f"{fault.block.title} {fault.severity:.3g} {unit}"
+    if unit == "1":
+        return fault.block.title
+    return f"{fault.block.title} {fault.severity:.3g} {unit.replace('um', 'µm')}"
 
 
 def ball(centre: Place, radius: float, stretch: Place = (1.0, 1.0, 1.0)) -> Mesh:

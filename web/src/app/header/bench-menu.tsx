@@ -16,8 +16,10 @@ export function BenchMenu() {
   const title = useBench((s) => s.bench?.title);
   const rate = useBench((s) => s.bench?.sample_rate_khz);
   const watchers = useBench((s) => s.bench?.watchers ?? 0);
-  const slow = useSlowPage();
+  const closed = useBench((s) => s.connection.phase === "closed");
+  const slow = useSlowPage() && !closed;
   const [benches, setBenches] = useState<Bench[]>([]);
+  const now = closed ? "not connected" : slow ? "this page is slow" : `${watchers} watching`;
   const load = () => api.benches().then(setBenches, showError);
 
   return (
@@ -26,7 +28,7 @@ export function BenchMenu() {
         <UnstyledButton className={styles.bench} title={`${title ?? "No bench"}: change bench`}>
           <span>{title ?? "No bench"} </span>
           <small data-slow={slow}>
-            {rate ? `${rate} kHz board · ${slow ? "this page is slow" : `${watchers} watching`}` : "connecting"}
+            {rate ? `${rate} kHz board · ${now}` : closed ? "not connected" : "connecting"}
             <IconChevronDown size={12} style={{ verticalAlign: -2 }} />
           </small>
         </UnstyledButton>

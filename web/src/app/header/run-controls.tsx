@@ -13,8 +13,9 @@ import styles from "./header.module.css";
 
 /** Run, pause, step a tick, step a period, reset. */
 export function RunControls() {
-  const running = useBench((s) => s.bench?.state === "running");
-  const tripped = useBench((s) => s.bench?.state === "tripped");
+  const closed = useBench((s) => s.connection.phase === "closed");
+  const running = useBench((s) => s.bench?.state === "running") && !closed;
+  const stuck = useBench((s) => s.bench?.state === "tripped") || closed;
   return (
     <div className={styles.run}>
       <Tooltip label={running ? "Pause (space)" : "Run (space)"}>
@@ -22,21 +23,21 @@ export function RunControls() {
           size={38}
           radius="xl"
           variant="filled"
-          color={running ? "accent" : "accent"}
+          color="accent"
           aria-label={running ? "Pause" : "Run"}
-          disabled={tripped}
+          disabled={stuck}
           onClick={actions.toggle}
         >
           {running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
         </ActionIcon>
       </Tooltip>
-      <Small label="One tick ( . )" name="Step one tick" onClick={actions.stepTick} disabled={tripped}>
+      <Small label="One tick ( . )" name="Step one tick" onClick={actions.stepTick} disabled={stuck}>
         <IconPlayerSkipForward size={18} />
       </Small>
-      <Small label="One drive period ( , )" name="Step one period" onClick={actions.stepPeriod} disabled={tripped}>
+      <Small label="One drive period ( , )" name="Step one period" onClick={actions.stepPeriod} disabled={stuck}>
         <IconPlayerTrackNext size={18} />
       </Small>
-      <Small label="Reset to the start (shift R)" name="Reset" onClick={actions.reset}>
+      <Small label="Reset to the start (shift R)" name="Reset" onClick={actions.reset} disabled={closed}>
         <IconRotate size={18} />
       </Small>
     </div>

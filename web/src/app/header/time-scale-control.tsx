@@ -11,13 +11,14 @@ const set = (value: number | null) => send({ kind: "time_scale", value }, `Time 
 export function TimeScaleControl() {
   const target = useBench((s) => s.bench?.time_scale ?? null);
   const achieved = useBench((s) => s.bench?.achieved_scale ?? 0);
-  const capped = useBench((s) => s.bench?.capped ?? false);
-  const state = useBench((s) => s.bench?.state);
+  const closed = useBench((s) => s.connection.phase === "closed");
+  const capped = useBench((s) => s.bench?.capped ?? false) && !closed;
+  const running = useBench((s) => s.bench?.state === "running") && !closed;
   const [draft, setDraft] = useState<number | undefined>(undefined);
   const shown = draft ?? timeScaleToSlider(target);
 
   return (
-    <fieldset className={styles.scale} aria-label="Time scale">
+    <fieldset className={styles.scale} aria-label="Time scale" disabled={closed}>
       <Tooltip label="Half as fast ( [ )">
         <ActionIcon
           variant="subtle"
@@ -32,9 +33,9 @@ export function TimeScaleControl() {
         <Popover.Target>
           <button type="button" className={styles.target} title="Change the time scale">
             <span>{target === null ? "max" : formatTimeScale(target)}</span>
-            <small data-capped={capped} data-idle={state !== "running"}>
+            <small data-capped={capped} data-idle={!running}>
               {capped && <b>CAPPED </b>}
-              {state === "running" ? `runs ${formatTimeScale(achieved)}` : "stands still"}
+              {closed ? "not connected" : running ? `runs ${formatTimeScale(achieved)}` : "stands still"}
             </small>
           </button>
         </Popover.Target>

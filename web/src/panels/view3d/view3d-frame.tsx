@@ -14,11 +14,12 @@ const HEAD_START_MS = 1200;
 /**
  * The server's 3D page in a frame, loaded only while it can be seen.
  *
- * When its connection closes, the frame waits for the server and is loaded afresh. Scheme and camera are told to it,
+ * When its connection closes, the frame waits for the server and is loaded afresh, unless the bench is gone. Scheme and camera are told to it,
  * so that neither loads it again.
  */
 export function View3dFrame({ path }: { path: string }) {
   const waiting = useBench((s) => s.connection.phase === "waiting");
+  const gone = useBench((s) => s.connection.phase === "closed");
   const scheme = useScheme();
   const place = useRef<HTMLDivElement>(null);
   const frame = useRef<HTMLIFrameElement>(null);
@@ -51,7 +52,7 @@ export function View3dFrame({ path }: { path: string }) {
   }, []);
 
   useEffect(() => {
-    if (!closed || !visible) return;
+    if (!closed || !visible || gone) return;
     const timer = setInterval(async () => {
       const answer = await fetch(path).catch(() => undefined);
       if (!answer?.ok) return;
@@ -59,7 +60,7 @@ export function View3dFrame({ path }: { path: string }) {
       setLoads((n) => n + 1);
     }, POLL_MS);
     return () => clearInterval(timer);
-  }, [closed, path, visible]);
+  }, [closed, path, visible, gone]);
 
   const tell = (message: { scheme?: string; camera?: Camera }) =>
     frame.current?.contentWindow?.postMessage(message, window.location.origin);
@@ -86,9 +87,9 @@ export function View3dFrame({ path }: { path: string }) {
           </button>
         ))}
       </fieldset>
-      {closed || waiting ? (
+      {closed || waiting || gone ? (
         <div className={styles.veil} role="status">
-          The 3D view waits for the server
+          {gone ? "The 3D view is not connected" : "The 3D view waits for the server"}
         </div>
       ) : (
         connected === 0 && (
