@@ -26,6 +26,7 @@ class ScenarioCard(BaseModel):
     claim: str
     verdict: str | None
     samples: int | None
+    study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
 
 
 class ScenarioList(BaseModel):
@@ -58,6 +59,7 @@ def card(scenario: Scenario) -> ScenarioCard:
         claim=head.claim,
         verdict=head.verdict,
         samples=scenario.samples,
+        study=str(head.study["kind"]) if head.study is not None else None,
     )
 
 

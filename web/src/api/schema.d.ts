@@ -3049,6 +3049,11 @@ export interface components {
             verdict: string | null;
             /** Samples */
             samples: number | null;
+            /**
+             * Study
+             * @description Kind of the study; null for a scenario that runs on a bench
+             */
+            study: string | null;
         };
         /**
          * ScenarioList

@@ -11,7 +11,7 @@ import { showError } from "./send";
 import { SideSheet } from "./side-sheet";
 import { setPage, useView } from "./view-store";
 
-/** Start a bench from the library, on its own device or another. */
+/** Start a bench from the library, on its own device or another; a study has no bench. */
 export function NewBench() {
   return (
     <SideSheet name="bench" title="New bench" size={520}>
@@ -47,7 +47,7 @@ function Gallery() {
   };
 
   const found = scenarios
-    ?.filter((s) => `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()))
+    ?.filter((s) => s.study === null && `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()))
     .sort(byChapter);
   return (
     <>
