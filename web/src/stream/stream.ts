@@ -37,6 +37,7 @@ export const stream = { client, loop, open, retry: () => client.retryNow() };
 
 function open(id: string): void {
   benchId = id;
+  veil.show(id);
   pendingEvents = [];
   client.head = { tick: 0, dtMs: 0, running: false };
   useBench.setState({ bench: undefined, scores: {}, events: [], droppedFrames: 0, notice: undefined });

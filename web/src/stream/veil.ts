@@ -3,33 +3,40 @@ import type { Bench, LogEntry } from "../api/types";
 /** Events that give a hidden fault away. */
 const TELLING = ["inject", "scheduled", "truth_changed", "recognised", "heal"];
 
-let on = false;
+/** The bench that hides a fault, and the one that is shown. */
+let hiding: string | undefined;
+let shown: string | undefined;
 let held: LogEntry[] = [];
 
 /**
  * Keeps a hidden fault from the page while it is to be found: what acts, what waits, and the log of it.
  *
- * The traces stay what they are; a veil is a game's courtesy, not a lock.
+ * It lies over one bench, and is there again when that bench is shown again. The traces stay what they are; a veil is a game's courtesy, not a lock.
  */
 export const veil = {
   get on(): boolean {
-    return on;
+    return hiding !== undefined && hiding === shown;
   },
-  drop(): void {
-    on = true;
+  /** Another bench is shown, whose log comes from its beginning. */
+  show(bench: string): void {
+    shown = bench;
+    held = [];
+  },
+  drop(bench: string): void {
+    hiding = bench;
   },
   /** Lift it; returns the events that were held back. */
   lift(): LogEntry[] {
-    on = false;
+    hiding = undefined;
     const events = held;
     held = [];
     return events;
   },
   status<T extends Partial<Pick<Bench, "faults" | "pending">>>(status: T): T {
-    return on ? { ...status, faults: [], pending: [] } : status;
+    return veil.on ? { ...status, faults: [], pending: [] } : status;
   },
   events(events: LogEntry[]): LogEntry[] {
-    if (!on) return events;
+    if (!veil.on) return events;
     held.push(...events.filter(tells));
     return events.filter((event) => !tells(event));
   },

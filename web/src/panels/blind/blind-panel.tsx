@@ -25,10 +25,11 @@ export function BlindPanel() {
         The answers are the hypotheses of its bank; open a scenario of chapter 5 from New bench.
       </EmptyState>
     );
-  if (hidden) return <Answer list={list} dtMs={dtMs} />;
+  if (hidden?.bench === bench) return <Answer list={list} dtMs={dtMs} />;
   return (
     <section className={styles.panel} aria-label="Blind diagnosis">
       {last && <Outcome />}
+      {hidden && <p className={styles.advice}>A game waits on another bench; hiding a fault here ends it.</p>}
       <p className={styles.advice}>
         A fault is hidden, or none. Truth, faults, log and 3D keep it to themselves until you commit an answer with your
         confidence. The same seed hides the same fault.

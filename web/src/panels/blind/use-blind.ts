@@ -55,14 +55,14 @@ export async function hide(bench: string, seed: number, hypotheses: Hypothesis[]
 }
 
 function begin(hidden: Hidden): void {
-  veil.drop();
-  useView.setState({ blind: true, sample: undefined });
+  veil.drop(hidden.bench);
+  useView.setState({ blind: veil.on, sample: undefined });
   useGame.setState({ hidden, last: undefined, faultTick: undefined });
   sessionStorage.setItem(STORED, JSON.stringify(hidden));
   clearInterval(waiting);
   if (hidden.came !== undefined) return;
   waiting = setInterval(() => {
-    if (stream.client.head.tick >= hidden.dueTick) void come(hidden);
+    if (veil.on && stream.client.head.tick >= hidden.dueTick) void come(hidden);
   }, LOOK_MS);
 }
 
@@ -120,7 +120,7 @@ function reveal(): void {
 
 const stored = sessionStorage.getItem(STORED);
 if (stored) begin(JSON.parse(stored) as Hidden);
-useBench.subscribe(({ bench }) => {
-  const { hidden } = useGame.getState();
-  if (hidden && bench && bench.id !== hidden.bench) giveUp();
+// The game stays with its bench: another shows all it has, and coming back goes on with the search.
+useBench.subscribe(() => {
+  if (useView.getState().blind !== veil.on) useView.setState({ blind: veil.on });
 });
