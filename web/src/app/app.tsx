@@ -4,7 +4,6 @@ import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/api-error";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
-import { stream } from "../stream/stream";
 import { EmptyState } from "../ui/empty-state";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
@@ -12,7 +11,7 @@ import { openFirstBench } from "./first-bench";
 import { Header } from "./header/header";
 import { KeySheet } from "./key-sheet";
 import { NewBench } from "./new-bench";
-import { benchInAddress } from "./open-bench";
+import { benchInAddress, showBench } from "./open-bench";
 import { PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
@@ -46,7 +45,7 @@ export function App() {
     const back = () => {
       useView.setState({ page: pageInAddress() });
       const id = benchInAddress();
-      if (id && id !== useBench.getState().bench?.id) stream.open(id);
+      if (id && id !== useBench.getState().bench?.id) showBench(id);
     };
     window.addEventListener("popstate", back);
     return () => window.removeEventListener("popstate", back);

@@ -1,4 +1,6 @@
 import { stream } from "../stream/stream";
+import { alarm } from "./announce";
+import { useView } from "./view-store";
 
 const PARAMETER = "bench";
 const LAST = "combbench.bench";
@@ -21,5 +23,12 @@ export function openBench(id: string, replace = false): void {
   if (replace) window.history.replaceState(null, "", url);
   else window.history.pushState(null, "", url);
   localStorage.setItem(LAST, id);
+  showBench(id);
+}
+
+/** Show a bench; what was chosen and said about the one before does not concern it. */
+export function showBench(id: string): void {
+  useView.setState({ sample: undefined });
+  alarm("");
   stream.open(id);
 }
