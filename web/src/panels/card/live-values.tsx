@@ -9,6 +9,7 @@ import { useLiveValues } from "../schematic/use-live-values";
 import styles from "./card.module.css";
 import type { Instance } from "./instances";
 import { ownSignals } from "./own-signals";
+import { scoreWords } from "./score-words";
 
 const MOST = 24;
 
@@ -24,7 +25,11 @@ export function LiveValues({ instance }: { instance: Instance }) {
     [instance, signals, blind],
   );
   const shown = useMemo(() => Object.fromEntries(own.map((s) => [s.name, s.name])), [own]);
-  const live = useLiveValues(shown);
+  const names = useBench((s) => s.bench?.diagnosers[instance.id.split(".").at(-1) ?? ""]?.names);
+  const scored = useMemo(() => new Set(own.filter((s) => s.block.endsWith(".score")).map((s) => s.name)), [own]);
+  const live = useLiveValues(shown, (name, value) =>
+    scored.has(name) ? scoreWords(name, value, names ?? []) : undefined,
+  );
   if (own.length === 0) return null;
   return (
     <section className={styles.live} aria-label="Live values">

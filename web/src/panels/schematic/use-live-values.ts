@@ -9,8 +9,12 @@ const FORGET = 0.995;
 /** Beyond any voltage or stroke: a controller on its way to infinity. */
 const IMMENSE = 1e9;
 
-/** Newest values of named signals, written straight into elements; give each element `live(key)` as its ref. */
-export function useLiveValues(shown: Record<string, string>) {
+/**
+ * Newest values of named signals, written straight into elements; give each element `live(key)` as its ref.
+ *
+ * `say` may have words of its own for a value.
+ */
+export function useLiveValues(shown: Record<string, string>, say?: (key: string, value: number) => string | undefined) {
   const signals = useBench((s) => s.bench?.signals);
   const elements = useRef(new Map<string, Element>());
   const peaks = useRef(new Map<string, number>());
@@ -39,6 +43,11 @@ export function useLiveValues(shown: Record<string, string>) {
         if (!element) return;
         if (!Number.isFinite(value) || high > IMMENSE) {
           element.textContent = "not finite";
+          return;
+        }
+        const words = say?.(key, value);
+        if (words !== undefined) {
+          element.textContent = words;
           return;
         }
         const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
