@@ -57,7 +57,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
       <Line
         tone="alarm"
         title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
-        text={`at ${formatDeviceTime(trip.tick * dtMs)} s, tick ${trip.tick}. Drive and controllers are at zero.`}
+        text={`at ${formatDeviceTime(trip.tick * dtMs)} s, tick ${trip.tick}. The voltage is off; what is shown are the last values before.`}
       >
         <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
           Reset the trip

@@ -39,7 +39,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                 {metricName(entry.metric)}
                 {entry.verdict !== verdict && (
                   <div>
-                    <Verdict verdict={entry.verdict} />
+                    <Verdict verdict={entry.verdict} borneOut={entry.ok === true} />
                   </div>
                 )}
                 {all && entry.note && <small>{entry.note}</small>}

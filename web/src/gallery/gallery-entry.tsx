@@ -55,7 +55,7 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
       </div>
       <ExpectationTable entries={card.expectations} verdict={card.verdict} />
       <footer>
-        <Verdict verdict={card.verdict} />
+        <Verdict verdict={card.verdict} borneOut={card.ok === true} />
         <span className={styles.ok} data-ok={card.ok}>
           {card.ok === null ? "" : card.ok ? "measured as expected" : "other than expected"}
         </span>
