@@ -4,6 +4,7 @@ import { seriousViolations } from "./serious-violations";
 test("a hidden fault stays hidden until an answer is committed, then truth and points are shown", async ({
   page,
   openBench,
+  server,
 }) => {
   await openBench("lab");
   await page.getByRole("tab", { name: "Blind diagnosis" }).click();
@@ -16,6 +17,14 @@ test("a hidden fault stays hidden until an answer is committed, then truth and p
   await page.getByRole("tab", { name: "Blind diagnosis" }).click();
 
   await page.waitForTimeout(6000); // it comes within 8 ms of device time
+  const other = await server.ask<{ id: string }>("POST", "/benches", { scenario: "ch5-seven-step" });
+  await page.getByTitle(/: change bench$/).click();
+  await page.getByRole("menuitem", { name: /^Seven-step f/ }).click();
+  await expect(page).toHaveURL(new RegExp(other.id));
+  await expect(lanes.getByText("hidden")).toHaveCount(0);
+  await page.goBack();
+  await expect(lanes.getByText("hidden").first()).toBeVisible();
+  await server.ask("DELETE", `/benches/${other.id}`);
   const said = (await lanes.locator("dd").first().textContent()) ?? "";
   await panel.getByRole("radio", { name: said, exact: true }).check();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));

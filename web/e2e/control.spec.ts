@@ -10,6 +10,25 @@ test("the controller changes live", async ({ page, openBench }) => {
   await expect(page.getByTestId("bench-state")).toHaveText("running");
 });
 
+test("keys act after a choice, and a bench that stands still shows its traces in the other scheme too", async ({
+  page,
+  openBench,
+}) => {
+  await openBench();
+  const scope = page.getByRole("region", { name: /^Scope: reference.voltage/ });
+  await expect(scope.getByText(/\d\sV$/).first()).toBeVisible();
+  await page.getByRole("combobox", { name: "Controller" }).click();
+  await page.getByRole("option", { name: "PID", exact: true }).click();
+  await page.keyboard.press("Space");
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
+  const scheme = () => page.evaluate(() => document.documentElement.dataset.mantineColorScheme);
+  const before = await scheme();
+  await page.keyboard.press("d");
+  await expect.poll(scheme).not.toBe(before);
+  await page.waitForTimeout(500); // a picture that is to come would be there
+  await expect(scope.getByText(/\d\sV$/)).toHaveCount(2);
+});
+
 test("a parameter changes live, a wrong one is refused in words, and what happened is saved", async ({
   page,
   openBench,
@@ -47,6 +66,7 @@ test("a runaway controller trips the board, the page says why, and the trip can 
   await send({ kind: "time_scale", value: 0.1 });
   await expect(page.getByTestId("bench-state")).toHaveText("tripped", { timeout: 40_000 });
   await expect(page.getByText(/^Tripped: /)).toBeVisible();
+  await expect(page.getByText("The voltage is off")).toBeVisible();
   await page.getByRole("button", { name: "Reset the trip" }).click();
   await expect(page.getByTestId("bench-state")).not.toHaveText("tripped");
 });

@@ -16,6 +16,9 @@ test("the page outlives its server and goes on when it is back", async ({ page }
 
     await server.start();
     await page.request.get(server.url);
+    await expect(page.getByTestId("bench-state")).toHaveText("not connected", { timeout: 30_000 });
+    await expect(page.getByRole("button", { name: "Run", exact: true })).toBeDisabled();
+    await expect(page.getByText("watching")).toHaveCount(0);
     await page.getByRole("button", { name: "Start it again" }).click({ timeout: 30_000 });
     await expect(page.getByTestId("bench-state")).toHaveText("running");
     const clock = page.getByRole("timer", { name: "Device time" });

@@ -9,9 +9,18 @@ const TYPING =
 
 const CHOSEN = "select, input[type=radio], input[type=checkbox]";
 
+/** Whether the pointer was used last, rather than the keys. */
+let pointed = false;
+const notePointer = () => {
+  pointed = true;
+};
+const noteKey = () => {
+  pointed = false;
+};
+
 /** What was chosen with the pointer gives the keys back; who chooses with keys stays where they are. */
 function giveBack({ target }: Event): void {
-  if (target instanceof HTMLElement && target.matches(CHOSEN) && !target.matches(":focus-visible")) target.blur();
+  if (pointed && target instanceof HTMLElement && target.matches(CHOSEN)) target.blur();
 }
 
 /** Listens for the page's keys, except while something else wants them. */
@@ -33,11 +42,12 @@ export function useKeys(): void {
       event.preventDefault();
       binding.run();
     };
-    window.addEventListener("keydown", listen);
-    window.addEventListener("change", giveBack);
-    return () => {
-      window.removeEventListener("keydown", listen);
-      window.removeEventListener("change", giveBack);
-    };
+    const stop = new AbortController();
+    const { signal } = stop;
+    window.addEventListener("keydown", listen, { signal });
+    window.addEventListener("keydown", noteKey, { capture: true, signal });
+    window.addEventListener("pointerdown", notePointer, { capture: true, signal });
+    window.addEventListener("change", giveBack, { signal });
+    return () => stop.abort();
   }, []);
 }

@@ -25,9 +25,9 @@ export const LOOP: LoopBox[] = [
 
 /** From the names of faults to the box on which they act. */
 export const FAULT_ARROWS: Record<FaultedBox, string> = {
-  plant: "M288 196 V176",
-  sensor: "M231 200 V186 H205 V176",
-  drive: "M345 196 V35 H341",
+  plant: "M288 198 V176",
+  sensor: "M282 190 H205 V176",
+  drive: "M294 190 H345 V35 H341",
 };
 
 export type FaultedBox = "plant" | "sensor" | "drive";
