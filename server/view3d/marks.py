@@ -147,7 +147,7 @@ class Marks:
         along_y = getattr(fault.params, "axis", "x") == "y"
         y = -0.88 * self.layout.half_width_um
         self.add("shock", arrow((0.0, y, self.layout.top_um), 70.0 * sign, along_y))
-        return 0.0, y, self.layout.top_um + 6.0
+        return 0.0, 0.8 * y, self.layout.top_um + 6.0  # further in: the words are wider than the arrow
 
     def _drive_gain(self, fault: Active) -> None:
         self.bases = max(self.bases, min(1.0, 0.4 + abs(fault.severity)))

@@ -22,6 +22,8 @@ def cards(live: Any) -> dict[str, dict[str, Any]]:
 def test_a_card_has_its_claim_before_its_run_and_its_figures_after(live: Any) -> None:
     before = cards(live)
     assert list(before) == [scenario.id for scenario in library()]
+    listed = live.http.get("/api/v1/scenarios").json()["scenarios"]
+    assert {entry["id"]: entry["study"] for entry in listed} == {name: card["study"] for name, card in before.items()}
     chosen = before["ch1-beam-width"]
     assert chosen["claim"] == get("ch1-beam-width").head.claim and chosen["study"] == "beam_width"
     assert chosen["state"] == "new" and chosen["ok"] is None and chosen["run"] is None

@@ -51,6 +51,12 @@ def test_a_fault_nobody_has_drawn_is_a_label_at_its_part(part: str) -> None:
     assert not found.solids and found.beams == [0.0, 0.0]
 
 
+def test_severities_have_their_unit_as_people_write_it() -> None:
+    assert words(active("sensor_bias", 0.5)) == "Sensor bias 0.5 µm"
+    assert words(active("shock", 20.0)) == "Shock 20 g"
+    assert words(active("added_mass", 0.05)) == "Added mass"
+
+
 def test_faults_at_one_place_share_a_label() -> None:
     found = marks([active("stiffness"), active("ageing")], LAYOUT)
     assert [len(lines) for lines in found.labels.values()] == [2]

@@ -20,6 +20,7 @@ export const actions = {
   stepPeriod: () => void send({ kind: "step_period" }, "One period"),
   reset: () => {
     jump.to("live");
+    useView.setState({ sample: undefined });
     void send({ kind: "reset" }, "Reset");
   },
   resetTrip: () => void send({ kind: "reset_trip" }, "Trip reset"),

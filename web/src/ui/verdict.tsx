@@ -10,14 +10,14 @@ const MARKS = {
 
 interface VerdictProps {
   verdict: string | null;
-  /** Whether a run bears it out; until then it is only what is expected, without mark and colour. */
+  /** Whether a run bears it out; until then it is only what is claimed, without mark and colour. */
   borneOut: boolean;
 }
 
 /** The verdict on a claim: a word, a mark of its own shape, a colour. */
 export function Verdict({ verdict, borneOut }: VerdictProps) {
   const known = verdict !== null && verdict in MARKS ? MARKS[verdict as keyof typeof MARKS] : undefined;
-  if (known && !borneOut) return <span className={styles.verdict}>expected: {verdict}</span>;
+  if (known && !borneOut) return <span className={styles.verdict}>claim: {verdict}</span>;
   return (
     <span className={styles.verdict} data-tone={known?.tone}>
       {known?.icon}
