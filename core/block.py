@@ -14,7 +14,9 @@ from typing import Any, ClassVar, TypeVar, cast
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
+
+from core.table import Table
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -101,10 +103,10 @@ class Equation:
     why: str = ""
 
 
-class BlockParams(BaseModel):
-    """Parameters of a block: unknown names and numbers that are not finite are refused."""
+class BlockParams(Table):
+    """Parameters of a block."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
+    model_config = ConfigDict(frozen=True, validate_default=False)
 
 
 def parameter(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any
 
 import numpy as np
 
@@ -13,17 +12,15 @@ from core.board.board import Board
 from core.board.environment import Environment
 from core.board.score import Scores
 from core.board.spec import Spec
-from core.errors import unknown
 from scenarios.lateral_metrics import lateral_metrics
 from scenarios.sensing_metrics import sensing_metrics
+from scenarios.stretch import Stretch
 from scenarios.verdict_metrics import verdict_metrics
 
 IDENTIFIED_PCT = 10.0
 """Error of the worst coefficient within which an identifier counts as settled."""
 SETTLED = 0.02
 """Share of the model's amplitude within which a loop counts as settled."""
-TAIL = 0.25
-"""Share of a run that counts as its tail."""
 
 
 def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tick: int = 0) -> complex:
@@ -44,20 +41,19 @@ def device_metrics(spec: Spec) -> dict[str, float]:
     return {**found, "environment.stiffness_scale": stiffness, "environment.damping_scale": damping}
 
 
-def control_metrics(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:
+def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
     """Return how well the shuttle followed the model, and at what effort.
 
     The settling time is the last moment the error left the band of 2 % of the model's amplitude, counted from
-    ``metrics.since_ms`` (the last event unless given); effort is the ratio of the fundamental of the applied
+    ``metrics.since_ms``; effort is the ratio of the fundamental of the applied
     voltage to that of the reference in the tail, the displacement ratio the same of shuttle and model.
     """
     dt = board.dt_ms
     x, model = trace["plant.displacement"], trace["model.displacement"]
     u, r = trace["drive.voltage"], trace["reference.voltage"]
     error = x - model
-    start = min(round(float(options.get("since_ms", 0.0)) / dt), len(x) - 1)
-    tail = slice(int(len(x) * (1.0 - float(options.get("tail_share", TAIL)))), None)
-    swing = float(np.max(np.abs(model[tail]))) if len(model[tail]) else 0.0
+    start, tail = stretch.start(len(x), dt), stretch.tail(len(x))
+    swing = float(np.max(np.abs(model[tail])))
     outside = np.flatnonzero(np.abs(error[start:]) > SETTLED * swing)
     settling = (float(outside[-1]) + 1.0) * dt if len(outside) else 0.0
     found = {
@@ -123,7 +119,7 @@ def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str
     return found
 
 
-def identify_metrics(board: Board, name: str, error: FloatArray | None, options: dict[str, Any]) -> dict[str, float]:
+def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch: Stretch) -> dict[str, float]:
     """Return how well one identifier knows the device, and whether the input lets it.
 
     ``error_pct`` is the mean over the tail of the largest relative error of a coefficient; the settling time is the
@@ -137,10 +133,9 @@ def identify_metrics(board: Board, name: str, error: FloatArray | None, options:
         "identifiable": board.value(f"{name}.identifiable"),
     }
     if error is not None:
-        start = min(round(float(options.get("since_ms", 0.0)) / board.dt_ms), len(error) - 1)
-        outside = np.flatnonzero(error[start:] > IDENTIFIED_PCT)
+        outside = np.flatnonzero(error[stretch.start(len(error), board.dt_ms) :] > IDENTIFIED_PCT)
         last["settling_ms"] = (float(outside[-1]) + 1.0) * board.dt_ms if len(outside) else 0.0
-        last["error_pct"] = float(np.mean(error[int(len(error) * (1.0 - float(options.get("tail_share", TAIL)))) :]))
+        last["error_pct"] = float(np.mean(error[stretch.tail(len(error))]))
         for part in ("mass", "stiffness", "damping"):
             estimate, truth = (board.value(f"{name}.{port}.{part}") for port in ("estimate", "truth"))
             last[f"{part}_error_pct"] = 100.0 * (estimate / truth - 1.0)
@@ -153,20 +148,14 @@ def step_lengths(truth: FloatArray) -> list[int]:
     return [end - start for start, end in itertools.pairwise(edges) if truth[start] >= 0.0]
 
 
-def measure(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:
+def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
     """Return every figure of a run."""
-    allowed = ("since_ms", "tail_share")
-    for key, value in options.items():
-        if key not in allowed:
-            raise unknown("metric option", key, allowed, f"metrics.{key}")
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise unknown("metric option value", value, ["a number"], f"metrics.{key}")
     found = device_metrics(board.spec) | lateral_metrics(board)
     if board.tick > 1:
-        found |= control_metrics(board, trace, options)
-        found |= sensing_metrics(board, trace, options)
+        found |= control_metrics(board, trace, stretch)
+        found |= sensing_metrics(board, trace, stretch)
     for name in board.spec.identifiers if board.tick > 1 else ():
-        found |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), options)
+        found |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
     scores = board.scores()
     for name in board.spec.diagnosers:
         if name in scores:

@@ -6,26 +6,26 @@ import tomllib
 from typing import Any, Literal, Self
 
 import tomlkit
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
-from core.board.commands import Command, Timed, parse_command
+from core.board.commands import LONGEST_MS, Command, Timed, parse_command
 from core.board.document import Document
 from core.board.ensemble import twin_documents
 from core.board.spec import FIELDS, parse
 from core.errors import InputError, from_validation, unknown_field
+from core.table import Table
+from scenarios.stretch import Stretch
 from scenarios.studies import parse_study
 
 Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
 MAX_SAMPLES = 200_000_000
 
 
-class Event(BaseModel):
+class Event(Table):
     """Something that happens: a fault, a healing, new values, another controller; several at once if it says so."""
 
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
-
     at_sample: int | None = Field(None, ge=0)
-    at_ms: float | None = Field(None, ge=0)
+    at_ms: float | None = Field(None, ge=0, le=LONGEST_MS)
     when: str | None = None
     heal: list[str] | Literal["all"] | None = None
     fault: str | None = None
@@ -70,10 +70,8 @@ class Event(BaseModel):
         return [parse_command({**command, **moment}) for command in found]
 
 
-class Expectation(BaseModel):
+class Expectation(Table):
     """What a metric should be, and what was published."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     metric: str
     min: float | None = None
@@ -90,6 +88,8 @@ class Expectation(BaseModel):
             raise ValueError("value and tolerance go together")
         if self.value is None and self.min is None and self.max is None:
             raise ValueError("needs min, max, or value with tolerance")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError(f"can never hold: min {self.min:g} is more than max {self.max:g}")
         return self
 
     def holds(self, measured: float | None) -> bool:
@@ -114,10 +114,8 @@ class Expectation(BaseModel):
         return " and ".join(parts)
 
 
-class Head(BaseModel):
+class Head(Table):
     """All of a scenario that is not the bench itself."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     schema_: Literal[1] = Field(1, alias="schema")
     id: str = Field("unnamed", pattern=r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$")
@@ -127,10 +125,10 @@ class Head(BaseModel):
     claim: str = Field("", max_length=2000)
     verdict: Verdict | None = None
     samples: int | None = Field(None, ge=1, le=MAX_SAMPLES)
-    duration_ms: float | None = Field(None, gt=0)
+    duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
     events: list[Event] = Field([], max_length=100_000)
     expect: list[Expectation] = Field([], max_length=1000)
-    metrics: dict[str, Any] = {}
+    metrics: Stretch = Stretch()
     study: dict[str, Any] | None = None
 
 
@@ -161,13 +159,15 @@ class Scenario:
         try:
             self.head = Head.model_validate(head)
         except ValidationError as error:
-            raise from_validation(error, {"": (*HEAD, *FIELDS)}) from None
+            raise from_validation(error, {"": (*HEAD, *FIELDS), "metrics": [*Stretch.model_fields]}) from None
         if self.head.samples is not None and self.head.duration_ms is not None:
             raise InputError("give samples or duration_ms, not both", "duration_ms")
         unknown = [key for key in self.bench if key not in FIELDS]
         if unknown:
             raise unknown_field(unknown[0], (*HEAD, *FIELDS), unknown[0])
         self.spec = parse(self.bench)
+        if (self.samples or 0) > MAX_SAMPLES:
+            raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
         for name, twin in twin_documents(self.bench).items():
             try:
                 parse(twin)

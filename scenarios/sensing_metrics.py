@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from core.block import FloatArray
 from core.board.board import Board
+from scenarios.stretch import Stretch
 
 
 def lost_samples(error: FloatArray, pitch_um: float) -> tuple[NDArray[np.bool_], int]:
@@ -26,7 +25,7 @@ def lost_samples(error: FloatArray, pitch_um: float) -> tuple[NDArray[np.bool_],
     return bad, whole
 
 
-def sensing_metrics(board: Board, trace: dict[str, FloatArray], options: dict[str, Any]) -> dict[str, float]:
+def sensing_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
     """Return how well the sensor in use told the displacement, from ``metrics.since_ms`` on.
 
     ``sensing.direction_lost_fraction`` is the share of samples off by more than half a pitch of the grating, the
@@ -34,7 +33,7 @@ def sensing_metrics(board: Board, trace: dict[str, FloatArray], options: dict[st
     square over the other samples: an error of whole fringes is counted by the first figure and would drown the
     second.
     """
-    start = min(round(float(options.get("since_ms", 0.0)) / board.dt_ms), len(trace["plant.displacement"]) - 1)
+    start = stretch.start(len(trace["plant.displacement"]), board.dt_ms)
     error = (trace["sensor.displacement"] - trace["plant.displacement"])[start:]
     pitch = _pitch_um(board)
     bad, whole = lost_samples(error, pitch)

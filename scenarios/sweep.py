@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from typing import Any, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from core.block import FloatArray
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation
+from core.table import Table
 from scenarios.edit import with_values
 from scenarios.key import content_hash, run_key
 from scenarios.library import get
@@ -25,20 +26,14 @@ MAX_POINTS = 20_000
 Values = dict[str, Any]
 
 
-class Part(BaseModel):
-    """Base of every table of a campaign."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
-
-
-class Seeds(Part):
+class Seeds(Table):
     """Noise seeds; every point runs with the same ones, so that points differ by their values alone."""
 
     first: int = Field(1, ge=0, le=2**53)
     count: int = Field(1, ge=1, le=MAX_RUNS)
 
 
-class Range(Part):
+class Range(Table):
     """Where a value may lie."""
 
     min: float
@@ -60,7 +55,7 @@ class Range(Part):
         return self.min * np.exp(math.log(self.max / self.min) * share)
 
 
-class LatinHypercube(Part):
+class LatinHypercube(Table):
     """Points spread evenly in every value at once (McKay, Beckman, Conover 1979)."""
 
     points: int = Field(ge=1, le=MAX_POINTS)
@@ -77,7 +72,7 @@ class LatinHypercube(Part):
         return [dict(zip(self.ranges, row, strict=True)) for row in np.array(columns).T.tolist()]
 
 
-class ProcessSpread(Part):
+class ProcessSpread(Table):
     """Devices of the scenario's drawing as a process would make them; standard deviations."""
 
     devices: int = Field(ge=1, le=MAX_POINTS)
@@ -99,14 +94,14 @@ class ProcessSpread(Part):
         return [{f"device.geometry.{name}": value for name, value in zip(drawn, row, strict=True)} for row in rows]
 
 
-class Variant(Part):
+class Variant(Table):
     """One of several alternatives, such as a controller or a set of diagnosers."""
 
     name: str = Field(min_length=1, max_length=100)
     set: Values
 
 
-class Head(Part):
+class Head(Table):
     """The file of a campaign."""
 
     schema_: Literal[1] = Field(1, alias="schema")

@@ -189,7 +189,7 @@ class Board:
             moment = round(command.at_ms / self.dt_ms)
         if moment is not None and moment < self.tick:
             raise InputError(f"sample {moment} has passed, the board is at {self.tick}", "at_sample")
-        condition = parse_condition(command.when, self.wiring.index) if command.when is not None else None
+        condition = parse_condition(command.when, self.wiring.signals.names) if command.when is not None else None
         later = moment is not None and moment > self.tick
         if later or condition is not None:
             return self._wait(command, actor, moment if later else None, condition)

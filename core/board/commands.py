@@ -8,17 +8,21 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 
 from core.errors import InputError, from_validation, unknown
 from core.faults.fault import Profile
+from core.table import Table
+
+LONGEST_MS = 1e12
+"""Latest moment that can be named, device time: beyond any run, and whole in samples."""
 
 
-class _Command(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+class _Command(Table):
+    model_config = ConfigDict(frozen=True)
 
 
 class Timed(_Command):
     """When a command takes effect: now, at a sample, at a time, or once a condition holds."""
 
     at_sample: int | None = Field(None, ge=0, description="sample at which it takes effect")
-    at_ms: float | None = Field(None, ge=0, description="device time at which it takes effect")
+    at_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="device time at which it takes effect")
     when: str | None = Field(
         None, max_length=200, description="'<signal> > <value>' or '<signal> < <value>', watched from at_sample on"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from core.errors import InputError, finite, unknown
@@ -23,8 +24,8 @@ class Condition:
         return self.sign * (value - self.threshold) > 0.0
 
 
-def parse_condition(text: str, index: dict[str, int]) -> Condition:
-    """Read a condition on one of the signals in ``index``.
+def parse_condition(text: str, seen: Collection[str]) -> Condition:
+    """Read a condition on one of the signals that can be seen.
 
     Raises
     ------
@@ -35,8 +36,8 @@ def parse_condition(text: str, index: dict[str, int]) -> Condition:
     if not found:
         raise InputError(f"must be '<signal> > <value>' or '<signal> < <value>', got {text!r}", "when")
     signal, comparison, value = found.groups()
-    if signal not in index:
-        raise unknown("signal", signal, sorted(index), "when")
+    if signal not in seen:
+        raise unknown("signal", signal, sorted(seen), "when")
     try:
         threshold = finite(float(value), "when")
     except ValueError:

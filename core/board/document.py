@@ -11,6 +11,7 @@ from core.errors import InputError, short
 
 Document = dict[str, Any]
 IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
+POSITION = re.compile(r"[0-9]{1,9}")
 
 PARKED = {"controller": ("controllers", "control", "open_loop"), "sensor": ("sensors", "sense", "ideal")}
 """Of these all run, one is in use: table of the one, table of all, family, and the usual one."""
@@ -107,13 +108,15 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
 
 
 def _position(part: str, items: list[Any], path: str) -> int:
-    if not part.isdigit() or int(part) >= len(items):
-        raise InputError(f"{part} is not a position in a list of {len(items)}", path)
+    if not POSITION.fullmatch(part) or int(part) >= len(items):
+        raise InputError(f"{short(part)} is not a position in a list of {len(items)}", path)
     return int(part)
 
 
 def as_written(error: InputError, document: Document) -> InputError:
     """Name a field by the table it was written in, not by the one it was parked in."""
+    if error.field == "drive.kind" and "drive" in document.get("plant", {}):
+        return InputError(error.message, "plant.drive", error.hint, error.code)
     for one, (all_of_them, _, usual) in PARKED.items():
         table = document.get(one, {})
         prefix = f"{all_of_them}.{table.get('kind', usual)}."

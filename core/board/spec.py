@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, Field, ValidationError
 
 from core import registry
 from core.block import Block, BlockParams, Context, Oscillator
@@ -17,6 +17,7 @@ from core.board.model import Model
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.errors import InputError, from_validation, short
+from core.table import Table
 
 
 @dataclass(frozen=True)
@@ -28,10 +29,8 @@ class Section:
     every: int = 1
 
 
-class Frame(BaseModel):
+class Frame(Table):
     """The numbers of a bench that belong to no block."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     sample_rate_khz: float = Field(100.0, ge=0.1, le=1e5, description="ticks per ms of device time")
     seed: int = Field(1, ge=0, le=2**53, description="seed of all noise")
@@ -149,7 +148,7 @@ def _parse(doc: Document) -> Spec:
         plant=_section("plant", plant_kind, plant, "plant", "model"),
         reference=_chosen("reference", doc["reference"], "reference"),
         model=Section(Model, _params(Model, doc.get("model", {}), "model")),
-        drive=Section(Drive, _params(Drive, drive, "drive" if "drive" in doc else "plant")),
+        drive=Section(Drive, _params(Drive, drive, "drive")),
         guard=Section(Guard, _params(Guard, doc.get("guard", {}), "guard")),
         measuring=_measuring(doc["sensor"]["kind"]),
         sensors=_shadowed("sense", "sensors", doc),

@@ -35,7 +35,7 @@ def device(overrides: dict[str, Any]) -> Device:
     """
     name = overrides.get("id", "ch3")
     base = {entry.id: entry for entry in devices()}
-    if name not in base:
+    if not isinstance(name, str) or name not in base:
         raise unknown("device", name, base, "device.id")
     document = base[name].model_dump(exclude_none=True)
     merged = merge(document, overrides)

@@ -18,8 +18,8 @@ class Profile(BlockParams):
     """How the severity comes: at once, as a ramp, or on and off."""
 
     kind: Literal["step", "ramp", "intermittent"] = parameter("step", "how the severity comes")
-    duration_ms: float = parameter(5.0, "length of the ramp", "ms", gt=0)
-    period_ms: float = parameter(2.0, "period of an intermittent fault", "ms", gt=0)
+    duration_ms: float = parameter(5.0, "length of the ramp", "ms", gt=0, le=1e9)
+    period_ms: float = parameter(2.0, "period of an intermittent fault", "ms", gt=0, le=1e9)
     duty: float = parameter(0.5, "share of the period in which an intermittent fault is on", gt=0, le=1)
 
 

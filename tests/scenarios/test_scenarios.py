@@ -231,7 +231,7 @@ def test_set_reaches_head_events_and_expectations():
     assert found.head.title == "other" and found.head.events[0].severity == 0.07
     assert found.head.events[1].at_sample == 77 and found.head.expect[0].min == 0.5
     assert found.spec.diagnosers["kalman"].params.hypotheses[1].mass == 1.07
-    assert found.head.metrics == {"tail_share": 0.5}
+    assert found.head.metrics.tail_share == 0.5
     assert base.samples == 9000 and base.head.events[0].severity == 0.05, "the original is untouched"
     for name in Head.model_fields:
         assert name in ("schema_", "id", "title", "source", "summary", "claim", "verdict", "samples", "duration_ms",

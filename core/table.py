@@ -1,0 +1,26 @@
+"""A table somebody wrote: unknown fields, numbers that are not finite and truth in place of a number are refused."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+
+
+class Table(BaseModel):
+    """Base of all that is read from a scenario, a campaign or a command."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _truth_is_no_number(cls, values: Any) -> Any:
+        """Refuse true for 1, which is a slip of whoever wrote it."""
+        for name, value in values.items() if isinstance(values, dict) else ():
+            if isinstance(value, bool) and name in cls.model_fields:
+                annotation = cls.model_fields[name].annotation
+                allowed = get_args(annotation) or (annotation,)
+                if (int in allowed or float in allowed) and bool not in allowed:
+                    refused = {"type": "float_type", "loc": (name,), "input": value}
+                    raise ValidationError.from_exception_data(cls.__name__, [refused])
+        return values
