@@ -117,10 +117,10 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
     if kind == "missing":
         return InputError("is required", path)
     sayings = {
-        "greater_than": "must be > {gt}",
-        "greater_than_equal": "must be >= {ge}",
-        "less_than": "must be < {lt}",
-        "less_than_equal": "must be <= {le}",
+        "greater_than": "must be > {gt:.16g}",
+        "greater_than_equal": "must be >= {ge:.16g}",
+        "less_than": "must be < {lt:.16g}",
+        "less_than_equal": "must be <= {le:.16g}",
         "finite_number": "must be a finite number",
         "literal_error": "must be one of {expected}",
         "float_type": "must be a number",

@@ -9,11 +9,10 @@ import numpy as np
 from pydantic import ValidationError
 
 from core.block import FloatArray
-from core.board.environment import Environment
 from core.board.spec import Spec, parse
 from core.device.frequency import Band, response, tolerance_band
 from core.device.geometry import Geometry
-from core.device.spread import Spread, Tolerances, draw, sensitivity
+from core.device.spread import Spread, Tolerances, draw, evaluate, sensitivity
 from core.errors import InputError
 from scenarios.lateral_metrics import device_pull_in
 from scenarios.metrics import device_metrics
@@ -41,7 +40,20 @@ def designed(device: dict[str, Any], environment: dict[str, Any]) -> Spec:
 def device_figures(spec: Spec) -> dict[str, float]:
     """Return the figures of the device in its environment, by the names of its metrics without ``device.``."""
     found = {name.removeprefix("device."): value for name, value in device_metrics(spec).items()}
-    return {**found, "pull_in_v": device_pull_in(spec.device)}
+    volts = device_pull_in(spec.device)
+    return found if volts is None else {**found, "pull_in_v": volts}
+
+
+def parameters(spec: Spec) -> dict[str, float]:
+    """Return mass, damping and stiffness of the device in its environment.
+
+    Raises
+    ------
+    InputError
+        For a transfer function, which has none.
+    """
+    found = device_figures(spec)
+    return {name: found[name] for name in spec.device.resolved}
 
 
 def sensitivities(geometry: Geometry) -> dict[str, dict[str, float]]:
@@ -71,20 +83,19 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
     seed : int
         Of the draw.
     """
-    nominal = device_figures(spec)
-    si = {name: nominal[name] for name in ("mass_kg", "damping_ns_m", "stiffness_n_m")}
+    nominal = parameters(spec)
     if spec.device.geometry is None:
-        m, b, k = (((1 - TOLERANCE) * value, value, (1 + TOLERANCE) * value) for value in si.values())
-        return tolerance_band(m, b, k, frequency_hz)
-    spread = process(spec, DRAWS, seed)
-    drawn = spread.found
-    at_rest = nominal["stiffness_n_m"] / nominal["force_n_per_v"]
-    columns = zip(*(drawn[name].tolist() for name in (*si, "force")), strict=True)
-    all_of_them = np.array([response(m, b, k, frequency_hz) * force * at_rest for m, b, k, force in columns])
+        limits = {name: ((1 - TOLERANCE) * value, value, (1 + TOLERANCE) * value) for name, value in nominal.items()}
+        return tolerance_band(**limits, frequency_hz=frequency_hz)
+    shares = _shares(spec.device.geometry, DRAWS, seed).found
+    at_rest = nominal["stiffness_n_m"]
+    columns = [(nominal[name] * shares[name]).tolist() for name in ("mass_kg", "damping_ns_m", "stiffness_n_m")]
+    drawn = zip(*columns, shares["force"].tolist(), strict=True)
+    all_of_them = np.array([response(m, b, k, frequency_hz) * force * at_rest for m, b, k, force in drawn])
     decibels, degrees = 20.0 * np.log10(np.abs(all_of_them)), np.degrees(np.angle(all_of_them))
     low_db, high_db = np.percentile(decibels, SHARES, axis=0)
     low_deg, high_deg = np.percentile(degrees, SHARES, axis=0)
-    own = response(**si, frequency_hz=frequency_hz) * nominal["stiffness_n_m"]
+    own = response(**nominal, frequency_hz=frequency_hz) * at_rest
     own_db, own_deg = 20.0 * np.log10(np.abs(own)), np.degrees(np.angle(own))
     return Band(frequency_hz, low_db, own_db, high_db, low_deg, own_deg, high_deg)
 
@@ -92,30 +103,31 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
 def process(spec: Spec, draws: int, seed: int) -> Spread:
     """Draw devices from the process: mass, damping, stiffness and force per volt in their environment.
 
-    What the device states beside its drawing varies by the same share as what the drawing gives.
+    What the device states beside its drawing varies by the same share as what the drawing gives. Stators that pull
+    alike leave no force to vary.
 
     Raises
     ------
     InputError
         Without a drawing, or when the process leaves nothing of a beam or a gap.
     """
-    geometry = spec.device.geometry
-    if geometry is None:
+    if spec.device.geometry is None:
         raise InputError("has no drawing to vary", "device.id", "choose lcr-350")
-    spread = draw(geometry, Tolerances(), draws, seed)
-    stiffness, damping = Environment.scales(spec.environment.params, spec.context())
-    stated = {**spec.device.resolved, "force": abs(spec.device.signed_force_n_per_v)}
-    drawing = {
-        "mass_kg": geometry.mass_kg(),
-        "stiffness_n_m": geometry.stiffness_n_m() / stiffness,
-        "damping_ns_m": geometry.damping_ns_m() / damping,
-        "force": geometry.capacitance_gradient(),
-    }
-    found = {name: stated[name] / drawing[name] * spread.found[name] for name in drawing}
+    spread = _shares(spec.device.geometry, draws, seed)
+    nominal, force = parameters(spec), abs(spec.device.signed_force_n_per_v)
+    if force > 0.0:
+        nominal["force"] = force
+    found = {name: value * spread.found[name] for name, value in nominal.items()}
     omega = np.sqrt(found["stiffness_n_m"] / found["mass_kg"])
     found["f0_hz"] = omega / (2.0 * np.pi)
     found["quality_factor"] = omega * found["mass_kg"] / found["damping_ns_m"]
     return Spread(spread.drawn, found)
+
+
+def _shares(geometry: Geometry, draws: int, seed: int) -> Spread:
+    """Draw devices from the process, each parameter over that of the drawing."""
+    spread = draw(geometry, Tolerances(), draws, seed)
+    return Spread(spread.drawn, {name: spread.found[name] / value for name, value in evaluate(geometry).items()})
 
 
 @dataclass(frozen=True)

@@ -39,13 +39,17 @@ def lateral_metrics(board: Board) -> dict[str, float]:
         return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state[0]))
     if kind == "planar":
         return _planar(p, state, board.spec.device.drawing.far_finger_um)
-    if board.spec.device.capacitance_gradient == 0.0:
-        return {}  # nothing that could pull it in
-    return {"device.pull_in_v": device_pull_in(board.spec.device)}
+    volts = device_pull_in(board.spec.device)
+    return {} if volts is None else {"device.pull_in_v": volts}
 
 
-def device_pull_in(device: Device) -> float:
-    """Return the bias of pull-in of a device, perfectly aligned; one without a drawing has the beams of LCR-350."""
+def device_pull_in(device: Device) -> float | None:
+    """Return the bias of pull-in of a device, perfectly aligned; none where no comb could pull it in.
+
+    A device without a drawing has the beams of LCR-350.
+    """
+    if device.capacitance_gradient == 0.0:
+        return None
     return geometry_pull_in(device.drawing, device.capacitance_gradient)
 
 

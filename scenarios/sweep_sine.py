@@ -10,6 +10,7 @@ import numpy as np
 from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Set
+from core.device.frequency import figures
 from core.device.identification import Identified, Tone, identify, tone
 from core.errors import InputError
 
@@ -68,7 +69,7 @@ def sweep_sine(
     copy = Board.restore(board.checkpoint())
     copy.pending = []
     device = copy.spec.device
-    nominal = device.metrics()
+    nominal = figures(**device.resolved)
     decay_ms = nominal["decay_ms"] * copy.value("effects.mass_scale") / copy.value("effects.damping_scale")
     start = start_hz if start_hz is not None else WIDE[0] * nominal["f0_hz"]
     stop = stop_hz if stop_hz is not None else WIDE[1] * nominal["f0_hz"]

@@ -59,7 +59,7 @@ class Evaluation(BaseModel):
 
     title: str
     source: str
-    figures: list[Figure]
+    figures: list[Figure] = Field(description="Those it has: a transfer function has no mass, no comb pulls it in")
     metrics: dict[str, float] = Field(description="All figures by name")
     geometry: dict[str, float] | None = Field(description="The drawing, complete; null without one")
     sensitivities: dict[str, dict[str, float]] = Field(
@@ -153,6 +153,7 @@ def evaluate(body: Design) -> Evaluation:
                 equation=equation_card(quantity.equation),
             )
             for quantity in QUANTITIES
+            if quantity.name in found
         ],
         metrics=found,
         geometry=None if geometry is None else geometry.model_dump(),
