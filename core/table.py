@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic_core import InitErrorDetails
 
 
 class Table(BaseModel):
@@ -19,8 +20,8 @@ class Table(BaseModel):
         for name, value in values.items() if isinstance(values, dict) else ():
             if isinstance(value, bool) and name in cls.model_fields:
                 annotation = cls.model_fields[name].annotation
-                allowed = get_args(annotation) or (annotation,)
+                allowed = [getattr(one, "__origin__", one) for one in get_args(annotation) or (annotation,)]
                 if (int in allowed or float in allowed) and bool not in allowed:
-                    refused = {"type": "float_type", "loc": (name,), "input": value}
+                    refused = InitErrorDetails(type="float_type", loc=(name,), input=value)
                     raise ValidationError.from_exception_data(cls.__name__, [refused])
         return values

@@ -108,10 +108,10 @@ class Head(Table):
     id: str = Field("sweep", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")
     title: str = Field("", max_length=200)
     scenario: str | dict[str, Any]
-    set: Values = {}
+    set: Values = Field({})
     seeds: Seeds = Seeds()
     variants: list[Variant] = Field([], max_length=1000)
-    grid: dict[str, list[Any]] = {}
+    grid: dict[str, list[Any]] = Field({})
     latin_hypercube: LatinHypercube | None = None
     process_spread: ProcessSpread | None = None
 

@@ -70,6 +70,10 @@ def sweep_sine(
     copy.pending = []
     device = copy.spec.device
     nominal = figures(**device.resolved)
+    if device.signed_force_n_per_v == 0.0:
+        raise InputError(
+            "the stators pull alike, so that nothing moves", "device.bias_v", "give them different voltages"
+        )
     decay_ms = nominal["decay_ms"] * copy.value("effects.mass_scale") / copy.value("effects.damping_scale")
     start = start_hz if start_hz is not None else WIDE[0] * nominal["f0_hz"]
     stop = stop_hz if stop_hz is not None else WIDE[1] * nominal["f0_hz"]

@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.device.oscillator import held, transition
-from core.device.transfer_function import TransferFunction
+from core.device.ranges import Sized
+from core.device.transfer_function import of_coefficients
 from core.errors import InputError
 
 PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT, REACH, PUSH, ZEROTH, FIRST, SLOPE_X, SLOPE_V, SLOPE_IN, DT = range(14)
@@ -65,14 +66,14 @@ class Model(Block):
             "transfer function",
             live=False,
         )
-        numerator: list[float] = Field(
+        numerator: list[Sized] = Field(
             [1.0],
             min_length=1,
             max_length=2,
             description="of the transfer function, highest power first",
             json_schema_extra={"unit": "", "live": False, "equation": "4.3.1.2"},
         )
-        denominator: list[float] = Field(
+        denominator: list[Sized] = Field(
             [1.0, 1.0],
             min_length=2,
             max_length=3,
@@ -100,8 +101,8 @@ class Model(Block):
         """
         if params.kind == "transfer_function":
             unit = 1.0 / device.natural_frequency
-            given = TransferFunction(gain=params.numerator[-1], denominator=params.denominator, time_unit_ms=unit)
-            return replace(given.oscillator(), time_unit_ms=device.time_unit_ms)
+            given = of_coefficients(params.numerator[-1], params.denominator, unit)
+            return replace(given, time_unit_ms=device.time_unit_ms)
         if params.kind == "copy":
             return device
         if device.mass <= 0.0 or device.stiffness <= 0.0:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from typing import Any, Self
 
-from pydantic import model_validator
+from pydantic import ValidationError, model_validator
 
 from core.block import BlockParams, Oscillator, parameter
 from core.device.environment import ROOM_K
 from core.device.frequency import figures
 from core.device.geometry import Geometry
+from core.device.ranges import BiasV, DampingNsM, Fingers, ForceNPerV, LengthUm, MassKg, Resonator, StiffnessNM
 from core.device.transfer_function import TransferFunction
-from core.errors import InputError
+from core.errors import InputError, from_validation
 from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
 
 
@@ -51,22 +52,22 @@ class Device(BlockParams):
     id: str = parameter("custom", "name in the catalogue", live=False)
     title: str = parameter("", "what people read", live=False)
     source: str = parameter("", "where the numbers come from", live=False)
-    mass_kg: float | None = parameter(None, "effective mass", "kg", gt=0, equation="1.3.3", live=False)
-    damping_ns_m: float | None = parameter(None, "damping", "N s/m", gt=0, equation="1.3.7", live=False)
-    stiffness_n_m: float | None = parameter(
-        None, "stiffness of the whole suspension, 2 k_s", "N/m", gt=0, equation="1.3.4", live=False
+    mass_kg: MassKg | None = parameter(None, "effective mass", "kg", equation="1.3.3", live=False)
+    damping_ns_m: DampingNsM | None = parameter(None, "damping", "N s/m", equation="1.3.7", live=False)
+    stiffness_n_m: StiffnessNM | None = parameter(
+        None, "stiffness of the whole suspension, 2 k_s", "N/m", equation="1.3.4", live=False
     )
     geometry: Geometry | None = parameter(None, "drawing", live=False)
-    bias_v: float = parameter(20.0, "bias of the first stator", "V", equation="1.3.2", live=False)
-    opposite_bias_v: float | None = parameter(
+    bias_v: BiasV = parameter(20.0, "bias of the first stator", "V", equation="1.3.2", live=False)
+    opposite_bias_v: BiasV | None = parameter(
         None, "bias of the second stator; the negative of the first unless given", "V", live=False
     )
-    force_n_per_v: float | None = parameter(
-        None, "force per volt at the bias, magnitude; wins over the comb", "N/V", gt=0, live=False
+    force_n_per_v: ForceNPerV | None = parameter(
+        None, "force per volt at the bias, magnitude; wins over the comb", "N/V", live=False
     )
-    fingers: int | None = parameter(None, "rotor fingers per side", ge=1, live=False)
-    thickness_um: float | None = parameter(None, "structural thickness", "um", gt=0, live=False)
-    finger_gap_um: float | None = parameter(None, "gap between fingers as etched", "um", gt=0, live=False)
+    fingers: Fingers | None = parameter(None, "rotor fingers per side", live=False)
+    thickness_um: LengthUm | None = parameter(None, "structural thickness", "um", live=False)
+    finger_gap_um: LengthUm | None = parameter(None, "gap between fingers as etched", "um", live=False)
     transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
     printed: Printed | None = parameter(None, "what the dissertation prints of it", live=False)
 
@@ -86,6 +87,10 @@ class Device(BlockParams):
             raise ValueError("needs force_n_per_v, or fingers with thickness_um and finger_gap_um, or a geometry")
         if self.force_n_per_v is not None and self.bias_v == 0.0:
             raise ValueError("force_n_per_v is the force at the bias, so bias_v must not be 0")
+        try:
+            Resonator.model_validate(self.resolved)
+        except ValidationError as error:
+            raise ValueError(f"the drawing gives {from_validation(error)}") from None
         return self
 
     @property

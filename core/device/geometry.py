@@ -13,6 +13,7 @@ from pydantic import model_validator
 
 from core.block import BlockParams, Context, parameter
 from core.device.environment import ATMOSPHERE_PA, ROOM_K, penetration_depth_um, viscosity
+from core.device.ranges import EtchUm, Fingers, LengthUm, PartUm
 from core.units import EPSILON_0
 
 
@@ -22,27 +23,29 @@ class Geometry(BlockParams):
     The formulas hold for arrays too: ``core.device.spread`` puts whole wafers through them.
     """
 
-    thickness_um: float = parameter(2.0, "structural thickness", "um", gt=0, live=False)
-    film_gap_um: float = parameter(1.9987, "gas film under the plate", "um", gt=0, live=False)
-    beam_length_um: float = parameter(350.0, "length of a flexure beam", "um", gt=0, live=False)
-    beam_width_um: float = parameter(2.0, "width of a beam as drawn", "um", gt=0, live=False)
-    beam_bias_um: float = parameter(0.2384, "etch bias per edge of beams and trusses", "um", live=False)
-    truss_length_um: float = parameter(90.0, "length of a truss", "um", gt=0, live=False)
-    truss_width_um: float = parameter(4.0, "width of a truss as drawn", "um", gt=0, live=False)
-    truss_segment_um: float = parameter(30.0, "truss length between adjacent beams", "um", gt=0, live=False)
-    fingers: int = parameter(87, "rotor fingers per side", "", ge=1, live=False)
-    finger_length_um: float = parameter(60.0, "finger length", "um", gt=0, live=False)
-    finger_width_um: float = parameter(2.0, "finger width as drawn", "um", gt=0, live=False)
-    finger_gap_um: float = parameter(2.0, "gap between fingers as drawn", "um", gt=0, live=False)
-    comb_bias_um: float = parameter(0.05, "etch bias per edge of fingers", "um", live=False)
-    overlap_um: float = parameter(40.0, "finger overlap at rest", "um", gt=0, live=False)
-    plate_length_um: float = parameter(190.0, "length of the plate", "um", gt=0, live=False)
-    plate_width_um: float = parameter(75.0, "width of the plate", "um", gt=0, live=False)
-    arm_width_um: float = parameter(11.132, "width of a comb arm", "um", ge=0, live=False)
-    arm_length_um: float = parameter(690.0, "length of a comb arm", "um", ge=0, live=False)
-    openings_um2: float = parameter(3560.0, "anchor notches and grating cut out of the plate", "um^2", ge=0, live=False)
-    youngs_modulus_gpa: float = parameter(164.0, "Young's modulus", "GPa", gt=0, live=False)
-    density_kg_m3: float = parameter(2330.0, "density", "kg/m^3", gt=0, live=False)
+    thickness_um: LengthUm = parameter(2.0, "structural thickness", "um", live=False)
+    film_gap_um: LengthUm = parameter(1.9987, "gas film under the plate", "um", live=False)
+    beam_length_um: LengthUm = parameter(350.0, "length of a flexure beam", "um", live=False)
+    beam_width_um: LengthUm = parameter(2.0, "width of a beam as drawn", "um", live=False)
+    beam_bias_um: EtchUm = parameter(0.2384, "etch bias per edge of beams and trusses", "um", live=False)
+    truss_length_um: LengthUm = parameter(90.0, "length of a truss", "um", live=False)
+    truss_width_um: LengthUm = parameter(4.0, "width of a truss as drawn", "um", live=False)
+    truss_segment_um: LengthUm = parameter(30.0, "truss length between adjacent beams", "um", live=False)
+    fingers: Fingers = parameter(87, "rotor fingers per side", live=False)
+    finger_length_um: LengthUm = parameter(60.0, "finger length", "um", live=False)
+    finger_width_um: LengthUm = parameter(2.0, "finger width as drawn", "um", live=False)
+    finger_gap_um: LengthUm = parameter(2.0, "gap between fingers as drawn", "um", live=False)
+    comb_bias_um: EtchUm = parameter(0.05, "etch bias per edge of fingers", "um", live=False)
+    overlap_um: LengthUm = parameter(40.0, "finger overlap at rest", "um", live=False)
+    plate_length_um: LengthUm = parameter(190.0, "length of the plate", "um", live=False)
+    plate_width_um: LengthUm = parameter(75.0, "width of the plate", "um", live=False)
+    arm_width_um: PartUm = parameter(11.132, "width of a comb arm", "um", live=False)
+    arm_length_um: PartUm = parameter(690.0, "length of a comb arm", "um", live=False)
+    openings_um2: float = parameter(
+        3560.0, "anchor notches and grating cut out of the plate", "um^2", ge=0, le=1e10, live=False
+    )
+    youngs_modulus_gpa: float = parameter(164.0, "Young's modulus", "GPa", ge=1e-3, le=1e4, live=False)
+    density_kg_m3: float = parameter(2330.0, "density", "kg/m^3", ge=1.0, le=1e5, live=False)
 
     @model_validator(mode="after")
     def _possible(self) -> Self:

@@ -8,19 +8,20 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from core.block import BlockParams, Oscillator, parameter
+from core.device.ranges import Sized
 
 
 class TransferFunction(BlockParams):
     r"""A plant :math:`\frac{b_0}{a_2s^2+a_1s+a_0}` in its own unit of time; a volt in, a micrometre out."""
 
-    gain: float = parameter(1.0, "numerator b0", live=False)
-    denominator: list[float] = Field(
+    gain: Sized = parameter(1.0, "numerator b0", live=False)
+    denominator: list[Sized] = Field(
         min_length=2,
         max_length=3,
         description="coefficients of the denominator, highest power first",
         json_schema_extra={"unit": "", "live": False, "equation": "4.3.1.1"},
     )
-    time_unit_ms: float = parameter(1000.0, "unit of time", "ms", gt=0, le=1e6, live=False)
+    time_unit_ms: float = parameter(1000.0, "unit of time", "ms", ge=1e-6, le=1e6, live=False)
 
     @model_validator(mode="after")
     def _leads(self) -> Self:
@@ -30,9 +31,7 @@ class TransferFunction(BlockParams):
 
     def oscillator(self) -> Oscillator:
         """Return it in the units of the loop: coefficients are mass, damping and stiffness."""
-        second, first, last = [0.0] * (3 - len(self.denominator)) + self.denominator
-        unit = self.time_unit_ms
-        return Oscillator(second * unit * unit, first * unit, last, self.gain, unit)
+        return of_coefficients(self.gain, self.denominator, self.time_unit_ms)
 
     def metrics(self) -> dict[str, float]:
         """Return the figures that mean something without units; a pole to the right of 0 is one that grows."""
@@ -43,6 +42,12 @@ class TransferFunction(BlockParams):
         if plant.mass > 0.0 and plant.stiffness > 0.0:
             found["f0_hz"] = 1e3 * math.sqrt(plant.stiffness / plant.mass) / (2.0 * math.pi)
         return found
+
+
+def of_coefficients(gain: float, denominator: list[float], unit_ms: float) -> Oscillator:
+    """Return a transfer function in the units of the loop, given in its own unit of time."""
+    second, first, last = [0.0] * (3 - len(denominator)) + denominator
+    return Oscillator(second * unit_ms * unit_ms, first * unit_ms, last, gain, unit_ms)
 
 
 def slowest_pole(plant: Oscillator) -> float:

@@ -29,7 +29,9 @@ class SweptSine(Study):
         points: int = parameter(31, "tones of each of the two passes", ge=4, le=1000)
         cycles: float = parameter(40.0, "cycles measured at each tone", ge=2, le=10_000)
         settle: float = parameter(12.0, "time constants waited before", ge=0, le=100)
-        start_hz: float | None = parameter(None, "lowest tone; a quarter of the resonance unless given", "Hz", gt=0, le=1e9)
+        start_hz: float | None = parameter(
+            None, "lowest tone; a quarter of the resonance unless given", "Hz", gt=0, le=1e9
+        )
         stop_hz: float | None = parameter(None, "highest tone; twice the resonance unless given", "Hz", gt=0, le=1e9)
 
     @classmethod
