@@ -9,6 +9,9 @@ from pydantic import BaseModel
 
 from core.errors import unknown
 
+CLOCK = ("tick", "time_ms")
+"""What stands beside the signals in every trace."""
+
 
 class Signal(BaseModel):
     """One traced signal.

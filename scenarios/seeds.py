@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from core.errors import InputError
+from core.board.spec import MOST_SEED
+from core.errors import InputError, short
 from scenarios.run import judge, run
 from scenarios.schema import Scenario
 
@@ -21,10 +23,11 @@ def parse_seeds(text: str) -> range:
     InputError
         When it is not two whole numbers in order.
     """
-    first, colon, last = text.partition(":")
-    if not colon or not first.strip().isdigit() or not last.strip().isdigit() or int(first) > int(last):
-        raise InputError(f"must be A:B with whole numbers A <= B, got {text!r}", "--seeds")
-    return range(int(first), int(last) + 1)
+    whole = re.fullmatch(r"\s*([0-9]{1,16})\s*:\s*([0-9]{1,16})\s*", text)
+    first, last = (int(part) for part in whole.groups()) if whole else (1, 0)
+    if not first <= last <= MOST_SEED:
+        raise InputError(f"must be A:B with whole numbers A <= B <= {MOST_SEED}, got {short(text)}", "--seeds")
+    return range(first, last + 1)
 
 
 def run_seeds(scenario: Scenario, seeds: Sequence[int]) -> dict[str, Any]:

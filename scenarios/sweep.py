@@ -13,8 +13,9 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from core.block import FloatArray
+from core.board.spec import MOST_SEED
 from core.device.spread import Tolerances, draw
-from core.errors import InputError, from_validation
+from core.errors import InputError, from_validation, short
 from core.table import Table
 from scenarios.edit import with_values
 from scenarios.key import content_hash, run_key
@@ -29,8 +30,15 @@ Values = dict[str, Any]
 class Seeds(Table):
     """Noise seeds; every point runs with the same ones, so that points differ by their values alone."""
 
-    first: int = Field(1, ge=0, le=2**53)
+    first: int = Field(1, ge=0, le=MOST_SEED)
     count: int = Field(1, ge=1, le=MAX_RUNS)
+
+    @model_validator(mode="after")
+    def _reach(self) -> Self:
+        last = self.first + self.count - 1
+        if last > MOST_SEED:
+            raise ValueError(f"the last seed would be {last}; allowed: up to {MOST_SEED}")
+        return self
 
 
 class Range(Table):
@@ -147,6 +155,7 @@ class Sweep:
         base = get(source) if isinstance(source, str) else Scenario.load(source)
         self.base = with_values(base, self.head.set)
         axes = self._axes()
+        self._check_paths(axes)
         count = math.prod(len(axis) for axis in axes)
         if count > MAX_POINTS or count * self.head.seeds.count > MAX_RUNS:
             text = f"{count} points with {self.head.seeds.count} seeds each; at most {MAX_POINTS} points"
@@ -190,17 +199,37 @@ class Sweep:
         head = self.head
         axes: list[list[tuple[Values, Values]]] = []
         if head.variants:
+            _distinct([variant.name for variant in head.variants], "variants", "variants of one name")
             axes.append([({"variant": variant.name}, variant.set) for variant in head.variants])
         for path, choices in head.grid.items():
             if not choices:
                 raise InputError("needs at least one value", f"grid.{path}")
-            axes.append([({path: _label(value)}, {path: value}) for value in choices])
+            labels = [_label(value) for value in choices]
+            _distinct(labels, f"grid.{path}", "points of one value")
+            axes.append([({path: label}, {path: value}) for label, value in zip(labels, choices, strict=True)])
         if head.latin_hypercube is not None:
             axes.append([(values, values) for values in head.latin_hypercube.values()])
         if head.process_spread is not None:
             found = head.process_spread.values(self.base)
             axes.append([({"device": float(number)}, values) for number, values in enumerate(found, 1)])
         return axes
+
+    def _check_paths(self, axes: list[list[tuple[Values, Values]]]) -> None:
+        """Refuse what would make the labels of points untrue: seeds that are not used, values written over."""
+        head = self.head
+        ranges = head.latin_hypercube.ranges if head.latin_hypercube is not None else {}
+        tables = {"set": head.set, "grid": head.grid, "latin_hypercube.ranges": ranges}
+        tables |= {f"variants.{position}.set": variant.set for position, variant in enumerate(head.variants)}
+        for where, table in tables.items():
+            if "seed" in table:
+                raise InputError("the noise seeds of a campaign are those of [seeds]", f"{where}.seed", "set [seeds]")
+        taken: set[str] = set()
+        for axis in axes:
+            paths = {path for _, values in axis for path in values}
+            for path in sorted(paths & taken):
+                text = "has values in two of variants, grid, latin_hypercube and process_spread"
+                raise InputError(text, path, "give them in one")
+            taken |= paths
 
     def _point(self, chosen: tuple[tuple[Values, Values], ...]) -> Point:
         labels: dict[str, str | float] = {}
@@ -212,6 +241,15 @@ class Sweep:
 
 
 FIELDS = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
+
+
+def _distinct(labels: list[str | float], field: str, what: str) -> None:
+    """Refuse what stands twice: its points would be counted twice in every table."""
+    seen: set[str | float] = set()
+    for position, label in enumerate(labels):
+        if label in seen:
+            raise InputError(f"two {what}: {short(label)}", f"{field}.{position}", "give each once")
+        seen.add(label)
 
 
 def _label(value: Any) -> str | float:

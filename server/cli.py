@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Annotated, Any, ParamSpec, TypeVar
 
 import typer
+from typer.core import TyperGroup
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
-from core.errors import InputError
+from core.errors import InputError, one_line
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
 from scenarios.keeping import keep
@@ -24,8 +25,28 @@ from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds
 
-app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+UsageError: Any = typer.BadParameter.__base__
+"""Any slip in the use of options and arguments; of these Typer exports one kind only."""
 
+
+class OneLine(TyperGroup):
+    """Commands whose slips of usage are told in one line, as all bad input is."""
+
+    def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
+        """Invoke a command; a slip of usage is exit code 2."""
+        try:
+            return super().invoke(ctx)
+        except UsageError as error:
+            parameter = getattr(error, "param", None)
+            where = f"{parameter.opts[0]}: " if parameter is not None and error.message else ""
+            text = error.message if where else error.format_message()
+            sys.stderr.write(f"combbench: {where}{one_line(text)}\n")
+            raise typer.Exit(2) from None
+
+
+app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+
+MOST_WORKERS = 1024
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
 
 
@@ -95,7 +116,7 @@ def run(
     assign: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
     ] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Instead of the scenario's own.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Instead of the scenario's own, 0 or more.")] = None,
     seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
     as_json: JsonOption = False,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace, report and script here.")] = None,
@@ -153,7 +174,7 @@ def gallery(
 def sweep(
     file: Annotated[Path, typer.Argument(help="Campaign in TOML.")],
     workers: Annotated[
-        int | None, typer.Option(min=1, max=1024, help="Processes of this machine; as many as it has processors.")
+        int | None, typer.Option(help="Processes of this machine, 1 to 1024; as many as it has processors.")
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
@@ -168,6 +189,8 @@ def sweep(
 
     if workers is not None and scheduler is not None:
         raise InputError("give --workers or --scheduler, not both", "--scheduler")
+    if workers is not None and not 1 <= workers <= MOST_WORKERS:
+        raise InputError(f"must be from 1 to {MOST_WORKERS}, got {workers}", "--workers")
     campaign = read_sweep(file)
     folder = out or Path("sweeps") / campaign.head.id
     address = load_settings().database_url

@@ -14,9 +14,11 @@ from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
 from core.board.model import Model
+from core.board.wiring import instances
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.errors import InputError, from_validation, short
+from core.signals import CLOCK
 from core.table import Table
 
 
@@ -29,11 +31,15 @@ class Section:
     every: int = 1
 
 
+MOST_SEED = 2**53
+"""Largest seed: whole in every floating-point number it passes through."""
+
+
 class Frame(Table):
     """The numbers of a bench that belong to no block."""
 
     sample_rate_khz: float = Field(100.0, ge=0.1, le=1e5, description="ticks per ms of device time")
-    seed: int = Field(1, ge=0, le=2**53, description="seed of all noise")
+    seed: int = Field(1, ge=0, le=MOST_SEED, description="seed of all noise")
 
 
 FIELDS = (*Frame.model_fields, *SECTIONS)
@@ -157,7 +163,19 @@ def _parse(doc: Document) -> Spec:
         identifiers={name: _named("identify", "identifiers", name, table) for name, table in identifiers.items()},
         diagnosers={name: _named("diagnose", "diagnosers", name, table) for name, table in diagnosers.items()},
     )
+    _named_apart(spec)
     return _suited(spec)
+
+
+def _named_apart(spec: Spec) -> None:
+    """Refuse identifiers and diagnosers by the name of another block: signals of both would have the same names."""
+    chosen = [(key, name) for key in ("identifiers", "diagnosers") for name in getattr(spec, key)]
+    others = instances(replace(spec, identifiers={}, diagnosers={}), {}) if chosen else []
+    taken = {*CLOCK, *(other.prefix.split(".")[0] for other in others)}
+    for key, name in chosen:
+        if name in taken:
+            text = f"is the name of a part of the bench; taken: {', '.join(sorted(taken))}"
+            raise InputError(text, f"{key}.{name}", "choose another name")
 
 
 def _suited(spec: Spec) -> Spec:

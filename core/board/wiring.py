@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,10 +13,12 @@ from core.board import program
 from core.board.effects import Effects
 from core.board.measurement import Measurement
 from core.board.score import Score
-from core.board.spec import Spec
 from core.faults.fault import Fault, FaultParams
 from core.sense.sensor import Sensor
 from core.signals import Signal, SignalTable
+
+if TYPE_CHECKING:
+    from core.board.spec import Spec
 
 NOTHING = "@nothing"
 """A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""

@@ -27,8 +27,10 @@ LEAST, MOST = 1e-9, 1e9
 
 
 def _sized(value: float) -> float:
-    if value != 0.0 and not LEAST <= abs(value) <= MOST:
-        raise ValueError(f"must be 0 or from {LEAST:g} to {MOST:g} in size, got {value:g}")
+    if 0.0 < abs(value) < LEAST:
+        raise ValueError(f"must be 0, or at least {LEAST:g} in size, got {value:g}")
+    if abs(value) > MOST:
+        raise ValueError(f"must be at most {MOST:g} in size, got {value:g}")
     return value
 
 

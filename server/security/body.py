@@ -28,7 +28,7 @@ class BodyLimit:
             await self._app(scope, receive, send)
             return
         declared = Headers(scope=scope).get("content-length", "0")
-        if not declared.isdigit() or int(declared) > self._limit:
+        if not declared.isdecimal() or int(declared) > self._limit:
             error = self._too_large()
             await reply(413, error.body, error.headers)(scope, receive, send)
             return
