@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from core.signals import CLOCK
 from scenarios.run import Result
 from scenarios.run_report import run_report
 from scenarios.script import script
@@ -32,7 +33,7 @@ def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) 
     stem.parent.mkdir(parents=True, exist_ok=True)
     document = json.loads(json.dumps(result.scenario.document, default=str))
     ticks = np.arange(len(result.outputs))
-    columns: dict[str, np.ndarray[Any, Any]] = {"tick": ticks, "time_ms": ticks * result.board.dt_ms}
+    columns: dict[str, np.ndarray[Any, Any]] = dict(zip(CLOCK, (ticks, ticks * result.board.dt_ms), strict=True))
     for signal in result.kept:
         columns[signal.name] = result.signal(signal.name)
     write_parquet(stem.with_suffix(".parquet"), columns, {"scenario": document, "seed": result.seed})

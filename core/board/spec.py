@@ -17,6 +17,7 @@ from core.board.model import Model
 from core.board.wiring import instances
 from core.device.catalogue import device as build_device
 from core.device.device import Device
+from core.device.transfer_function import slowest_pole
 from core.errors import InputError, from_validation, short
 from core.signals import CLOCK
 from core.table import Table
@@ -33,6 +34,9 @@ class Section:
 
 MOST_SEED = 2**53
 """Largest seed: whole in every floating-point number it passes through."""
+
+MOST_GROWTH = 100.0
+"""Exponent of what may grow within a sample: the cube of it is still a number."""
 
 
 class Frame(Table):
@@ -182,6 +186,10 @@ def _suited(spec: Spec) -> Spec:
     """Leave out controllers and sensors that are not for this device; refuse what was asked for and is not."""
     nominal = spec.device.oscillator()
     pair = nominal, Model.oscillator(spec.model.params, nominal)
+    for field, grows in zip(("device.transfer_function", "model.denominator"), pair, strict=True):
+        if slowest_pole(grows) * spec.dt_ms > MOST_GROWTH:
+            text = f"grows by more than e^{MOST_GROWTH:g} from one sample to the next"
+            raise InputError(text, field, "sample faster, or slow it down")
     fields = {
         "plant.model": spec.plant.block,
         "controller.kind": spec.controllers[spec.active].block,

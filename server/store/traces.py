@@ -15,6 +15,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from core.errors import InputError, unknown
+from core.signals import CLOCK
 from scenarios.traces import packing
 
 LARGEST = 2**62
@@ -38,7 +39,7 @@ def schema_of(signals: Mapping[str, str], about: Mapping[str, Any]) -> pa.Schema
     about : mapping
         Kept with the file: scenario, version, sample interval.
     """
-    fields = [pa.field("tick", pa.int64()), pa.field("time_ms", pa.float64())]
+    fields = [pa.field(name, kind) for name, kind in zip(CLOCK, (pa.int64(), pa.float64()), strict=True)]
     fields += [pa.field(name, pa.float32(), metadata={"unit": unit}) for name, unit in signals.items()]
     return pa.schema(fields, metadata={"combbench": json.dumps(about)})
 

@@ -37,17 +37,39 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"controllers.pid.pole": 99}, "controllers.pid.pole"),
     ({"controllers.nobody.gain": 1}, "controllers"),
     ({"plant.model": "quadratic"}, "plant.model"),
-    ({"plant.drive": "wireless"}, "plant.kind"),
+    ({"plant.drive": "wireless"}, "plant.drive"),
+    ({"drive.kind": "wireless"}, "drive.kind"),
     ({"plant.mass": 1}, "plant.mass"),
     ({"device.id": "ch7"}, "device.id"),
+    ({"device.id": [1]}, "device.id"),
     ({"device.mass_g": 1}, "device.mass_g"),
+    ({"device.mass_kg": 1e-300}, "device.mass_kg"),
+    ({"device.mass_kg": 1e300}, "device.mass_kg"),
+    ({"device.mass_kg": True}, "device.mass_kg"),
+    ({"device.stiffness_n_m": 1e300}, "device.stiffness_n_m"),
+    ({"device.bias_v": 1e-300}, "device.bias_v"),
+    ({"device": {"transfer_function": {"denominator": [1e-9, -1e9]}}, "plant": {}}, "device.transfer_function"),
+    ({"device": {"id": "lcr-350", "geometry": {"beam_length_um": 1e5, "beam_width_um": 0.5}}}, "device"),
+    ({"device": {"transfer_function": {"denominator": [1.0, 1e-300]}}}, "device.transfer_function.denominator.1"),
     ({"device.mass_kg": 0}, "device.mass_kg"),
     ({"device.geometry.fingers": 3.5}, "device.geometry.fingers"),
     ({"sample_rate_khz": 0}, "sample_rate_khz"),
     ({"sample_rate_hz": 5}, "sample_rate_hz"),
     ({"seed": -1}, "seed"),
     ({"seed": 1.5}, "seed"),
+    ({"seed": True}, "seed"),
     ({"samples": 0}, "samples"),
+    ({"samples": True}, "samples"),
+    ({"duration_ms": 1e308}, "duration_ms"),
+    ({"duration_ms": 1e11}, "duration_ms"),
+    ({"sensor.noise_um": True}, "sensor.noise_um"),
+    ({"metrics": {"tail_share": math.nan}}, "metrics.tail_share"),
+    ({"metrics": {"tail_share": 0}}, "metrics.tail_share"),
+    ({"metrics": {"tail_share": -1}}, "metrics.tail_share"),
+    ({"metrics": {"tail_share": 2}}, "metrics.tail_share"),
+    ({"metrics": {"since_ms": -5}}, "metrics.since_ms"),
+    ({"metrics": {"since_ms": math.inf}}, "metrics.since_ms"),
+    ({"metrics": {"since": 5}}, "metrics.since"),
     ({"samples": 100, "duration_ms": 3.0}, "duration_ms"),
     ({"schema": 2}, "schema"),
     ({"id": "No Spaces"}, "id"),
@@ -75,6 +97,9 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"events": [{"at_ms": 1, "fault": "damping", "severity": 1, "profile": {"kind": "x"}}]}, "events.0.profile.kind"),
     ({"events": [{"at_sample": 1, "at_ms": 2.0, "heal": "all"}]}, "events.0"),
     ({"events": [{"when": "nothing > 1", "heal": "all"}]}, "events.0.when"),
+    ({"events": [{"when": "@nothing > -1", "heal": "all"}]}, "events.0.when"),
+    ({"events": [{"when": "drive.charge > -1", "heal": "all"}]}, "events.0.when"),
+    ({"events": [{"at_ms": 1e308, "heal": "all"}]}, "events.0.at_ms"),
     ({"events": [{"at_sample": 1, "set": {"sensor.noise_nm": 1}}]}, "events.0.sensor.noise_nm"),
     ({"events": [{"at_sample": 1, "switch": "nobody"}]}, "events.0.controller"),
     ({"events": [{"at_sample": 1, "explode": True}]}, "events.0.explode"),
@@ -82,6 +107,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"expect": [{"metric": "x", "value": 1.0}]}, "expect.0"),
     ({"expect": [{"min": 1.0}]}, "expect.0.metric"),
     ({"expect": [{"metric": "x", "min": math.nan}]}, "expect.0.min"),
+    ({"expect": [{"metric": "x", "min": 2.0, "max": 1.0}]}, "expect.0"),
 ]  # fmt: skip
 
 
@@ -140,12 +166,41 @@ def test_the_hint_names_what_was_meant(path, word):
         {"seed.deep": 1},
         {"events.5.severity": 1},
         {"events.x.severity": 1},
+        {"events.².severity": 1},
+        {f"events.{'9' * 5000}.severity": 1},
         {"sensor.noise_um.x": 1},
     ],
 )
 def test_paths_that_lead_nowhere(values):
     with pytest.raises(InputError):
         with_values(get("ch5-seven-step"), values)
+
+
+def test_a_condition_is_offered_no_signal_that_cannot_be_seen():
+    with pytest.raises(InputError) as error:
+        build(Scenario.load(document({"events": [{"when": "nothing > 1", "heal": "all"}]})))
+    assert "plant.displacement" in error.value.message and "@" not in error.value.message
+
+
+def first_parts() -> set[str]:
+    """Return what stands before the first dot of the signals of a bench without diagnosers, and beside them."""
+    board = build(Scenario.load(document()))
+    return {name.split(".")[0] for name in board.signals.names} | {"tick", "time_ms"}
+
+
+@pytest.mark.parametrize("name", sorted(first_parts()))
+@pytest.mark.parametrize(("key", "kind"), [("diagnosers", "mmae"), ("identifiers", "excitation")])
+def test_no_diagnoser_or_identifier_has_the_name_of_another_part(key, kind, name):
+    with pytest.raises(InputError) as error:
+        Scenario.load(document({f"{key}.{name}": {"kind": kind}}))
+    assert error.value.field == f"{key}.{name}" and "plant" in error.value.message
+
+
+def test_a_controller_this_device_has_no_use_for_keeps_its_name():
+    plain = {"device": {"id": "first-order-gain"}, "plant": {}, "diagnosers": {"mrac": {"kind": "cusum"}}}
+    with pytest.raises(InputError) as error:
+        Scenario.load({**document(), **plain})
+    assert error.value.field == "diagnosers.mrac"
 
 
 def test_amplitude_in_micrometres_needs_a_device_that_moves():

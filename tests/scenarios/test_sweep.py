@@ -85,12 +85,26 @@ def test_variants_are_controllers_or_diagnosers_by_name() -> None:
         ({"latin_hypercube": {"points": 3, "ranges": {NOISE: {"min": 0, "max": 1, "scale": "log"}}}}, ["min > 0"]),
         ({"process_spread": {"devices": 3}}, ["device.id", "no drawing"]),
         ({"gird": {}}, ["gird"]),
+        ({"grid": {"seed": [1, 2]}}, ["grid.seed", "[seeds]"]),
+        ({"set": {"seed": 3}}, ["set.seed", "[seeds]"]),
+        ({"variants": [{"name": "a", "set": {"seed": 3}}]}, ["variants.0.set.seed", "[seeds]"]),
+        ({"latin_hypercube": {"points": 3, "ranges": {"seed": {"min": 1, "max": 9}}}}, ["ranges.seed", "[seeds]"]),
+        ({"variants": [{"name": "a", "set": {}}, {"name": "a", "set": {NOISE: 0.1}}]}, ["variants.1", "'a'"]),
+        ({"grid": {NOISE: [0.1, 0.2, 0.1]}}, [f"grid.{NOISE}.2", "0.1"]),
+        ({"grid": {NOISE: [1, 1.0]}}, [f"grid.{NOISE}.1", "1.0"]),
+        ({"variants": [{"name": "a", "set": {NOISE: 0.3}}], "grid": {NOISE: [0.1]}}, [NOISE, "variants", "grid"]),
+        ({"seeds": {"first": 2**53, "count": 2}}, ["seeds", str(2**53 + 1), str(2**53)]),
+        ({"seeds": {"count": True}}, ["seeds.count", "number"]),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line(change: dict[str, Any], words: list[str]) -> None:
     with pytest.raises(InputError) as caught:
         Sweep({**SEVEN, **change})
     assert all(word in str(caught.value) for word in words), str(caught.value)
+
+
+def test_the_last_seed_may_be_the_largest() -> None:
+    assert Sweep({**SEVEN, "seeds": {"first": 2**53 - 1, "count": 2}}).seeds[-1] == 2**53
 
 
 def test_the_key_is_that_of_scenario_and_seed_alone() -> None:

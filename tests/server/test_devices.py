@@ -119,6 +119,29 @@ def test_a_device_drawn_from_the_process_is_the_same_for_the_same_seed(live):
     assert 0.7 * spread["p01"] < drawn["stiffness_n_m"]["value"] < 1.4 * spread["p99"]
 
 
+@pytest.mark.parametrize(
+    ("name", "has"),
+    [
+        ("double-integrator", {}),
+        ("unstable-first-order", {"static_gain_um_per_v": -5.0}),
+        ("second-order-gain", {"f0_hz": 1 / (2 * math.pi), "static_gain_um_per_v": 1.0}),
+    ],
+)
+def test_a_transfer_function_has_the_figures_that_mean_something_without_units(live, name, has):
+    found = {key: entry["value"] for key, entry in figures(live, device={"id": name}).items()}
+    assert found == pytest.approx(has)
+
+
+@pytest.mark.parametrize("stators", [{"bias_v": 0}, {"opposite_bias_v": 10.0}])
+def test_without_a_force_the_response_is_that_of_the_mechanics(live, stators):
+    """Displacement per volt over that at rest does not depend on the bias: its limit is the same at none."""
+    found, usual = (ask(live, "bode", device={"id": "lcr-350", **own}) for own in (stators, {}))
+    assert found["magnitude_db"] == usual["magnitude_db"] and found["static_gain_um_per_v"] == 0.0
+    assert usual["static_gain_um_per_v"] != 0.0
+    drawn = ask(live, "spread", device={"id": "lcr-350", **stators})["statistics"]
+    assert "force" not in drawn and drawn["f0_hz"]["variation_pct"] > 0.0
+
+
 def test_devices_are_drawn_in_their_environment(live):
     design = {"device": {"id": "lcr-350", "mass_kg": 3e-10}, "environment": {"pressure_pa": 1000.0}}
     nominal = figures(live, **design)
@@ -153,6 +176,10 @@ def test_devices_are_drawn_in_their_environment(live):
         ),
         ("evaluate", {"device": {}, "environment": {"pressure_pa": -1}}, "environment.pressure_pa", ">= 0.01"),
         ("evaluate", {"gadget": {}}, "gadget", "unknown field"),
+        ("evaluate", {"device": {"id": [1]}}, "device.id", "unknown"),
+        ("evaluate", {"device": {"stiffness_n_m": 1e300}}, "device.stiffness_n_m", "<= 1000000"),
+        ("bode", {"device": {"id": "double-integrator"}}, "device.id", "without mass or stiffness"),
+        ("bode", {"device": {"id": "second-order-gain"}}, "device.id", "without mass or stiffness"),
         ("spread", {"device": {"id": "ch3"}}, "device.id", "no drawing"),
         ("bode", {"points": 100_000}, "points", "2000"),
     ],
