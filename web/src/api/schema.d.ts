@@ -1763,7 +1763,10 @@ export interface components {
             title: string;
             /** Source */
             source: string;
-            /** Figures */
+            /**
+             * Figures
+             * @description Those it has: a transfer function has no mass, no comb pulls it in
+             */
             figures: components["schemas"]["Figure"][];
             /**
              * Metrics
