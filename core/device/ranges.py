@@ -12,10 +12,10 @@ from pydantic import AfterValidator, Field
 
 from core.table import Table
 
-MassKg = Annotated[float, Field(ge=1e-18, le=1e-3)]
-DampingNsM = Annotated[float, Field(ge=1e-15, le=1.0)]
-StiffnessNM = Annotated[float, Field(ge=1e-9, le=1e6)]
-ForceNPerV = Annotated[float, Field(ge=1e-15, le=1.0)]
+MassKg = Annotated[float, Field(ge=1e-18, le=1e3)]
+DampingNsM = Annotated[float, Field(ge=1e-15, le=1e3)]
+StiffnessNM = Annotated[float, Field(ge=1e-9, le=1e9)]
+ForceNPerV = Annotated[float, Field(ge=1e-15, le=1e3)]
 LengthUm = Annotated[float, Field(ge=1e-3, le=1e5)]
 PartUm = Annotated[float, Field(ge=0.0, le=1e5)]
 """Of a part that may be missing."""
