@@ -31,6 +31,16 @@ def test_library_scenarios_hold(name):
     assert run(scenario).digest == summary["digest"]
 
 
+@pytest.mark.parametrize(
+    ("device", "field"),
+    [({"id": "second-order-gain"}, "device.id"), ({"id": "lcr-350", "bias_v": 0}, "device.bias_v")],
+)
+def test_what_has_no_mass_or_is_not_moved_is_not_swept(device, field):
+    with pytest.raises(InputError) as error:
+        run(Scenario.load({"schema": 1, "device": device, "study": {"kind": "swept_sine"}}))
+    assert error.value.field == field
+
+
 def test_a_study_takes_values_like_any_other_part():
     narrow = with_values(get("ch1-beam-width"), {"study.widths_um": [2.0], "study.reduction_um": 0.3})
     assert run(narrow).metrics["beam_width.softer_2_um_pct"] == pytest.approx(100 * (1 - 0.85**3))
