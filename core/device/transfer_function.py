@@ -54,5 +54,7 @@ def slowest_pole(plant: Oscillator) -> float:
     """Return the largest real part of the poles, rad/ms."""
     if plant.mass == 0.0:
         return -plant.stiffness / plant.damping
-    half = 0.5 * plant.damping / plant.mass
-    return math.sqrt(max(0.0, half * half - plant.stiffness / plant.mass)) - half
+    half, square = 0.5 * plant.damping / plant.mass, plant.stiffness / plant.mass
+    root = math.sqrt(max(0.0, half * half - square))
+    # of two real poles far apart the slow one would be lost in the difference
+    return -square / (half + root) if half > 0.0 and root > 0.0 else root - half
