@@ -58,7 +58,7 @@ class Guard(Block):
         """When to stop."""
 
         travel_um: float = parameter(25.0, "largest displacement", "um", gt=0, le=1000)
-        rail_ms: float = parameter(5.0, "longest time without a break at the limit of the drive", "ms", gt=0)
+        rail_ms: float = parameter(5.0, "longest time without a break at the limit of the drive", "ms", gt=0, le=1e9)
         stop_on_contact: bool = parameter(True, "stop when fingers touch or a comb is shorted; off for experiments")
 
     @classmethod

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, Field
 from core.table import Table
 
 MassKg = Annotated[float, Field(ge=1e-18, le=1e3)]
-DampingNsM = Annotated[float, Field(ge=1e-15, le=1e3)]
+DampingNsM = Annotated[float, Field(ge=1e-40, le=1e3)]
 StiffnessNM = Annotated[float, Field(ge=1e-9, le=1e9)]
 ForceNPerV = Annotated[float, Field(ge=1e-15, le=1e3)]
 LengthUm = Annotated[float, Field(ge=1e-3, le=1e5)]

@@ -14,7 +14,7 @@ from core.registry import blocks
 from scenarios.run import run
 from scenarios.schema import Scenario
 
-ENDS = {"mass_kg": (1e-18, 1e3), "damping_ns_m": (1e-15, 1e3), "stiffness_n_m": (1e-9, 1e9)}
+ENDS = {"mass_kg": (1e-18, 1e3), "damping_ns_m": (1e-40, 1e3), "stiffness_n_m": (1e-9, 1e9)}
 SIZES = (1e-9, -1e-9, 1e9, -1e9)
 
 
