@@ -37,14 +37,8 @@ def applied_voltage(p: Any, s: Any, w: Any, io: Any) -> float:
 
 
 @kernel
-def coasts(p: Any, s: Any, w: Any, io: Any, lane: int) -> bool:
-    """Say whether a bank that runs every N ticks is between two of its turns; then its states follow the voltage.
-
-    The voltage changes at every tick: were it taken for held at its mean, a bank would be sure of the wrong model.
-    """
-    if p[EVERY] == 1.0 or w[TICK] % p[EVERY] == 0.0:
-        return False
-    u = w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]]
+def drift(p: Any, s: Any, u: float, lane: int) -> None:
+    """Let the states of all models follow the voltage of a tick, uncorrected."""
     for i in range(int(p[COUNT])):
         a = LANES + i
         b = OWN + i
@@ -52,7 +46,18 @@ def coasts(p: Any, s: Any, w: Any, io: Any, lane: int) -> bool:
         x2 = s[b + X2 * lane]
         s[b + X1 * lane] = settled(p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + p[a + PUSH1 * lane] * u)
         s[b + X2 * lane] = settled(p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + p[a + PUSH2 * lane] * u)
-    return True
+
+
+@inlined
+def coasts(p: Any, s: Any, w: Any, io: Any, lane: int) -> bool:
+    """Say whether a bank that runs every N ticks is between two of its turns; then its states follow the voltage.
+
+    The voltage changes at every tick: were it taken for held at its mean, a bank would be sure of the wrong model.
+    """
+    between: bool = p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0
+    if between:
+        drift(p, s, w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]], lane)
+    return between
 
 
 @kernel
