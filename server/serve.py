@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 import signal
 import socket
@@ -50,6 +51,9 @@ class Server(uvicorn.Server):
         """Start, then say where."""
         await super().startup(sockets)
         if self.started and self._address:
+            # What is loaded by now stays: looked through for garbage again it would hold up all benches for 0.1 s.
+            gc.collect()
+            gc.freeze()
             sys.stdout.write(f"CombBench is at {self._address}\n")
             sys.stdout.flush()
             if self._service.settings.open_page:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import gc
 import io
 import os
 import signal
@@ -17,7 +19,12 @@ from typing import Any
 import httpx
 import pyarrow.parquet as pq
 import pytest
+import uvicorn
 from websockets.exceptions import ConnectionClosed
+
+from server.app import create_app
+from server.serve import make_server
+from server.settings import Settings
 
 TOKEN = "a-canary-token-for-the-logs"
 
@@ -50,6 +57,23 @@ def process(folder: Path, *arguments: str, **more: str) -> Iterator[Any]:
 def client(address: str) -> httpx.Client:
     base = address.removeprefix("CombBench is at ").partition("/?")[0]
     return httpx.Client(base_url=base, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=20, trust_env=False)
+
+
+def test_what_is_loaded_is_not_looked_through_for_garbage_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    async def begin(self: uvicorn.Server, sockets: Any = None) -> None:
+        self.started = True
+
+    monkeypatch.setattr(uvicorn.Server, "startup", begin)
+    settings = Settings(data=tmp_path)
+    before = gc.get_freeze_count()
+    try:
+        asyncio.run(make_server(settings, create_app(settings), "somewhere").startup())
+        assert gc.get_freeze_count() > before + 100_000
+    finally:
+        gc.unfreeze()
+    assert capsys.readouterr().out == "CombBench is at somewhere\n"
 
 
 def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
