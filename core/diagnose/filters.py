@@ -23,29 +23,42 @@ LEAST = 1e-12
 """Least residual covariance, as a share of R."""
 
 
+@inlined
+def voltage(p: Any, w: Any, io: Any) -> float:
+    """Return the voltage of the tick that ends now, from its middle or its start."""
+    return w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]]  # type: ignore[no-any-return]
+
+
 @kernel
 def applied_voltage(p: Any, s: Any, w: Any, io: Any) -> float:
     """Return the voltage of the tick that ends now, and keep its mean square over the shuttle's own memory.
 
     Of a bank that runs every N ticks it is the square of their mean that counts.
     """
-    u = w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]]
+    u = voltage(p, w, io)
     mean = u if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
     s[LAST_CHARGE] = w[io[CHARGE]]
     s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * mean * mean)
     return float(u)
 
 
+@inlined
+def predicted(p: Any, a: int, lane: int, x1: float, x2: float, u: float) -> tuple[float, float]:
+    """Return where a state is a tick later."""
+    return (
+        p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + p[a + PUSH1 * lane] * u,
+        p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + p[a + PUSH2 * lane] * u,
+    )
+
+
 @kernel
 def drift(p: Any, s: Any, u: float, lane: int) -> None:
     """Let the states of all models follow the voltage of a tick, uncorrected."""
     for i in range(int(p[COUNT])):
-        a = LANES + i
         b = OWN + i
-        x1 = s[b + X1 * lane]
-        x2 = s[b + X2 * lane]
-        s[b + X1 * lane] = settled(p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + p[a + PUSH1 * lane] * u)
-        s[b + X2 * lane] = settled(p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + p[a + PUSH2 * lane] * u)
+        x1, x2 = predicted(p, LANES + i, lane, s[b + X1 * lane], s[b + X2 * lane], u)
+        s[b + X1 * lane] = settled(x1)
+        s[b + X2 * lane] = settled(x2)
 
 
 @inlined
@@ -56,7 +69,7 @@ def coasts(p: Any, s: Any, w: Any, io: Any, lane: int) -> bool:
     """
     between: bool = p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0
     if between:
-        drift(p, s, w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]], lane)
+        drift(p, s, voltage(p, w, io), lane)
     return between
 
 
@@ -124,14 +137,12 @@ def correct_state(
     p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool, k1: float, k2: float, inverse: float
 ) -> None:
     """Predict the state of one filter and correct it by a known gain."""
-    a = LANES + i
     b = OWN + i
-    x1 = s[b + X1 * lane]
-    x2 = s[b + X2 * lane]
-    moved1 = p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + p[a + PUSH1 * lane] * u
-    moved2 = p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + p[a + PUSH2 * lane] * u
-    x1 = x1 if first else moved1
-    x2 = x2 if first else moved2
+    before1 = s[b + X1 * lane]
+    before2 = s[b + X2 * lane]
+    x1, x2 = predicted(p, LANES + i, lane, before1, before2, u)
+    x1 = before1 if first else x1
+    x2 = before2 if first else x2
     residual = settled(z - x1) if seen else 0.0
     s[b + X1 * lane] = settled(x1 + k1 * residual)
     s[b + X2 * lane] = settled(x2 + k2 * residual)

@@ -99,7 +99,9 @@ class KalmanBank(Block):
             rest = device.static_gain
             gamma = ((1.0 - phi[0]) * rest, -phi[2] * rest)
             table[:6, i] = (*phi, *gamma)
-            tick = transition(device.mass, device.damping, device.stiffness, context.dt_ms / context.every)
+            tick = phi
+            if context.every > 1:
+                tick = transition(device.mass, device.damping, device.stiffness, context.dt_ms / context.every)
             table[MOVE11:, i] = (*tick, (1.0 - tick[0]) * rest, -tick[2] * rest)
             if steady:
                 table[GAIN1 : PSI + 1, i] = steady_gain(phi, gamma, q, r, printed)

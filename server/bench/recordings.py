@@ -25,10 +25,9 @@ def _concerning(events: Sequence[Event], first: int) -> list[Event]:
     for event in events:
         command = event.command or {}
         if event.kind in ("reset", "restored"):  # what came after the tick gone back to was undone
-            acting = {
-                fault: done for fault, done in acting.items() if done.tick <= event.tick and event.kind != "reset"
-            }
-            since = [done for done in since if done.tick <= event.tick and event.kind != "reset"]
+            last = event.tick if event.kind == "restored" else -1
+            acting = {fault: done for fault, done in acting.items() if done.tick <= last}
+            since = [done for done in since if done.tick <= last]
         elif event.tick >= first:
             since.append(event)
         elif event.kind == "inject":
