@@ -11,7 +11,7 @@ from core import registry
 from core.block import BlockParams
 from core.board import program
 from core.board.commands import Command, Heal, Inject, Set, Switch
-from core.board.document import with_values
+from core.board.document import as_written, with_values
 from core.board.spec import Section, Spec, parse
 from core.board.wiring import Instance, Wiring, engage, wire
 from core.errors import InputError, from_validation, short, unknown
@@ -200,6 +200,15 @@ def _same_fault(first: BlockParams, second: BlockParams) -> bool:
 def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:
     """Return the new bench with old and new values, or refuse what is not tunable while running."""
     new = parse(with_values(spec.document, values))
+    try:
+        _check_live(spec, new)
+    except InputError as error:
+        raise as_written(error, new.document, values) from None
+    return new, {path: _get(spec, path) for path in values}, dict(values)
+
+
+def _check_live(spec: Spec, new: Spec) -> None:
+    """Refuse what is not tunable while running."""
     for field in ("sample_rate_khz", "seed"):
         if getattr(new.frame, field) != getattr(spec.frame, field):
             raise _not_live(field)
@@ -217,7 +226,6 @@ def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], 
             raise _not_live(key)
         for name, section in after.items():
             _check_section(f"{key}.{name}", before[name], section)
-    return new, {path: _get(spec, path) for path in values}, dict(values)
 
 
 def _check_section(path: str, old: Section, new: Section) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
+from collections.abc import Iterable
 from typing import Any
 
 from core import registry
@@ -113,14 +114,26 @@ def _position(part: str, items: list[Any], path: str) -> int:
     return int(part)
 
 
-def as_written(error: InputError, document: Document) -> InputError:
-    """Name a field by the table it was written in, not by the one it was parked in."""
-    if error.field == "drive.kind" and "drive" in document.get("plant", {}):
-        return InputError(error.message, "plant.drive", error.hint, error.code)
-    for one, (all_of_them, _, usual) in PARKED.items():
-        table = document.get(one, {})
-        prefix = f"{all_of_them}.{table.get('kind', usual)}."
-        rest = error.field.removeprefix(prefix)
-        if rest != error.field and rest.split(".")[0] in table:
-            return InputError(error.message, f"{one}.{rest}", error.hint, error.code)
+def written(document: Document) -> list[str]:
+    """Return the paths of a document in tables from which the normal form takes something elsewhere."""
+    return [f"{one}.{name}" for one in ("plant", *PARKED) for name in document.get(one, {})]
+
+
+def as_written(error: InputError, document: Document, paths: Iterable[str]) -> InputError:
+    """Name a field by the path it was written at, not by where the normal form keeps it."""
+    for path in paths:
+        kept = _kept(path, document)
+        if f"{error.field}.".startswith(f"{kept}."):
+            return InputError(error.message, path + error.field.removeprefix(kept), error.hint, error.code)
     return error
+
+
+def _kept(path: str, document: Document) -> str:
+    """Return where the normal form keeps what is written at a path."""
+    if path == "plant.drive":
+        return "drive.kind"
+    one, _, rest = path.partition(".")
+    if one not in PARKED or rest in ("", "kind"):
+        return path
+    all_of_them, _, usual = PARKED[one]
+    return f"{all_of_them}.{document.get(one, {}).get('kind', usual)}.{rest}"

@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field, ValidationError
 
 from core import registry
 from core.block import Block, BlockParams, Context, Oscillator
-from core.board.document import IDENTIFIER, SECTIONS, Document, as_written, normal_form
+from core.board.document import IDENTIFIER, SECTIONS, Document, as_written, normal_form, written
 from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
@@ -133,7 +133,7 @@ def parse(document: Document) -> Spec:
     try:
         return _parse(doc)
     except InputError as error:
-        raise as_written(error, document) from None
+        raise as_written(error, document, written(document)) from None
 
 
 def _parse(doc: Document) -> Spec:
