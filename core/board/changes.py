@@ -28,7 +28,7 @@ def describe(command: Command) -> str:
     if isinstance(command, Inject):
         shape = "" if command.profile.kind == "step" else f", {command.profile.kind}"
         chosen = "".join(f", {name} {short(value)}" for name, value in command.parameters.items())
-        return f"inject {command.fault} {command.severity:+g}{shape}{chosen}"
+        return f"inject {command.fault} {command.severity:+g}{_unit_of(command.fault)}{shape}{chosen}"
     if isinstance(command, Heal):
         return "heal all" if command.faults == "all" else f"heal {', '.join(command.faults)}"
     if isinstance(command, Set):
@@ -36,6 +36,13 @@ def describe(command: Command) -> str:
     if isinstance(command, Switch):
         return f"switch to {command.controller}{' from a cold start' if command.cold else ''}"
     return "reset after the trip"
+
+
+def _unit_of(fault: str) -> str:
+    """Return the unit of a severity, with a space before it; nothing for a share."""
+    block = registry.blocks("faults").get(fault)
+    unit = block.outputs[0].unit if block is not None else "1"
+    return "" if unit == "1" else f" {unit}"
 
 
 def event(command: dict[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from core.board.log import KEPT, Log
 from core.errors import InputError
 from scenarios.run import run
 from scenarios.schema import Scenario
-from tests.lab import RICH, STORY, document, fault, make
+from tests.lab import RICH, STORY, do, document, fault, make
 
 FAST = {"reference.frequency_hz": 2000.0}
 
@@ -47,6 +47,19 @@ def test_what_was_found_is_forgotten_in_time_what_was_done_never(kind):
     found = [entry.tick for entry in log if entry.command is None]
     assert found == list(range(5 * KEPT - len(found), 5 * KEPT)) and len(found) >= KEPT
     assert log.last == 5 * KEPT + len(deeds)
+
+
+@pytest.mark.parametrize(
+    ("command", "text"),
+    [
+        (fault("shock", 50.0), "inject shock +50 g"),
+        (fault("sensor_bias", -0.2), "inject sensor_bias -0.2 um"),
+        (fault("added_mass", 0.05), "inject added_mass +0.05"),
+        (fault("stiction", 3.0, profile={"kind": "ramp", "duration_ms": 1.0}), "inject stiction +3 nN, ramp"),
+    ],
+)
+def test_the_log_says_how_strong_a_fault_is_and_in_what_unit(command, text):
+    assert do(make({}), command).text == text
 
 
 def test_the_order_of_the_log_does_not_depend_on_chunks():
