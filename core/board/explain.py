@@ -76,7 +76,7 @@ def explain(
     """
     block: Any = section.block
     params: Any = section.params
-    context = spec.context(section.every)
+    context = spec.context(spec.turns(section))
     labels = [item.name for item in params.hypotheses]
 
     def read(values: Mapping[str, float], port: str, label: str) -> float:

@@ -184,7 +184,7 @@ def budget(board: Board, board_flops: float, function_flops: float = 20.0) -> Bu
         operations, functions = count(board, name)
         cost = operations + function_flops * functions
         models = max(1, len(getattr(section.params, "hypotheses", ())))
-        rate = 1e3 / (board.dt_ms * section.every)
+        rate = 1e3 / (board.dt_ms * board.spec.turns(section))
         left = max(board_flops - used, 0.0)
         used += cost * rate
         loads.append(

@@ -115,10 +115,11 @@ class Observer:
         _, hz = max((abs(volts), hz) for hz, volts in (*_tones(spec), (0.0, 0.0)))
         for name in self._averaging:
             section = spec.diagnosers.get(name) or spec.identifiers[name]
-            angle = math.pi * 1e-3 * hz * section.every * spec.dt_ms
+            turns = spec.turns(section)
+            angle = math.pi * 1e-3 * hz * turns * spec.dt_ms
             lost = 1.0 - (math.sin(angle) / angle) ** 2 if angle > 0.0 else 0.0
             text = (
-                f"{name} runs every {section.every} ticks and takes their voltages for held at the mean: "
+                f"{name} runs every {turns} ticks and takes their voltages for held at the mean: "
                 f"{100.0 * lost:.2g} % of the drive at {hz:g} Hz are lost to it"
             )
             if lost > MOST_LOST and text not in self._cautions:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -82,6 +83,10 @@ class Spec:
     def seed(self) -> int:
         """Seed of all noise."""
         return self.frame.seed
+
+    def turns(self, section: Section) -> int:
+        """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
+        return math.lcm(section.every, self.sensors[self.measuring].every)
 
     def context(self, every: int = 1) -> Context:
         """Return what a block that runs every so many ticks may know."""

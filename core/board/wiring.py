@@ -99,6 +99,9 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     def own(key: str, section: Any) -> Instance:
         return Instance(key, key, section.block, section.params, section.every)
 
+    def waiting(key: str, section: Any) -> Instance:
+        return Instance(key, key, section.block, section.params, spec.turns(section))
+
     order = [own("plant", spec.plant), own("environment", spec.environment)]
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
     for name, block in registry.blocks("faults").items():
@@ -107,11 +110,11 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     for recovers in (False, True):
         order += [own(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers]
     order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
-    order += [own(name, section) for name, section in spec.identifiers.items()]
+    order += [waiting(name, section) for name, section in spec.identifiers.items()]
     for name, section in spec.diagnosers.items():
-        order.append(own(name, section))
+        order.append(waiting(name, section))
         if scored(section.block):
-            order.append(Instance(f"{name}.score", name, Score, _scored(section.params), section.every))
+            order.append(Instance(f"{name}.score", name, Score, _scored(section.params), spec.turns(section)))
     order += [own("reference", spec.reference), own("model", spec.model)]
     order += [own(name, section) for name, section in spec.controllers.items()]
     order += [own("drive", spec.drive), own("guard", spec.guard)]

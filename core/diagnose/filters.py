@@ -8,10 +8,10 @@ from typing import Any
 from core.block import TICK, inlined, kernel, settled
 from core.diagnose.lanes import LANE
 
-COUNT, PROCESS, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(10)
+COUNT, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(9)
 """Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
-PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, GAIN1, GAIN2, PSI, INVERSE_PSI = range(10)
-MOVE11, MOVE12, MOVE21, MOVE22, PUSH1, PUSH2, WIDTH = range(10, 17)
+PHI11, PHI12, PHI21, PHI22, NOISE11, NOISE12, NOISE22, GAIN1, GAIN2, PSI, INVERSE_PSI = range(11)
+MOVE11, MOVE12, MOVE21, MOVE22, PUSH1, PUSH2, WIDTH = range(11, 18)
 """Lanes of the parameters: over the interval of the bank, then transition and effect of a volt over one tick."""
 STARTED, LAST_CHARGE, LEVEL, OWN = range(4)
 """State of every bank; the lanes of the filters follow, then a bank's own."""
@@ -89,9 +89,11 @@ def informed(p: Any, s: Any, w: Any, io: Any) -> bool:
 def filter_step(p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool) -> int:
     r"""Predict one filter, unless this is its first sample; correct it, if there is a measurement.
 
-    .. math:: x^-=\Phi x+\Gamma u,\quad P^-=\Phi P\Phi^T+\Gamma Q\Gamma^T
+    .. math:: x^-=\Phi x+\Gamma u,\quad P^-=\Phi P\Phi^T+W
 
     .. math:: r=z-Hx^-,\quad\psi=HP^-H^T+R,\quad K=P^-H^T/\psi,\quad x=x^-+Kr,\quad P=(I-KH)P^-
+
+    with W what the pseudo-noise of the ticks since the last sample has become by now.
 
     What is decided is the same for all filters, so it chooses between values and not between ways: a loop of this
     stays one of vectors. Returns 1 if the residual covariance has changed, so that its logarithm is no longer right.
@@ -106,16 +108,13 @@ def filter_step(p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bo
     f12 = p[a + PHI12 * lane]
     f21 = p[a + PHI21 * lane]
     f22 = p[a + PHI22 * lane]
-    g1 = p[a + GAMMA1 * lane]
-    g2 = p[a + GAMMA2 * lane]
     q1 = f11 * c11 + f12 * c12
     q2 = f11 * c12 + f12 * c22
     q3 = f21 * c11 + f22 * c12
     q4 = f21 * c12 + f22 * c22
-    noise = g1 * p[PROCESS]
-    c11 = c11 if first else q1 * f11 + q2 * f12 + g1 * noise
-    c12 = c12 if first else q1 * f21 + q2 * f22 + g2 * noise
-    c22 = c22 if first else q3 * f21 + q4 * f22 + g2 * g2 * p[PROCESS]
+    c11 = c11 if first else q1 * f11 + q2 * f12 + p[a + NOISE11 * lane]
+    c12 = c12 if first else q1 * f21 + q2 * f22 + p[a + NOISE12 * lane]
+    c22 = c22 if first else q3 * f21 + q4 * f22 + p[a + NOISE22 * lane]
     total = c11 + p[SENSOR]
     # the text prints psi without R, and without assumed noise that would end at nothing
     psi = max(c11, LEAST * p[SENSOR]) if printed else total

@@ -8,9 +8,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, BlockParams, Context, Oscillator, Port, parameter
+from core.block import Block, BlockParams, Context, FloatArray, Oscillator, Port, parameter
 from core.device.oscillator import transition
-from core.diagnose.filters import DEPTH, GAIN1, INVERSE_PSI, LEAST, MOVE11, OWN, P11, P22, PSI, WIDTH
+from core.diagnose.filters import DEPTH, GAIN1, INVERSE_PSI, LEAST, MOVE11, NOISE22, OWN, P11, P22, PSI, WIDTH
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
 from core.diagnose.lanes import lanes
 
@@ -95,21 +95,17 @@ class KalmanBank(Block):
         printed = getattr(params, "residual_covariance", "") == "printed"
         for i, hypothesis in enumerate(hypotheses):
             device = hypothesis.oscillator(context.device)
-            phi = transition(device.mass, device.damping, device.stiffness, context.dt_ms)
-            rest = device.static_gain
-            gamma = ((1.0 - phi[0]) * rest, -phi[2] * rest)
-            table[:6, i] = (*phi, *gamma)
-            tick = phi
-            if context.every > 1:
-                tick = transition(device.mass, device.damping, device.stiffness, context.dt_ms / context.every)
-            table[MOVE11:, i] = (*tick, (1.0 - tick[0]) * rest, -tick[2] * rest)
+            tick = transition(device.mass, device.damping, device.stiffness, context.dt_ms / context.every)
+            push = ((1.0 - tick[0]) * device.static_gain, -tick[2] * device.static_gain)
+            phi, noise = over_ticks(tick, push, q, context.every)
+            table[: NOISE22 + 1, i] = (*phi.flat, noise[0, 0], noise[0, 1], noise[1, 1])
+            table[MOVE11:, i] = (*tick, *push)
             if steady:
-                table[GAIN1 : PSI + 1, i] = steady_gain(phi, gamma, q, r, printed)
+                table[GAIN1 : PSI + 1, i] = steady_gain(phi, noise, r, printed)
                 table[INVERSE_PSI, i] = 1.0 / table[PSI, i]
         memory = memory_ms(context)
         head = [
             len(hypotheses),
-            q,
             r,
             steady,
             printed,
@@ -143,13 +139,52 @@ def memory_ms(context: Context) -> float:
     return max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
 
 
-def steady_gain(
-    phi: tuple[float, float, float, float], gamma: tuple[float, float], q: float, r: float, printed: bool
-) -> tuple[float, float, float]:
-    """Return the filter gain and residual covariance in the limit."""
-    transition_matrix = np.array(phi).reshape(2, 2)
+def over_ticks(
+    tick: tuple[float, float, float, float], push: tuple[float, float], q: float, ticks: int
+) -> tuple[FloatArray, FloatArray]:
+    r"""Return the transition over some ticks, and the covariance that voltage noise leaves behind them.
+
+    .. math:: \Phi=\varphi^N,\qquad W=\sum_{j=0}^{N-1}\varphi^j\gamma q\gamma^T(\varphi^T)^j
+
+    The noise is another at every tick; one held for all of them would be :math:`\Gamma q\Gamma^T`, far more. The sum
+    over twice as many ticks is :math:`W+\Phi W\Phi^T`.
+
+    Parameters
+    ----------
+    tick : tuple of float
+        Transition of a tick, row by row.
+    push : tuple of float
+        What a volt held over a tick does to displacement (um) and velocity (um/ms).
+    q : float
+        Variance of the noise, V^2.
+    ticks : int
+        N.
+    """
+    phi, doubled = np.eye(2), np.array(tick).reshape(2, 2)
+    total, noise = np.zeros((2, 2)), np.outer(push, push) * q
+    while ticks:
+        if ticks % 2:
+            total = noise + doubled @ total @ doubled.T
+            phi = doubled @ phi
+        noise = noise + doubled @ noise @ doubled.T
+        doubled = doubled @ doubled
+        ticks //= 2
+    return phi, total
+
+
+def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> tuple[float, float, float]:
+    """Return the filter gain and residual covariance in the limit.
+
+    Parameters
+    ----------
+    phi, noise : array of shape (2, 2)
+        Transition between two samples, and the covariance of what noise does meanwhile.
+    r : float
+        Variance of a measurement, um^2.
+    printed : bool
+        Leave R out of the residual covariance, as the text does.
+    """
     # a little noise on both states keeps the Riccati equation solvable when none is assumed
-    noise = np.outer(gamma, gamma) * q + np.eye(2) * 1e-18
-    prior = solve_discrete_are(transition_matrix.T, np.array([[1.0], [0.0]]), noise, np.array([[r]]))
+    prior = solve_discrete_are(phi.T, np.array([[1.0], [0.0]]), noise + np.eye(2) * 1e-18, np.array([[r]]))
     psi = prior[0, 0] + r
     return prior[0, 0] / psi, prior[1, 0] / psi, max(prior[0, 0], LEAST * r) if printed else psi

@@ -75,7 +75,7 @@ async def get_aliases(session: SessionDep, name: Name, body: AliasSource) -> Ali
 def _aliases(session: Session, name: str, body: AliasSource) -> AliasReport:
     spec, section = found(session, name)
     hypotheses = body.hypotheses or hypotheses_of(section)
-    context = spec.context(section.every)
+    context = spec.context(spec.turns(section))
     tones = [(tone.frequency_hz, tone.amplitude_v) for tone in body.tones] if body.tones else tones_of(spec)
     if not tones:
         raise InputError("the reference has no tone of its own", "tones", "give the tones to look at")

@@ -38,7 +38,8 @@ def explain_sample(
         raise InputError(
             f"is not kept; the history has {first} to {end - 1}" if end > first else "nothing is kept", "tick"
         )
-    at = asked - asked % section.every
+    turns = spec.turns(section)
+    at = asked - asked % turns
 
     def read(one: int) -> dict[str, float]:
         if one < first:
@@ -48,7 +49,7 @@ def explain_sample(
             raise InputError(f"what {name} thought at tick {one} was not kept", "tick")
         return dict(zip(signals, map(float, values), strict=True))
 
-    return explain(spec, section, at, read(at - section.every) if at > 0 else None, read(at))
+    return explain(spec, section, at, read(at - turns) if at > 0 else None, read(at))
 
 
 @router.get("/aliases")

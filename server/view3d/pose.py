@@ -208,10 +208,11 @@ def combs_of(shift_um: float, turn: float, tip_um: float, plant: Any) -> tuple[f
 def _bank(session: Session) -> tuple[str, ...]:
     """Return the winner and the residuals of the first bank that runs at every sample, if there is one."""
     known = {signal.name for signal in session.signals}
-    for name, section in session.board.spec.diagnosers.items():
+    spec = session.board.spec
+    for name, section in spec.diagnosers.items():
         hypotheses = [item.name for item in getattr(section.params, "hypotheses", ())]
         signals = (f"{name}.winner", *(f"{name}.residual.{item}" for item in hypotheses))
-        if section.every == 1 and hypotheses and known.issuperset(signals):
+        if spec.turns(section) == 1 and hypotheses and known.issuperset(signals):
             return signals
     return ()
 

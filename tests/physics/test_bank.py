@@ -13,7 +13,7 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.seeds import run_seeds
-from tests.lab import inject, make, phasor, play
+from tests.lab import do, inject, make, phasor, play
 from tests.physics.bank import BENCH, BETA, FACTORS, FORCE, NAMES, K, M, model, of_bank, signals
 
 Factors = dict[str, tuple[float, float, float]]
@@ -232,12 +232,34 @@ def test_a_bank_that_runs_now_and_then_follows_the_voltage_of_every_tick(kind, e
     assert np.max(np.abs(trace[f"slow.residual.{name}"])) < 1e-9
 
 
+@pytest.mark.parametrize("sensor_every", [2, 3])
+@pytest.mark.parametrize("seed", [1, 104])
+def test_a_bank_waits_for_a_slower_sensor(sensor_every, seed):
+    """What was measured before is no new evidence; taken for it, a bank is right a fifth of the time."""
+    metrics = run(with_values(get("ch5-seven-step"), {"sensor.every": sensor_every}), seed=seed).metrics
+    assert metrics["diagnosis.kalman.correct_fraction"] > 0.97
+    assert metrics["diagnosis.kalman.nis"] == pytest.approx(1.0, abs=0.2)
+
+
+def test_a_bank_follows_a_change_to_a_slower_sensor():
+    sensors = {"sensor": {"kind": "ideal"}, "sensors": {"ideal": {"noise_um": 0.05}, "capacitive": {"every": 4}}}
+    board = make({**BENCH, **sensors, "device": {"id": "lcr-350"}})
+    play(board, 200)
+    do(board, {"kind": "set", "values": {"sensor.kind": "capacitive"}})
+    residual = play(board, 200)["kalman.residual.healthy"]
+    assert np.all(np.flatnonzero(np.diff(residual)) % 4 == 3)
+    do(board, {"kind": "set", "values": {"sensor.kind": "ideal"}})
+    assert np.count_nonzero(np.diff(play(board, 200)["kalman.residual.healthy"])) == 199
+
+
 @pytest.mark.parametrize(
-    ("kind", "every", "is_told"), [("self_tuning", 1, False), ("self_tuning", 4, True), ("mmae", 4, False)]
+    ("kind", "every", "sensor_every", "is_told"),
+    [("self_tuning", 1, 1, False), ("self_tuning", 4, 1, True), ("self_tuning", 1, 4, True), ("mmae", 4, 4, False)],
 )
-def test_what_takes_the_voltage_for_held_at_its_mean_is_told_of(kind, every, is_told):
+def test_what_takes_the_voltage_for_held_at_its_mean_is_told_of(kind, every, sensor_every, is_told):
     """A staircase of means over 80 us is 1 - (sin x / x)^2 = 8.1 % short of a sine of 2 kHz, x = 0.503."""
-    board = make({**BENCH, "diagnosers": {"slow": {"kind": kind, "every": every}}})
+    sensor = {"kind": "ideal", "noise_um": 0.05, "every": sensor_every}
+    board = make({**BENCH, "sensor": sensor, "diagnosers": {"slow": {"kind": kind, "every": every}}})
     play(board, 600)
     told = [entry.text for entry in board.log if entry.kind == "warning" and entry.text.startswith("slow runs")]
     assert len(told) == is_told

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.linalg import solve_discrete_are
 
 from core.diagnose.kalman import steady_gain
+from tests.lab import make, play
 from tests.physics.bank import FACTORS, NAMES, K, M, model, of_bank, signals
 
 
 def test_steady_gain_has_the_figures_of_the_riccati_equation():
     phi, gamma = model(FACTORS["healthy"])
     q, r = 0.3**2, 0.05**2
-    k1, k2, psi = steady_gain(tuple(phi.ravel()), tuple(gamma[:, 0]), q, r, False)
+    k1, k2, psi = steady_gain(phi, gamma @ gamma.T * q, r, False)
     assert k1 == pytest.approx(0.1434, rel=0.01)
     assert k2 == pytest.approx(0.5540, rel=0.01)
     assert psi / r == pytest.approx(1.167, rel=0.01)
@@ -47,6 +50,47 @@ def test_filter_step_by_step_against_filterpy(name):
         kalman.update(z)
         assert found[i] == pytest.approx(kalman.y[0, 0], abs=1e-12)
         assert covariance[i] == pytest.approx(kalman.y[0, 0] ** 2 / kalman.S[0, 0], rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("form", ["recursive", "steady"])
+@pytest.mark.parametrize(("every", "sensor_every"), [(2, 1), (5, 1), (1, 2), (2, 3)])
+def test_between_two_measurements_a_filter_predicts_tick_by_tick(every, sensor_every, form):
+    """The same as a filter at every tick that is given no measurement but at its turns, and then a new one."""
+    turn = math.lcm(every, sensor_every)
+    bank = {"kind": "mmae", "process_noise_v": 0.3, "every": every, "form": form}
+    values = {"sensor": {"kind": "ideal", "noise_um": 0.05, "every": sensor_every}, "diagnosers": {"kalman": bank}}
+    trace = signals(1500, values, {"stiffness": 0.05})
+    for name in NAMES:
+        phi, gamma = model(FACTORS[name])
+        x, p = np.zeros(2), np.diag([1.0, K / M * 1e-6])
+        expected = []
+        for i, z in enumerate(trace["sensor.displacement"]):
+            if i:
+                x = phi @ x + gamma[:, 0] * trace["drive.voltage"][i - 1]
+                p = phi @ p @ phi.T + gamma @ gamma.T * 0.09
+            if i % turn == 0:
+                residual, psi = z - x[0], p[0, 0] + 0.0025
+                expected.append((residual, residual**2 / psi))
+                x, p = x + p[:, 0] / psi * residual, p - np.outer(p[:, 0], p[0]) / psi
+        found = np.column_stack([trace[f"kalman.{what}.{name}"][::turn] for what in ("residual", "nis")])
+        settled = 0 if form == "recursive" else 1000 // turn
+        np.testing.assert_allclose(found[settled:], expected[settled:], rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("every", [1, 2, 5])
+@pytest.mark.parametrize(("device", "rate_khz"), [("ch3", 50), ("fabricated-1", 120)])
+def test_noise_of_the_voltage_as_assumed_is_as_large_as_expected(device, rate_khz, every):
+    """Squared residuals over their covariance are 1 on average, however often the bank corrects."""
+    document = {
+        "sample_rate_khz": rate_khz,
+        "device": {"id": device},
+        "plant": {"model": "linear", "drive_noise_v": 0.5, "thermal_noise": False},
+        "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 800.0},
+        "sensor": {"kind": "ideal", "noise_um": 0.01},
+        "diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 0.5, "every": every}},
+    }
+    nis = play(make(document), 20_000)["kalman.nis.healthy"][1000::every]
+    assert nis.mean() == pytest.approx(1.0, abs=5.0 * math.sqrt(2.0 / len(nis)))
 
 
 def test_steady_form_is_the_filter_with_the_limit_gain():
