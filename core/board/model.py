@@ -7,6 +7,7 @@ from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
+from scipy.linalg import expm
 
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.device.oscillator import held, transition
@@ -15,40 +16,53 @@ from core.device.transfer_function import of_coefficients
 from core.errors import InputError
 
 PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT, REACH, PUSH, ZEROTH, FIRST, SLOPE_X, SLOPE_V, SLOPE_IN, DT = range(14)
-X, V, HELD, STARTED = range(4)
+RISE_X, RISE_V, BEND_X, BEND_V = range(14, 18)
+X, V, START, MIDDLE, END, STARTED = range(6)
+REFERENCE, HALFWAY, AFTERWARDS, DISPLACEMENT, VELOCITY = range(5)
 
 
 def model_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Advance the model over the interval that ends now."""
     if p[DIRECT] != 0.0:
-        w[io[3]] = (p[STATIC] * w[io[0]] - w[io[2]]) / p[DT] if s[STARTED] != 0.0 else 0.0
-        w[io[2]] = p[STATIC] * w[io[0]]
+        before = w[io[DISPLACEMENT]]
+        w[io[DISPLACEMENT]] = p[STATIC] * w[io[REFERENCE]]
+        w[io[VELOCITY]] = (w[io[DISPLACEMENT]] - before) / p[DT] if s[STARTED] != 0.0 else 0.0
         s[STARTED] = 1.0
         return
     if s[STARTED] != 0.0:
-        rest = p[STATIC] * s[HELD]
+        # an analogue reference is a parabola through the start, middle and end of the interval, a held one level
+        half = s[MIDDLE] - s[START]
+        whole = s[END] - s[START]
+        rise = (4.0 * half - whole) / p[DT]
+        bend = 4.0 * (whole - 2.0 * half) / (p[DT] * p[DT])
+        rest = p[STATIC] * s[START]
         x = s[X] - rest
         v = s[V]
-        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest + p[REACH] * s[HELD])
-        s[V] = settled(p[PHI21] * x + p[PHI22] * v + p[PUSH] * s[HELD])
+        more_x = p[RISE_X] * rise + p[BEND_X] * bend
+        more_v = p[RISE_V] * rise + p[BEND_V] * bend
+        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest + p[REACH] * s[START] + more_x)
+        s[V] = settled(p[PHI21] * x + p[PHI22] * v + p[PUSH] * s[START] + more_v)
     s[STARTED] = 1.0
-    # half a sample later is the mean of an analogue drive, and the same as now for a held one
-    s[HELD] = w[io[1]]
-    w[io[2]] = p[ZEROTH] * s[X] + p[FIRST] * s[V]
-    w[io[3]] = p[SLOPE_X] * s[X] + p[SLOPE_V] * s[V] + p[SLOPE_IN] * s[HELD]
+    s[START] = w[io[REFERENCE]]
+    s[MIDDLE] = w[io[HALFWAY]]
+    s[END] = w[io[AFTERWARDS]]
+    w[io[DISPLACEMENT]] = p[ZEROTH] * s[X] + p[FIRST] * s[V]
+    w[io[VELOCITY]] = p[SLOPE_X] * s[X] + p[SLOPE_V] * s[V] + p[SLOPE_IN] * s[START]
 
 
 class Model(Block):
     r"""Reference model, :math:`\ddot y_m+a_{m1}\dot y_m+a_{m2}y_m=k_mr`.
 
     Or any :math:`\frac{b_1s+b_0}{a_2s^2+a_1s+a_0}` in the unit of time of a plant given as a transfer function
-    (:math:`1/\omega_0` of a resonator).
+    (:math:`1/\omega_0` of a resonator). Exact for a held reference; an analogue one is a parabola over each sample, as
+    it is to the plant.
     """
 
     title = "Reference model"
     inputs = (
         Port("reference", "V", "reference voltage", source="reference.voltage"),
         Port("middle", "V", "reference half a sample later", source="reference.middle"),
+        Port("end", "V", "reference one sample later", source="reference.end"),
     )
     outputs = (Port("displacement", "um", "where the shuttle should be"),)
     taps = (Port("velocity", "um/ms", "how fast it should move"),)
@@ -120,7 +134,8 @@ class Model(Block):
         if resonator or params.kind == "direct":
             phi = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
             plain = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0)
-            return np.array([*phi, model.static_gain, float(params.kind == "direct"), *plain, context.dt_ms])
+            more = _parabola(model, model.force, context)
+            return np.array([*phi, model.static_gain, float(params.kind == "direct"), *plain, context.dt_ms, *more])
         *free, reach, push = held(model.mass, model.damping, model.stiffness, context.dt_ms)
         gain, unit = model.force, 1.0 / context.device.natural_frequency
         first, zeroth = 0.0, 1.0
@@ -138,11 +153,28 @@ class Model(Block):
                 zeroth - first * model.damping * inverse,
                 first * gain * inverse,
             )
-        return np.array([*free, 0.0, 0.0, gain * reach, gain * push, zeroth, first, *slope, context.dt_ms])
+        more = _parabola(model, gain, context)
+        return np.array([*free, 0.0, 0.0, gain * reach, gain * push, zeroth, first, *slope, context.dt_ms, *more])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
-        """Displacement, velocity, held reference, whether it has run."""
-        return np.zeros(4)
+        """Displacement, velocity, reference over the sample that begins, whether it has run."""
+        return np.zeros(6)
 
     step = model_step
+
+
+def _parabola(model: Oscillator, gain: float, context: Context) -> tuple[float, float, float, float]:
+    r"""Return what displacement and velocity gain over a sample by :math:`\dot r` and by :math:`\ddot r`; 0 when held.
+
+    From the matrix exponential of the model with r and its two derivatives as further states.
+    """
+    if not context.analogue:
+        return 0.0, 0.0, 0.0, 0.0
+    a = np.diag([1.0, 0.0, 1.0, 1.0], 1)
+    if model.mass > 0.0:
+        a[1, :3] = np.array([-model.stiffness, -model.damping, gain]) / model.mass
+    else:
+        a[0, :3] = np.array([-model.stiffness, 0.0, gain]) / model.damping
+    found = expm(a * context.dt_ms)
+    return found[0, 3], found[1, 3], found[0, 4], found[1, 4]

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray, IntArray, kernel
+from core.block import Block, FloatArray, IntArray, kernel
 from core.board.spec import Spec
-from core.board.wiring import Instance, Wiring, scored
+from core.board.wiring import Wiring, scored
 from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
 from core.diagnose.regions import REGIONS
 
 Finding = dict[str, Any]
 MOST_LOST = 1e-3
-"""Share of the amplitude of the reference that a block may lose unsaid by taking the voltage for held at its mean."""
+"""Share of the amplitude of the reference that a block may lose unsaid by taking the voltage for held."""
 
 
 @kernel
@@ -71,7 +71,6 @@ class Observer:
         self._columns = np.array(sorted(start), dtype=np.int64)
         self._last = np.array([start[column] for column in self._columns.tolist()])
         self._found = np.zeros((64, 2), dtype=np.int64)
-        self._averaging = [instance.key for instance in wiring.instances if _averages(instance)]
         self._cautioned: Spec | None = None
         self._cautions: set[str] = set()
 
@@ -104,24 +103,29 @@ class Observer:
         return sorted(found, key=lambda finding: int(finding["tick"]))
 
     def _caution(self, spec: Spec, tick: int) -> list[Finding]:
-        r"""Warn, once for each, of what takes the voltage between its runs for held though the reference moves.
+        r"""Warn, once for each, of what takes the voltage for held though it moves.
 
-        A staircase of means over T has :math:`(\sin x/x)^2,\;x=\omega T/2`, of the amplitude of a sine.
+        A staircase of means over T has :math:`(\sin x/x)^2,\;x=\omega T/2`, of the amplitude of a sine; one of the
+        values in the middle of every tick, taken for an analogue drive, has :math:`\sin x/x`.
         """
         if spec is self._cautioned:
             return []
         self._cautioned = spec
         found: list[Finding] = []
         _, hz = max((abs(volts), hz) for hz, volts in (*_tones(spec), (0.0, 0.0)))
-        for name in self._averaging:
-            section = spec.diagnosers.get(name) or spec.identifiers[name]
-            turns = spec.turns(section)
-            angle = math.pi * 1e-3 * hz * turns * spec.dt_ms
-            lost = 1.0 - (math.sin(angle) / angle) ** 2 if angle > 0.0 else 0.0
-            text = (
-                f"{name} runs every {turns} ticks and takes their voltages for held at the mean: "
-                f"{100.0 * lost:.2g} % of the drive at {hz:g} Hz are lost to it"
-            )
+        analogue = spec.context().analogue
+        for name, section in {**spec.identifiers, **spec.diagnosers}.items():
+            if not _holds(section.block):
+                continue
+            ticks = 1 if section.block.every_tick else spec.turns(section)
+            angle = math.pi * 1e-3 * hz * ticks * spec.dt_ms
+            kept = math.sin(angle) / angle if angle > 0.0 and (ticks > 1 or analogue) else 1.0
+            what = "takes an analogue drive for held over a tick"
+            if ticks > 1:
+                kept *= kept
+                what = f"runs every {ticks} ticks and takes their voltages for held at the mean"
+            lost = 1.0 - kept
+            text = f"{name} {what}: {100.0 * lost:.2g} % of the drive at {hz:g} Hz are lost to it"
             if lost > MOST_LOST and text not in self._cautions:
                 self._cautions.add(text)
                 found.append({"kind": "warning", "text": text, "tick": tick})
@@ -177,10 +181,9 @@ class Observer:
         return f"{VERDICTS[value]}: {', '.join(left)}{aliases}"
 
 
-def _averages(instance: Instance) -> bool:
-    """Say whether a block is given the mean voltage of the ticks between two of its runs."""
-    reads = any(port.source == "drive.charge" for port in instance.block.inputs)
-    return reads and instance.every > 1 and not instance.block.every_tick
+def _holds(block: type[Block]) -> bool:
+    """Say whether a block models the device under a voltage that it takes for held."""
+    return any(port.source == "drive.charge" for port in block.inputs)
 
 
 def _tones(spec: Spec) -> list[tuple[float, float]]:

@@ -264,3 +264,14 @@ def test_what_takes_the_voltage_for_held_at_its_mean_is_told_of(kind, every, sen
     told = [entry.text for entry in board.log if entry.kind == "warning" and entry.text.startswith("slow runs")]
     assert len(told) == is_told
     assert all("8.1 % of the drive at 2000 Hz" in text for text in told)
+
+
+@pytest.mark.parametrize(("rate_khz", "lost"), [(500, None), (20, "1.6 %"), (10, "6.5 %")])
+def test_a_bank_that_takes_an_analogue_drive_for_held_is_told_of(rate_khz, lost):
+    """The middle of every tick is 1 - sin x / x short of a sine of 2 kHz, x = 0.314 and 0.628."""
+    plant = {"model": "linear", "drive": "analogue"}
+    board = make({**BENCH, "sample_rate_khz": rate_khz, "plant": plant})
+    play(board, 100)
+    told = [entry.text for entry in board.log if entry.kind == "warning" and entry.text.startswith("kalman takes")]
+    assert len(told) == (lost is not None)
+    assert all(f": {lost} of the drive at 2000 Hz" in text for text in told)
