@@ -13,14 +13,14 @@ import numpy as np
 from core.block import Block, Context, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
 from core.diagnose.hypothesis import BankParams, assumed_noise, lacking
-from core.diagnose.kalman import gaussian
+from core.diagnose.kalman import gaussian, memory_ms
 
-COUNT, EVERY, FILTER1, FILTER2, LANES = range(5)
+COUNT, EVERY, FILTER1, FILTER2, MEMORY, LEAST_DRIVE, LANES = range(7)
 """Packed parameters of every bank; the lanes of the hypotheses follow, then a bank's own."""
 THETA, VARIANCE, HALF_LOG, WIDTH = 0, 4, 5, 6
 """Lanes of the parameters: the four coefficients, the variance of the equation error, half its logarithm."""
-LAST_CHARGE, U1, U2, Z1, Z2, OWN = range(6)
-"""State of every bank: the charge, and the two samples before of voltage and measurement, behind the filter."""
+LAST_CHARGE, LEVEL, U1, U2, Z1, Z2, OWN = range(7)
+"""State of every bank: charge, mean square of the voltage, and two samples of it and of the measurement, filtered."""
 MEASURED, MIDDLE, CHARGE, PROBABILITY, RESIDUAL_TAP, NIS_TAP = range(6)
 """Ports of every bank."""
 SIZE = 4
@@ -44,6 +44,7 @@ def regress(p: Any, s: Any, w: Any, io: Any, h: int) -> float:
     z = w[io[MEASURED]]
     u = w[io[MIDDLE]] if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
     s[LAST_CHARGE] = w[io[CHARGE]]
+    s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * u * u)
     a1 = p[FILTER1]
     a2 = p[FILTER2]
     if not math.isfinite(z):
@@ -78,12 +79,20 @@ def unexplained(s: Any, z: float, h: int, theta: int) -> float:
 
 
 @kernel
+def driven(p: Any, s: Any) -> bool:
+    """Say whether there is drive enough for residuals to be evidence; without it the quietest equation would win."""
+    return bool(s[LEVEL] >= p[LEAST_DRIVE])
+
+
+@kernel
 def judge(p: Any, s: Any, w: Any, io: Any, log: int, i: int, n: int, residual: float) -> float:
     """Show the residual of hypothesis i; write and return the logarithm it leaves it with, from that at ``log``."""
     nis = residual * residual / p[LANES + VARIANCE * n + i]
     w[io[RESIDUAL_TAP] + i] = residual
     w[io[NIS_TAP] + i] = nis
-    left = s[log + i] - 0.5 * nis - p[LANES + HALF_LOG * n + i]
+    left = s[log + i]
+    if driven(p, s):
+        left = left - 0.5 * nis - p[LANES + HALF_LOG * n + i]
     s[log + n + i] = left
     return float(left)
 
@@ -95,6 +104,9 @@ class ArxParams(BankParams):
         None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
     )
     assumed_noise_scale: float = parameter(1.0, "factor on the assumed variance", gt=0, le=1e4)
+    least_drive_v: float = parameter(
+        1e-3, "drive (rms over the shuttle's own memory) below which residuals are no evidence", "V", ge=0, le=100
+    )
 
 
 class ArxBank(Block):
@@ -146,5 +158,12 @@ class ArxBank(Block):
             theta = coefficients(hypothesis.oscillator(context.device), context.dt_ms)
             error = variance if filtered else variance * (1.0 + theta[2] ** 2 + theta[3] ** 2)
             lanes[:, i] = (*theta, error, 0.5 * math.log(error))
-        head = [len(params.hypotheses), context.every, *(nominal[2:] if filtered else (0.0, 0.0))]
+        memory = math.exp(-context.dt_ms / memory_ms(context))
+        head = [
+            len(params.hypotheses),
+            context.every,
+            *(nominal[2:] if filtered else (0.0, 0.0)),
+            memory,
+            params.least_drive_v**2,
+        ]
         return [*map(float, head), *lanes.ravel().tolist()]

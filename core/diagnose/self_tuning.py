@@ -9,7 +9,20 @@ import numpy as np
 
 from core import estimation
 from core.block import Context, Equation, FloatArray, Port, kernel, parameter, settled
-from core.diagnose.arx import COUNT, LANES, OWN, PROBABILITY, SIZE, VARIANCE, WIDTH, ArxBank, ArxParams, regress, said
+from core.diagnose.arx import (
+    COUNT,
+    LANES,
+    OWN,
+    PROBABILITY,
+    SIZE,
+    VARIANCE,
+    WIDTH,
+    ArxBank,
+    ArxParams,
+    driven,
+    regress,
+    said,
+)
 from core.diagnose.weights import share_out
 
 FORGETTING, MODE, STEP, GATE, LEAST, WINDOW, LIMIT, NOISE = range(8)
@@ -76,9 +89,12 @@ def self_tuning_step(p: Any, s: Any, w: Any, io: Any) -> None:
     s[LAMBDA] = forgetting
     estimation.least_squares(s, THETA, COVARIANCE, H, PRODUCT, SIZE, innovation, forgetting, forgetting, p[own + LIMIT])
     best = -math.inf
+    evidence = driven(p, s)
     for i in range(n):
         error = z - said(p, s, H, i, n)
-        cost = settled(forgetting * s[COST + i] + error * error)
+        cost = s[COST + i]
+        if evidence:
+            cost = settled(forgetting * cost + error * error)
         s[COST + i] = cost
         log = -0.5 * cost / p[own + NOISE]
         s[COST + n + i] = log

@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lfilter
 
 from core.diagnose import self_tuning
-from tests.lab import inject, make, play
+from tests.lab import do, inject, make, play
 from tests.physics.bank import BENCH, FACTORS, NAMES, model, of_bank
 from tests.physics.seeds import HELD_OUT, seven_steps
 
@@ -225,3 +225,19 @@ def test_the_other_readings_do_not_show_the_pattern():
         assert found[f"record{factor}"].correct == pytest.approx(0.992, abs=0.005)
         assert found[f"free{factor}"].correct <= 0.5
         assert found[f"winner{factor}"].correct <= 0.6
+
+
+@pytest.mark.parametrize("kind", ["self_tuning", "arx_bank", "anchored", "reference_banks", "free_banks"])
+def test_without_a_drive_nothing_is_evidence(kind):
+    """At rest every equation explains nothing, and the one of the least variance would win."""
+    values = {"sample_rate_khz": 20, "diagnosers": {"kalman": {"kind": kind}}}
+    board = make({**BENCH, **values, "reference.amplitude_v": 0.0})
+    quiet = of_bank(play(board, 2000), "probability")
+    np.testing.assert_allclose(quiet, 1.0 / 6.0)
+    do(board, {"kind": "set", "values": {"reference.amplitude_v": 10.0}})
+    driven = of_bank(play(board, 1000), "probability")
+    do(board, {"kind": "set", "values": {"reference.amplitude_v": 0.0}})
+    play(board, 600)  # 30 ms, some 50 times what the shuttle remembers
+    still = of_bank(play(board, 2000), "probability")
+    assert np.abs(driven - 1.0 / 6.0).max() > 0.1
+    np.testing.assert_array_equal(still, still[:1].repeat(2000, axis=0))
