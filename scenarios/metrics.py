@@ -46,7 +46,8 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
 
     The settling time is the last moment the error left the band of 2 % of the model's amplitude, counted from
     ``metrics.since_ms``; effort is the ratio of the fundamental of the applied
-    voltage to that of the reference in the tail, the displacement ratio the same of shuttle and model.
+    voltage to that of the reference in the tail, the displacement ratio the same of shuttle and model. The overshoot
+    is that over the last step of a reference that is constant in the tail, as a share of what the model moves by.
     """
     dt = board.dt_ms
     x, model = trace["plant.displacement"], trace["model.displacement"]
@@ -63,10 +64,12 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
         "control.settling_ms": settling,
         "control.effort_rms_v": _rms(u[tail]),
     }
-    final = float(np.mean(model[tail]))
-    if abs(final) > 1e-9 and np.ptp(r) == 0.0:
-        peak = float(np.max(x * math.copysign(1.0, final)))
-        found["control.overshoot_pct"] = 100.0 * (peak / abs(final) - 1.0)
+    step = int(np.max(np.flatnonzero(np.diff(r)), initial=-1)) + 1
+    before = float(model[step - 1]) if step else 0.0
+    rise = float(np.mean(model[tail])) - before
+    if abs(rise) > 1e-9 and np.ptp(r[tail]) == 0.0:
+        peak = float(np.max((x[step:] - before) * math.copysign(1.0, rise)))
+        found["control.overshoot_pct"] = 100.0 * (peak / abs(rise) - 1.0)
     if (peak_of := first_peak(x, model)) is not None:
         found["control.first_peak_pct"] = peak_of
     frequency = getattr(board.spec.reference.params, "frequency_hz", 0.0)

@@ -20,10 +20,10 @@ from core.device.environment import (
 )
 from core.device.geometry import drawn
 
-PRESSURE_AT, TEMPERATURE_AT, HUMID, STICKY, RUBBING, WEEKS, AGED, FILM = range(8)
+PRESSURE_AT, TEMPERATURE_AT, HUMID, STICKY, RUBBING, WEEKS, AGED, SET_DAMPING, FILM = range(9)
 """Packed parameters; from ``FILM`` on areas and gaps, angular frequency and structural share."""
 LAST_PRESSURE, LAST_TEMPERATURE, LAST_STIFFNESS, LAST_DAMPING, LAST_SQUEEZE = range(5)
-VACUUM, STIFFNESS, DAMPING, SQUEEZE, FRICTION, FRICTION_SCALE, AGE, PRESSURE, ADHESION = range(9)
+VACUUM, STIFFNESS, DAMPING, SQUEEZE, FRICTION, FRICTION_SCALE, AGE, DAMPING_SET, PRESSURE, ADHESION = range(10)
 
 
 def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
@@ -53,6 +53,7 @@ def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
     w[io[FRICTION]] = p[RUBBING] * p[STICKY]
     w[io[FRICTION_SCALE]] = p[STICKY]
     w[io[AGE]] = p[WEEKS]
+    w[io[DAMPING_SET]] = p[SET_DAMPING]
     w[io[PRESSURE]] = pressure
     w[io[ADHESION]] = p[HUMID]
 
@@ -75,6 +76,7 @@ class Environment(Block):
         Port("friction", "uN", "Coulomb friction without any fault", hidden=True),
         Port("friction_scale", "1", "friction at this humidity over that at 40 %", hidden=True),
         Port("age", "week", "age without any fault", hidden=True),
+        Port("damping_set", "1", "damping over nominal without any leak", hidden=True),
     )
     taps = (
         Port("pressure", "Pa", "pressure at the device"),
@@ -117,6 +119,12 @@ class Environment(Block):
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the state of the air and the film of the device; nN to uN."""
         device = context.device
+        film = [
+            *drawn(context).film,
+            1e3 * device.natural_frequency,
+            # what is no resonator has no air around it either
+            structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0,
+        ]
         return np.array(
             [
                 params.pressure_pa,
@@ -126,10 +134,8 @@ class Environment(Block):
                 1e-3 * params.friction_nn,
                 params.age_weeks,
                 1.0 / ageing_ratio(params.age_weeks),
-                *drawn(context).film,
-                1e3 * device.natural_frequency,
-                # what is no resonator has no air around it either
-                structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0,
+                damping_scale(params.pressure_pa, params.temperature_k, *film),
+                *film,
             ]
         )
 
@@ -141,8 +147,7 @@ class Environment(Block):
     @classmethod
     def scales(cls, params: Any, context: Context) -> tuple[float, float]:
         """Return the factors of stiffness and damping before any fault."""
-        packed = [float(value) for value in cls.pack(params, context)]
-        damping = damping_scale(params.pressure_pa, params.temperature_k, *packed[FILM:])
-        return float(stiffness_scale(params.temperature_k)) * packed[AGED], float(damping)
+        packed = cls.pack(params, context)
+        return float(stiffness_scale(params.temperature_k) * packed[AGED]), float(packed[SET_DAMPING])
 
     step = environment_step

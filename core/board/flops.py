@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from core.block import TICK, TIME_MS
 from core.board import program
 from core.board.board import Board
 from core.errors import InputError, unknown
@@ -110,6 +111,8 @@ def _plain(value: Any, tally: Tally) -> Any:
             own[name] = value if own[name] is value else _plain(own[name], tally)
     if value.__name__ == "settled":
         return lambda number: number
+    if value.__name__ == "shrunk":  # an exponential, though it is left out where it would be nothing
+        return _Functions(tally).exp
     if value.__name__ == "float":
         return value
     own["float"] = lambda number: number
@@ -145,6 +148,8 @@ class Budget(BaseModel):
 def count(board: Board, name: str) -> tuple[float, float]:
     """Return the operations and functions of one sample of a diagnoser, from the state it is in.
 
+    A sample is all the ticks from one turn to the next: some diagnosers have something to do between.
+
     Raises
     ------
     InputError
@@ -161,10 +166,14 @@ def count(board: Board, name: str) -> tuple[float, float]:
     w = [Counted(value, tally) for value in wiring.w]
     io = [int(value) for value in wiring.io[entry[program.IO_OFFSET] :]]
     step = _plain(wiring.instances[row].block.step, tally)
-    step(p, s, w, io)
-    tally.operations = tally.functions = 0
-    for _ in range(SAMPLES):
-        step(p, s, w, io)
+    every = board.spec.diagnosers[name].every
+    counted = board.tick + every
+    for tick in range(board.tick, counted + SAMPLES * every):
+        if tick == counted:
+            tally.operations = tally.functions = 0
+        w[TICK], w[TIME_MS] = Counted(tick, tally), Counted(tick * board.dt_ms, tally)
+        if tick % entry[program.EVERY] == 0:
+            step(p, s, w, io)
     return tally.operations / SAMPLES, tally.functions / SAMPLES
 
 

@@ -17,7 +17,8 @@ HELD = 20.0
 TOLERANCE = 1e-3
 STEPS = 64
 COUNT, EVERY, FACTORS = range(3)
-PROBABILITY, NIS, MASS, STIFFNESS, DAMPING, GAIN, OTHER, WINNER, TRUTH, CORRECT, FALSE, DELAY = range(12)
+PROBABILITY, NIS, MASS, STIFFNESS, DAMPING, GAIN, OTHER, SET_STIFFNESS, SET_DAMPING = range(9)
+WINNER, TRUTH, CORRECT, FALSE, DELAY = range(9, 14)
 LAST_TRUTH, RUN, FOUND, SINCE, STEP, TOTAL, RIGHT, EXITS, NIS_SUM, NIS_COUNT, STARTED, WAS_RIGHT = range(12)
 DELAYS = 12
 CONFUSION = DELAYS + STEPS
@@ -30,14 +31,16 @@ def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
     if not math.isfinite(w[io[PROBABILITY] + winner]):
         winner = -1
     truth = -1
+    stiffness = w[io[SET_STIFFNESS]]
+    damping = w[io[SET_DAMPING]]
     for i in range(n):
         a = FACTORS + 4 * i
         if (
             truth < 0
             and w[io[OTHER]] == 0.0
             and abs(w[io[MASS]] - p[a]) <= TOLERANCE * p[a]
-            and abs(w[io[STIFFNESS]] - p[a + 1]) <= TOLERANCE * p[a + 1]
-            and abs(w[io[DAMPING]] - p[a + 2]) <= TOLERANCE * p[a + 2]
+            and abs(w[io[STIFFNESS]] - stiffness * p[a + 1]) <= TOLERANCE * stiffness * p[a + 1]
+            and abs(w[io[DAMPING]] - damping * p[a + 2]) <= TOLERANCE * damping * p[a + 2]
             and abs(w[io[GAIN]] - p[a + 3]) <= TOLERANCE * p[a + 3]
         ):
             truth = i
@@ -85,8 +88,11 @@ class Score(Block):
     The delay is the number of samples from the change to the first of 20 right verdicts in a row; a false switch
     is an exit from the truth after that; the share counts every sample, transitions included. The truth is the
     hypothesis whose factors are those of the plant at this moment, -1 when there is none, as while a fault is there
-    that no factor can say; then there is nothing to find, and no delay. A bank whose probabilities are no numbers
-    has no winner, and is not right.
+    that no factor can say; then there is nothing to find, and no delay. The factors count from a device without any
+    fault in the environment that is set: at another temperature, in a package without air, or old from the start, it
+    is healthy, while a leak and ageing within the run are faults. The models of a bank stay those of a new device at
+    300 K and 1 atm, so that it may well be wrong elsewhere. A bank whose probabilities are no numbers has no winner,
+    and is not right.
     """
 
     title = "Score"
@@ -98,6 +104,8 @@ class Score(Block):
         Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
         Port("drive_gain", "1", "voltage at the comb over the voltage applied", source="effects.drive_gain"),
         Port("other", "1", "not zero while no hypothesis can be true", source="effects.other"),
+        Port("set_stiffness", "1", "stiffness without any fault over nominal", source="environment.stiffness_scale"),
+        Port("set_damping", "1", "damping without any fault over nominal", source="environment.damping_set"),
     )
     outputs = (
         Port("winner", "1", "index of the most probable hypothesis, -1 when probabilities are no numbers"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from pydantic import BaseModel, Field, ValidationError
 
@@ -103,8 +104,8 @@ class Spec:
     def _context(self, every: int) -> Context:
         sensor = self.sensors[self.measuring]
         # the noise of a sample of the sensor, however often the block that asks runs
-        noise = getattr(sensor.block, "noise_um", None)
-        own = noise(sensor.params, self._known(sensor.every)) if noise else getattr(sensor.params, "noise_um", 0.0)
+        block: Any = sensor.block
+        own = block.noise_um(sensor.params, self._known(sensor.every))
         return replace(self._known(every), sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:

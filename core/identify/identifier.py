@@ -13,11 +13,11 @@ from typing import Any, ClassVar
 from core.block import Block, BlockParams, Context, Oscillator, Port, kernel, parameter
 from core.theory.persistency import gather, smallest_eigenvalue
 
-MEASURED, APPLIED, CHARGE, MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DRIVE_GAIN, OWN_PORT = range(8)
+MEASURED, MIDDLE, CHARGE, MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DRIVE_GAIN, OWN_PORT = range(8)
 INPUTS = (
     Port("measured", "um", "measured displacement", source="sensor.displacement"),
-    Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage"),
-    Port("charge", "V", "running sum of the applied voltage", source="drive.charge"),
+    Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
+    Port("charge", "V", "running sum of the same", source="drive.charge"),
     Port("mass_scale", "1", "true mass over nominal", source="effects.mass_scale"),
     Port("stiffness_scale", "1", "true stiffness over nominal", source="effects.stiffness_scale"),
     Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
@@ -90,7 +90,7 @@ def coefficients(device: Oscillator) -> tuple[float, float, float]:
 @kernel
 def voltage(p: Any, s: Any, last_charge: int, w: Any, io: Any) -> float:
     """Return the mean voltage of the ticks since the last call."""
-    u = w[io[APPLIED]] if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[last_charge]) / p[EVERY]
+    u = w[io[MIDDLE]] if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[last_charge]) / p[EVERY]
     s[last_charge] = w[io[CHARGE]]
     return float(u)
 

@@ -40,6 +40,11 @@ class Ideal(Block):
         range_um: float = parameter(40.0, "range of the converter to either side", "um", gt=0)
 
     @classmethod
+    def noise_um(cls, params: Any, context: Context) -> float:
+        r"""Return the noise of a sample, :math:`\sqrt{\sigma^2+q^2/12}`: rounding spreads evenly over a step."""
+        return math.hypot(params.noise_um, params.quantum_um / math.sqrt(12.0))
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         return np.array([params.noise_um, key(context.seed, "sensor"), params.quantum_um, params.range_um])

@@ -85,13 +85,17 @@ def test_a_study_of_nothing_is_refused(values, field):
 # -- operations
 
 
-def operations(kind: str, models: int, **more: Any) -> float:
+def counted(kind: str, models: int, tick: int = 600, **more: Any) -> tuple[float, float]:
     hypotheses = [{"name": f"h{i}", "mass": 1 + 0.02 * i} for i in range(models)]
     bank = {"kind": kind, "hypotheses": hypotheses, **more}
     board = build(with_values(get("ch5-seven-step"), {"events": [], "expect": [], "diagnosers": {"x": bank}}))
-    while board.tick < 600:
-        board.advance(600 - board.tick)
-    return count(board, "x")[0]
+    while board.tick < tick:
+        board.advance(tick - board.tick)
+    return count(board, "x")
+
+
+def operations(kind: str, models: int, **more: Any) -> float:
+    return counted(kind, models, **more)[0]
 
 
 def test_a_difference_equation_is_counted_to_the_operation():
@@ -119,6 +123,24 @@ def test_operations_grow_with_the_models_and_stay_far_below_the_printed(kind, mo
     assert found[2] - found[1] == pytest.approx(2 * (found[1] - found[0]), rel=0.01)
     per_model = (found[2] - found[0]) / 6
     assert 10 <= per_model <= most and per_model < 4335 / 20
+
+
+@pytest.mark.parametrize("every", [2, 5])
+def test_a_bank_that_runs_now_and_then_is_counted_from_one_turn_to_the_next(every):
+    """Between two turns x <- A x + B u of every model: three products and two sums for each of two states."""
+    own = {"form": "steady", "probability_floor": 0.0}
+    turn = operations("mmae", 3, **own)
+    mean_voltage = 2  # the difference of two charges over N
+    for tick in range(600, 600 + every):
+        found = operations("mmae", 3, tick=tick, every=every, **own)
+        assert found == turn + mean_voltage + (every - 1) * 3 * 2 * (3 + 2)
+
+
+def test_an_exponential_counts_however_little_it_leaves():
+    """Of n probabilities n exponentials and the logarithm of their sum, also where one is below e^-230."""
+    for floor in (1e-3, 0.0):
+        assert counted("mmae", 6, form="steady", probability_floor=floor)[1] == 6 + 1
+        assert counted("arx_bank", 6, probability_floor=floor)[1] == 6 + 1
 
 
 # -- Monte Carlo

@@ -99,6 +99,29 @@ def test_errors_settling_and_overshoot_by_hand():
     assert found["control.effort_rms_v"] == pytest.approx(10.0)
 
 
+@pytest.mark.parametrize(
+    ("start_ms", "offset_v", "amplitude_v"),
+    [(0.0, 0.0, 10.0), (5.0, 0.0, 10.0), (5.0, 0.0, -10.0), (20.0, 6.0, 4.0), (20.0, 6.0, -6.0), (20.0, -2.0, 8.0)],
+)
+def test_overshoot_is_over_the_last_step_wherever_it_is_and_begins(start_ms, offset_v, amplitude_v):
+    """exp(-pi z / sqrt(1 - z^2)) of the height of the step, up or down, once what was before is at rest."""
+    values = {
+        "sample_rate_khz": 200,
+        "reference": {"kind": "step", "amplitude_v": amplitude_v, "offset_v": offset_v, "start_ms": start_ms},
+        "model": {"kind": "direct"},
+    }
+    zeta = BETA / (2 * math.sqrt(K * M))
+    expected = 100 * math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
+    assert metrics(values, 40.0)["control.overshoot_pct"] == pytest.approx(expected, abs=0.1)
+
+
+def test_there_is_no_overshoot_without_a_step_or_with_one_in_the_tail():
+    for reference in ({"kind": "constant", "amplitude_v": 0.0}, {"kind": "square", "amplitude_v": 5.0}):
+        assert "control.overshoot_pct" not in metrics({"reference": reference}, 40.0)
+    late = {"kind": "step", "amplitude_v": 10.0, "start_ms": 35.0}
+    assert "control.overshoot_pct" not in metrics({"reference": late}, 40.0)
+
+
 def test_since_and_tail_choose_the_stretch():
     values = {"reference": {"kind": "step", "amplitude_v": 10.0}, "model": {"kind": "direct"}}
     whole = metrics(values, 15.0)

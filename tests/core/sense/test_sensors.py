@@ -8,7 +8,7 @@ import pytest
 from core.board.wiring import needed
 from core.errors import InputError
 from tests.core.sense.bench import make
-from tests.lab import do, play
+from tests.lab import do, play, rms
 
 
 def test_only_what_the_sensor_in_use_needs_runs():
@@ -47,6 +47,16 @@ def test_one_sensor_does_not_disturb_the_noise_of_another():
     alone = play(make({"sensor.kind": "quadrature"}), 500)
     beside = play(make({"sensor.kind": "quadrature", "sensors.single_beam.always": True}), 500)
     np.testing.assert_array_equal(alone["dual_beam.first"], beside["dual_beam.first"])
+
+
+@pytest.mark.parametrize("quantum_um", [0.0, 0.05, 0.2])
+def test_filters_are_told_the_noise_of_noise_and_converter(quantum_um):
+    """Rounding to steps a motion crosses adds an even spread over one, q^2/12."""
+    board = make({"sensor": {"kind": "ideal", "noise_um": 0.03, "quantum_um": quantum_um}})
+    told = board.spec.context().sensor_noise_um
+    assert told == pytest.approx(np.sqrt(0.03**2 + quantum_um**2 / 12), rel=1e-12)
+    trace = play(board, 20_000)
+    assert rms(trace["sensor.displacement"] - trace["plant.displacement"]) == pytest.approx(told, rel=0.03)
 
 
 @pytest.mark.parametrize("kind", ["capacitive", "peak_valley", "quadrature", "quadrature_kalman", "single_beam"])
