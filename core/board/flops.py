@@ -166,15 +166,25 @@ def count(board: Board, name: str) -> tuple[float, float]:
     w = [Counted(value, tally) for value in wiring.w]
     io = [int(value) for value in wiring.io[entry[program.IO_OFFSET] :]]
     step = _plain(wiring.instances[row].block.step, tally)
-    every = board.spec.diagnosers[name].every
-    counted = board.tick + every
-    for tick in range(board.tick, counted + SAMPLES * every):
-        if tick == counted:
-            tally.operations = tally.functions = 0
+    every = wiring.instances[row].every
+    # what is done between two turns is the same at every tick
+    between = (every - 1) // int(entry[program.EVERY])
+
+    def spent(tick: int) -> tuple[int, int]:
         w[TICK], w[TIME_MS] = Counted(tick, tally), Counted(tick * board.dt_ms, tally)
-        if tick % entry[program.EVERY] == 0:
-            step(p, s, w, io)
-    return tally.operations / SAMPLES, tally.functions / SAMPLES
+        tally.operations = tally.functions = 0
+        step(p, s, w, io)
+        return tally.operations, tally.functions
+
+    operations = functions = 0
+    first = -(-board.tick // every) * every
+    for turn in range(first, first + (SAMPLES + 1) * every, every):
+        for tick, times in ((turn, 1), (turn + 1, between)):
+            own = spent(tick) if times else (0, 0)
+            if turn > first:
+                operations += times * own[0]
+                functions += times * own[1]
+    return operations / SAMPLES, functions / SAMPLES
 
 
 def budget(board: Board, board_flops: float, function_flops: float = 20.0) -> Budget:
@@ -206,7 +216,7 @@ def budget(board: Board, board_flops: float, function_flops: float = 20.0) -> Bu
                 flops_per_second=cost * rate,
                 share=cost * rate / board_flops,
                 overrun=used > board_flops,
-                models_that_fit=min(models, int(left / (cost * rate / models))),
+                models_that_fit=min(models, int(left / (cost * rate / models))) if cost else models,
             )
         )
     return Budget(board_flops=board_flops, function_flops=function_flops, share=used / board_flops, loads=loads)

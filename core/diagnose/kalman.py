@@ -48,7 +48,7 @@ class KalmanBank(Block):
         Port("measured", "um", "measured displacement", source="sensor.displacement"),
         Port("applied", "V", "voltage applied at the start of the sample that ends now", source="drive.voltage"),
         Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
-        Port("charge", "V", "running sum of the applied voltage", source="drive.charge"),
+        Port("charge", "V", "running sum of the voltage in the middle of every sample", source="drive.charge"),
     )
     outputs: ClassVar[tuple[Port, ...]] = (
         Port("probability", "1", "probability of the hypothesis", each="hypotheses"),

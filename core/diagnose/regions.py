@@ -68,7 +68,7 @@ class Regions(Block):
     inputs = (
         Port("measured", "um", "measured displacement", source="sensor.displacement"),
         Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
-        Port("charge", "V", "running sum of the applied voltage", source="drive.charge"),
+        Port("charge", "V", "running sum of the voltage in the middle of every sample", source="drive.charge"),
     )
     outputs = (
         Port("region", "1", "0 required, 1 degraded, 2 unacceptable, 3 danger"),

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.board.flops import count
+from core.board.flops import budget, count
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -155,3 +155,19 @@ def test_means_of_a_study_are_those_of_the_runs():
         assert found[key] == pytest.approx(np.mean([one[key] for one in runs])), name
     shares = [found[key] for key in found if key.startswith("diagnosis.kalman.confusion.m+5.")]
     assert len(shares) == 6 and sum(shares) == pytest.approx(1.0)
+
+
+def test_a_diagnoser_that_costs_nothing_fits_any_board(monkeypatch):
+    board = build(get("ch5-seven-step"))
+    monkeypatch.setattr("core.board.flops.count", lambda board, name: (0.0, 0.0))
+    found = budget(board, 1.0)
+    assert found.share == 0.0
+    assert found.loads[0].models_that_fit == 6 and not found.loads[0].overrun
+
+
+def test_counting_does_not_take_longer_for_a_bank_that_seldom_runs():
+    """A turn, and what is done at each of the other ticks: two states of three products and two sums for each model."""
+    few, many = (
+        count(build(with_values(get("ch5-seven-step"), {"diagnosers.kalman.every": n})), "kalman") for n in (2, 10_000)
+    )
+    assert many[0] - few[0] == pytest.approx(9_998 * 6 * 10, abs=20)
