@@ -41,6 +41,10 @@ class ContactParams(ShuttleParams):
         """Return the gap in use, um."""
         return drawn(context).gap_um if self.gap_um is None else self.gap_um
 
+    def gradient(self, context: Context) -> float:
+        """Return dC/dx of one comb, F/m, which goes with one over the gap: fingers and thickness stay."""
+        return context.capacitance_gradient * (drawn(context).gap_um / self.gap(context))
+
     def packed(self, context: Context) -> list[float]:
         """Pack gap, contact and stops; the force law holds up to nine tenths of the gap."""
         gap = self.gap(context)

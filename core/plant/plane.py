@@ -10,7 +10,7 @@ from core.device.geometry import drawn
 from core.device.lateral import lateral
 from core.noise import key
 from core.plant.contact import PLANT, ContactParams
-from core.units import thermal_force_un
+from core.units import UN_PER_N, thermal_force_un
 
 (
     STRENGTH,
@@ -101,7 +101,7 @@ class PlaneParams(ContactParams):
         noisy = 1.0 if self.thermal_noise else 0.0
         return [
             *super().packed(context),
-            0.5 * context.capacitance_gradient * 1e6 * gap * gap,
+            0.5 * self.gradient(context) * UN_PER_N * gap * gap,
             gap * gap,
             1.0 / gap,
             own["stator_tip_um"],

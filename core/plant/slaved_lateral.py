@@ -43,6 +43,7 @@ from core.plant.shuttle import (
     joined,
     thermal_force,
 )
+from core.units import UN_PER_N
 
 SPRING, KAPPA, OVERLAP, SUBSTEPS = range(PLANT, PLANT + 4)
 FIRST_OUTPUT = FIRST_OWN_INPUT
@@ -173,6 +174,8 @@ class SlavedLateral(Shuttle):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
+        shared = cls.shared(params, context)
+        shared[COMB] = params.gradient(context) * UN_PER_N
         own = [
             *params.packed(context),
             params.stiffness_n_m,
@@ -180,7 +183,7 @@ class SlavedLateral(Shuttle):
             params.effective_overlap_um,
             float(math.ceil(context.dt_ms * 1e3 / params.step_us - 1e-9)),
         ]
-        return np.array(cls.shared(params, context) + own, dtype=np.float64)
+        return np.array(shared + own, dtype=np.float64)
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

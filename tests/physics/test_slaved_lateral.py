@@ -32,11 +32,11 @@ def packed(board):
     return wiring.p[wiring.table[wiring.row("plant"), program.P_OFFSET] :]
 
 
-def textbook_slaved(x, v, k1=0.0784, kappa=0.42, overlap=5.0, bias=5.0):
+def textbook_slaved(x, v, k1=0.0784, kappa=0.42, overlap=5.0, bias=5.0, g=G):
     """The equation as written, uN."""
     a = N * EPS * T * 1e6
     eta = kappa * x
-    whole, slope = 2 * G / (G * G - eta * eta), 4 * G * eta / (G * G - eta * eta) ** 2
+    whole, slope = 2 * g / (g * g - eta * eta), 4 * g * eta / (g * g - eta * eta) ** 2
     one = (bias - v) ** 2 * (whole + kappa * slope * (overlap + x))
     other = (-bias - v) ** 2 * (-whole + kappa * slope * (overlap - x))
     return -k1 * x + 0.5 * a * (one + other)
@@ -60,6 +60,14 @@ def test_slaved_plant_folds_where_the_text_says():
     assert abs(end.volts) == pytest.approx(-best.fun, rel=1e-5)
     metrics = lateral_metrics(slaved_after_a_tick())
     assert metrics["lateral.fold_um"] == pytest.approx(1.660, rel=5e-3)
+
+
+@pytest.mark.parametrize("gap", [1.5, 3.0])
+def test_the_force_is_that_of_the_gap_given(gap):
+    force = slaved_force(packed(slaved(plant={"gap_um": gap})), 0.0784)
+    for x, v in ((1.0, -3.0), (2.5, 2.0), (-1.7, 4.0)):
+        found = float(force(np.array([x]), (5 - v) ** 2, (-5 - v) ** 2)[0])
+        assert found == pytest.approx(textbook_slaved(x, v, g=gap), rel=1e-9)
 
 
 def slaved_after_a_tick():
