@@ -25,7 +25,7 @@ from core.diagnose.filters import (
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 
-CYCLES, DT, WINDOW, CAPACITY, POWER_LIMIT, TONE_LIMIT, ALONE_FOR, NONE_FOR = range(8)
+CYCLES, DT, WINDOW, CAPACITY, POWER_LIMIT, TONE_LIMIT, ALONE_FOR, NONE_FOR, LEAN = range(9)
 ALONE, ALONE_RUN, NONE_RUN, SLIDING = range(4)
 VERDICT, CANDIDATES = PROBABILITY + 1, PROBABILITY + 2
 RESIDUAL_TAP, NIS_TAP, CONSISTENT_TAP, POWER_TAP, TONE_TAP = range(PROBABILITY + 3, PROBABILITY + 8)
@@ -43,10 +43,12 @@ def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     state = OWN + DEPTH * LANE
     at = state + SLIDING
     capacity = int(p[own + CAPACITY])
-    place = window.begin(s, at, capacity, p[own + WINDOW])
+    place = window.begin(s, at, capacity, p[own + WINDOW], p[own + CYCLES])
     turn = window.angle(w, p[own + CYCLES], p[own + DT])
     cosine = math.cos(turn)
     sine = math.sin(turn)
+    along, across = window.leaning(p, own + LEAN, cosine, sine)
+    span = p[own + LEAN + window.SPAN]
     filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     candidates = 0
@@ -54,7 +56,7 @@ def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     healthy = False
     for i in range(n):
         power = window.power(s, at, i)
-        tone = window.tone(s, at, i)
+        tone = window.tone(s, at, i, along, across, span)
         consistent = power <= p[own + POWER_LIMIT] and tone <= p[own + TONE_LIMIT]
         w[io[POWER_TAP] + i] = power
         w[io[TONE_TAP] + i] = tone
@@ -123,7 +125,11 @@ class Consistency(KalmanBank):
             why="a dynamic system is no number: the same input gives many outputs, depending on what went before",
         ),
         Equation("power", r"S_k=\textstyle\sum_W r_k^2/\psi_k"),
-        Equation("tone", r"T_k=\tfrac{2}{W}\bigl|\textstyle\sum_W r_k\psi_k^{-1/2}e^{-j\omega t}\bigr|^2"),
+        Equation(
+            "tone",
+            r"T_k=b_k^TG^{-1}b_k,\quad b_k=\textstyle\sum_W r_k\psi_k^{-1/2}z,\quad G=\sum_W zz^T,"
+            r"\quad z=(\cos\omega t,\sin\omega t)^T",
+        ),
     )
 
     class Params(KalmanParams):
@@ -150,6 +156,7 @@ class Consistency(KalmanBank):
             float(chdtri(2, params.significance)),
             float(params.isolated_after),
             float(params.unknown_after),
+            *window.lean(params, context, params.window),
         ]
         return np.array(cls.filters(params, context) + own)
 

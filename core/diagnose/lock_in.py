@@ -25,7 +25,7 @@ from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, weigh
 
-FLOOR, LOG_FLOOR, CYCLES, DT, WINDOW, CAPACITY = range(6)
+FLOOR, LOG_FLOOR, CYCLES, DT, WINDOW, CAPACITY, LEAN = range(7)
 LOG, LIKELIHOOD, SLIDING = DEPTH, DEPTH + 1, DEPTH + 2
 RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 1, PROBABILITY + 4)
 
@@ -40,16 +40,18 @@ def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
     evidence = informed(p, s, w, io)
     at = OWN + SLIDING * LANE
     capacity = int(p[own + CAPACITY])
-    place = window.begin(s, at, capacity, p[own + WINDOW])
+    place = window.begin(s, at, capacity, p[own + WINDOW], p[own + CYCLES])
     turn = window.angle(w, p[own + CYCLES], p[own + DT])
     cosine = math.cos(turn)
     sine = math.sin(turn)
+    along, across = window.leaning(p, own + LEAN, cosine, sine)
+    span = p[own + LEAN + window.SPAN]
     half = 0.5 / p[own + WINDOW]
     filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     best = -math.inf
     for i in range(n):
-        tone = window.tone(s, at, i)
+        tone = window.tone(s, at, i, along, across, span)
         w[io[TONE_TAP] + i] = tone
         log = s[OWN + LOG * LANE + i]
         if evidence:
@@ -72,8 +74,8 @@ def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
 class LockIn(KalmanBank):
     r"""Residual correlation: only what of a residual is at the frequency of the drive is evidence.
 
-    .. math:: T_k=\frac{2}{W}\Bigl|\sum_W\frac{r_k}{\sqrt{\psi_k}}e^{-j\omega t}\Bigr|^2,\qquad
-        \ell_k\leftarrow\ell_k-\frac{T_k}{2W}
+    .. math:: T_k=b_k^TG^{-1}b_k,\quad b_k=\sum_W\frac{r_k}{\sqrt{\psi_k}}z,\quad G=\sum_W zz^T,\quad
+        z=\binom{\cos\omega t}{\sin\omega t},\qquad\ell_k\leftarrow\ell_k-\frac{T_k}{2W}
 
     A fault of the device moves the response at the tone, hum and noise stated wrongly do not. It needs a known tone
     and is about a quarter of a window slower (the idea of Hanlon and Maybeck 2000, which the text cites and does not
@@ -83,7 +85,11 @@ class LockIn(KalmanBank):
     title = "Residual-correlation bank (lock-in)"
     taps = (*KalmanBank.taps, Port("tone", "1", "part of the residuals at the tone, 2 on average", each="hypotheses"))
     equations = (
-        Equation("tone", r"T_k=\frac{2}{W}\Bigl|\sum_W\frac{r_k}{\sqrt{\psi_k}}e^{-j\omega t}\Bigr|^2"),
+        Equation(
+            "tone",
+            r"T_k=b_k^TG^{-1}b_k,\quad b_k=\sum_W\frac{r_k}{\sqrt{\psi_k}}z,\quad G=\sum_W zz^T,"
+            r"\quad z=(\cos\omega t,\sin\omega t)^T",
+        ),
         Equation("evidence", r"\ell_k\leftarrow\ell_k-\frac{T_k}{2W}", "Hanlon and Maybeck 2000, in idea"),
     )
 
@@ -110,6 +116,7 @@ class LockIn(KalmanBank):
             context.dt_ms / context.every,
             float(window.length(params, context)),
             float(window.room(params)),
+            *window.lean(params, context, window.length(params, context)),
         ]
         return np.array(cls.filters(params, context) + own)
 

@@ -25,7 +25,7 @@ from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import share_out
 
-CYCLES, DT, WINDOW, THRESHOLD = range(4)
+CYCLES, DT, WINDOW, THRESHOLD, LEAN = range(5)
 LIKELIHOOD, SLIDING = DEPTH, DEPTH + 1
 ALARM = PROBABILITY + 1
 RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
@@ -40,16 +40,18 @@ def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
     u = applied_voltage(p, s, w, io)
     at = OWN + SLIDING * LANE
     capacity = int(p[own + WINDOW])
-    place = window.begin(s, at, capacity, p[own + WINDOW])
+    place = window.begin(s, at, capacity, p[own + WINDOW], p[own + CYCLES])
     turn = window.angle(w, p[own + CYCLES], p[own + DT])
     cosine = math.cos(turn)
     sine = math.sin(turn)
+    along, across = window.leaning(p, own + LEAN, cosine, sine)
+    span = p[own + LEAN + window.SPAN]
     threshold = p[own + THRESHOLD]
     filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     best = -math.inf
     for i in range(n):
-        tone = window.tone(s, at, i)
+        tone = window.tone(s, at, i, along, across, span)
         w[io[TONE_TAP] + i] = tone
         log = -0.5 * tone
         if i == 0:
@@ -63,8 +65,8 @@ def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
 class LockInGlr(KalmanBank):
     r"""Alarm when the residual of the healthy device has a part at the tone that noise does not explain.
 
-    .. math:: T_0=\max_{Y}2\ln\frac{f(r\mid Y)}{f(r\mid0)}=\frac{2}{W}\Bigl|\sum_W\frac{r_0}{\sqrt{\psi_0}}
-        e^{-j\omega t}\Bigr|^2\sim\chi^2_2
+    .. math:: T_0=\max_{Y}2\ln\frac{f(r\mid Y)}{f(r\mid0)}=b_0^TG^{-1}b_0\sim\chi^2_2,\quad
+        b_0=\sum_W\frac{r_0}{\sqrt{\psi_0}}z,\quad G=\sum_W zz^T,\quad z=\binom{\cos\omega t}{\sin\omega t}
 
     Maximised over the unknown change of the phasor, so it needs no list of faults; the longer the window, the smaller
     the change it sees and the later. The list only serves to name it: the threshold is the head start of the healthy
@@ -76,7 +78,11 @@ class LockInGlr(KalmanBank):
     outputs = (*KalmanBank.outputs, Port("alarm", "1", "1 while the healthy device does not explain the tone"))
     taps = (*KalmanBank.taps, Port("tone", "1", "part of the residuals at the tone, 2 on average", each="hypotheses"))
     equations = (
-        Equation("ratio", r"T_0=\frac2W\Bigl|\sum_W\frac{r_0}{\sqrt{\psi_0}}e^{-j\omega t}\Bigr|^2\sim\chi^2_2"),
+        Equation(
+            "ratio",
+            r"T_0=b_0^TG^{-1}b_0\sim\chi^2_2,\quad b_0=\sum_W\frac{r_0}{\sqrt{\psi_0}}z,\quad G=\sum_W zz^T,"
+            r"\quad z=(\cos\omega t,\sin\omega t)^T",
+        ),
     )
 
     class Params(KalmanParams):
@@ -94,7 +100,7 @@ class LockInGlr(KalmanBank):
         """Pack the parameters for the step."""
         cycles = window.tone_hz(params, context) / 1e3
         own = [cycles, context.dt_ms / context.every, float(params.window), params.threshold]
-        return np.array(cls.filters(params, context) + own)
+        return np.array(cls.filters(params, context) + own + window.lean(params, context, params.window))
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

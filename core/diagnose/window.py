@@ -1,9 +1,17 @@
 r"""The last samples of normalised residuals: their power, and their part at one tone.
 
-.. math:: S_k=\sum_W\nu_k^2\sim\chi^2_W,\qquad T_k=\frac{2}{W}\Bigl|\sum_W\nu_ke^{-j\omega t}\Bigr|^2\sim\chi^2_2
+.. math:: S_k=\sum_W\nu_k^2\sim\chi^2_W,\qquad T_k=b_k^TG^{-1}b_k\sim\chi^2_2,\quad
+    b_k=\sum_W\nu_k\binom{\cos\omega t}{\sin\omega t}
 
-for a true and well tuned model, :math:`\nu=r/\sqrt\psi`. Sums slide: what enters is added and what leaves is taken off;
-once per window each is exchanged for one summed anew, so that rounding never adds up.
+for a true and well tuned model, :math:`\nu=r/\sqrt\psi`. The sum of the squares and products of cosine and sine is
+
+.. math:: G=\frac12\begin{pmatrix}W+D\cos2\theta&D\sin2\theta\\D\sin2\theta&W-D\cos2\theta\end{pmatrix},\qquad
+    D=\frac{\sin W\omega h}{\sin\omega h},
+
+with the angle :math:`\theta` in the middle of the window; over whole half periods :math:`D=0` and
+:math:`T_k=\tfrac2W|b_k|^2`. While the window fills, :math:`T_k` is less than it may be. Sums slide: what enters is
+added and what leaves is taken off; once per window each is exchanged for one summed anew, so that rounding never adds
+up.
 """
 
 from __future__ import annotations
@@ -15,11 +23,13 @@ from core.block import TICK, Context, inlined, kernel
 from core.diagnose.filters import COVARIANCE, OWN, RESIDUAL
 from core.diagnose.lanes import LANE
 
-LENGTH, PLACE, HEAD = range(3)
+LENGTH, PLACE, TONE, HEAD = range(4)
 COSINE_SUM, SINE_SUM, POWER_SUM, COSINE_NEW, SINE_NEW, POWER_NEW, SUMS = range(7)
 """Lanes of sums; then rings of cosines, of sines, and of lanes of normalised residuals."""
 MOST = 512
 """Longest window that is not asked for."""
+ALONG, ACROSS, SPAN, LEAN = range(4)
+"""Packed parameters of the tone: D/W at the angle of the last sample, and W - D^2/W."""
 
 
 def tone_hz(params: Any, context: Context) -> float:
@@ -43,13 +53,40 @@ def size(capacity: int) -> int:
     return HEAD + SUMS * LANE + (2 + LANE) * capacity
 
 
+def lean(params: Any, context: Context, samples: int) -> list[float]:
+    """Pack by how much the squares and products of cosine and sine over the window are not those of whole half periods.
+
+    Where they are nearly dependent only the larger direction counts: one degree of freedom, which is conservative.
+    """
+    cycles = tone_hz(params, context) / 1e3 * context.dt_ms
+    step = 2.0 * math.pi * (cycles - math.floor(cycles))
+    back = (samples - 1) * step
+    sine = math.sin(step)
+    share = math.sin(samples * step) / sine / samples if abs(sine) > 1e-9 else math.cos(back)
+    if abs(share) < 1e-9:
+        share = 0.0
+    span = samples * (1.0 - share * share)
+    if abs(share) > 1.0 - 1e-6:
+        share, span = -math.copysign(1.0, share), 4.0 * samples
+    return [share * math.cos(back), share * math.sin(back), span]
+
+
 @kernel
-def begin(s: Any, at: int, capacity: int, window: float) -> int:
-    """Return the place of this sample; a window of another length starts empty."""
+def begin(s: Any, at: int, capacity: int, window: float, tone: float) -> int:
+    """Return the place of this sample; a window of another length starts empty, and of another tone without a tone."""
+    sums = at + HEAD
+    rings = sums + SUMS * LANE
     if s[at + LENGTH] != window:
-        for i in range(at, at + HEAD + SUMS * LANE + (2 + LANE) * capacity):
+        for i in range(at, rings + (2 + LANE) * capacity):
             s[i] = 0.0
         s[at + LENGTH] = window
+    if s[at + TONE] != tone:
+        for i in range(LANE):
+            for row in (COSINE_SUM, SINE_SUM, COSINE_NEW, SINE_NEW):
+                s[sums + row * LANE + i] = 0.0
+        for i in range(rings, rings + 2 * capacity):
+            s[i] = 0.0
+        s[at + TONE] = tone
     return int(s[at + PLACE])
 
 
@@ -90,11 +127,19 @@ def push(s: Any, at: int, n: int, capacity: int, place: int, cosine: float, sine
 
 
 @inlined
-def tone(s: Any, at: int, i: int) -> float:
+def leaning(p: Any, a: int, cosine: float, sine: float) -> tuple[float, float]:
+    """Return D/W times cosine and twice the sine of the doubled angle in the middle of the window."""
+    c = cosine * cosine - sine * sine
+    d = 2.0 * cosine * sine
+    return p[a + ALONG] * c + p[a + ACROSS] * d, 2.0 * (p[a + ALONG] * d - p[a + ACROSS] * c)
+
+
+@inlined
+def tone(s: Any, at: int, i: int, along: float, across: float, span: float) -> float:
     """Return T of one model."""
     c = s[at + HEAD + COSINE_SUM * LANE + i]
     d = s[at + HEAD + SINE_SUM * LANE + i]
-    return 2.0 * (c * c + d * d) / s[at + LENGTH]  # type: ignore[no-any-return]
+    return 2.0 * (c * c + d * d - (along * (c * c - d * d) + across * (c * d))) / span  # type: ignore[no-any-return]
 
 
 @inlined

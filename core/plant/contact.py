@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from core.block import Context, kernel, parameter
@@ -21,6 +22,8 @@ from core.plant.shuttle import OWN, ShuttleParams, wall
     PLANT,
 ) = range(OWN, OWN + 10)
 """Packed parameters behind those of every plant; a plant's own start at ``PLANT``."""
+LEAST_US = 0.01
+"""Shortest step, so that a sample ends."""
 
 
 class ContactParams(ShuttleParams):
@@ -41,6 +44,14 @@ class ContactParams(ShuttleParams):
         """Return the gap in use, um."""
         return drawn(context).gap_um if self.gap_um is None else self.gap_um
 
+    def gradient(self, context: Context) -> float:
+        """Return dC/dx of one comb, F/m, which goes with one over the gap: fingers and thickness stay."""
+        return context.capacitance_gradient * (drawn(context).gap_um / self.gap(context))
+
+    def stop_step_us(self, step_us: float, mass: float) -> float:
+        """Return the longest step asked for, or the longest that follows the end stops."""
+        return resolved_us(step_us, self.stop_stiffness_n_m, self.stop_damping_ns_m * 1e3, mass)
+
     def packed(self, context: Context) -> list[float]:
         """Pack gap, contact and stops; the force law holds up to nine tenths of the gap."""
         gap = self.gap(context)
@@ -55,6 +66,12 @@ class ContactParams(ShuttleParams):
             self.stop_stiffness_n_m,
             self.stop_damping_ns_m * 1e3,
         ]
+
+
+def resolved_us(step_us: float, stiffness: float, damping: float, mass: float) -> float:
+    """Return the longest step asked for, or one over the rates of a wall: Runge-Kutta is unstable beyond 2.8 of it."""
+    rate = max(math.sqrt(stiffness / mass), damping / mass)
+    return max(min(step_us, 1e3 / rate), LEAST_US) if rate > 0.0 else step_us
 
 
 @kernel

@@ -9,8 +9,8 @@ from core.block import Context, parameter
 from core.device.geometry import drawn
 from core.device.lateral import lateral
 from core.noise import key
-from core.plant.contact import PLANT, ContactParams
-from core.units import thermal_force_un
+from core.plant.contact import PLANT, ContactParams, resolved_us
+from core.units import UN_PER_N, thermal_force_un
 
 (
     STRENGTH,
@@ -96,16 +96,23 @@ class PlaneParams(ContactParams):
         known = asdict(lateral(drawn(context)))
         own = {name: known[name] if getattr(self, name) is None else getattr(self, name) for name in known}
         gap = own["gap_um"]
-        coarse = math.ceil(context.dt_ms * 1e3 / self.step_us - 1e-9)
-        fine = max(1, math.ceil(context.dt_ms * 1e3 / coarse / self.near_step_us - 1e-9))
+        mass = context.device.mass
+        step = self.stop_step_us(self.step_us, mass)
+        coarse = math.ceil(context.dt_ms * 1e3 / step - 1e-9)
+        # all corners may touch at once, which moves the shuttle or turns it
+        stator, rotor = own["stator_tip_um"], own["stator_tip_um"] + own["overlap_um"]
+        inertia = own["inertia_kg_m2"] * 1e18
+        touching = min(0.25 * mass, 0.5 * inertia / (stator * stator + rotor * rotor))
+        near = resolved_us(self.near_step_us, self.contact_stiffness_n_m, self.contact_damping_ns_m * 1e3, touching)
+        fine = max(1, math.ceil(context.dt_ms * 1e3 / coarse / near - 1e-9))
         noisy = 1.0 if self.thermal_noise else 0.0
         return [
             *super().packed(context),
-            0.5 * context.capacitance_gradient * 1e6 * gap * gap,
+            0.5 * self.gradient(context) * UN_PER_N * gap * gap,
             gap * gap,
             1.0 / gap,
-            own["stator_tip_um"],
-            own["stator_tip_um"] + own["overlap_um"],
+            stator,
+            rotor,
             1e-18 / own["inertia_kg_m2"],
             own["lateral_damping_ns_m"] * 1e3,
             own["rotation_damping_nms"] * 1e15,

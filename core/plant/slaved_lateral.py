@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from core.block import TICK, Context, Equation, FloatArray, kernel, parameter, settled
-from core.plant.contact import GAP, LIMIT, PLANT, SHORTS, TOUCH, ContactParams, stop, touch
+from core.plant.contact import GAP, LIMIT, PLANT, SHORTS, TOUCH, ContactParams, resolved_us, stop, touch
 from core.plant.shuttle import (
     ACCELERATION,
     COMB,
@@ -43,6 +43,7 @@ from core.plant.shuttle import (
     joined,
     thermal_force,
 )
+from core.units import UN_PER_N
 
 SPRING, KAPPA, OVERLAP, SUBSTEPS = range(PLANT, PLANT + 4)
 FIRST_OUTPUT = FIRST_OWN_INPUT
@@ -173,14 +174,22 @@ class SlavedLateral(Shuttle):
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
+        mass = context.device.mass
+        step = params.stop_step_us(params.step_us, mass)
+        if params.ratio > 0.0:
+            # fingers feel the shuttle through the lever of their motion
+            felt = mass / (params.ratio * params.ratio)
+            step = resolved_us(step, params.contact_stiffness_n_m, params.contact_damping_ns_m * 1e3, felt)
+        shared = cls.shared(params, context)
+        shared[COMB] = params.gradient(context) * UN_PER_N
         own = [
             *params.packed(context),
             params.stiffness_n_m,
             params.ratio,
             params.effective_overlap_um,
-            float(math.ceil(context.dt_ms * 1e3 / params.step_us - 1e-9)),
+            float(math.ceil(context.dt_ms * 1e3 / step - 1e-9)),
         ]
-        return np.array(cls.shared(params, context) + own, dtype=np.float64)
+        return np.array(shared + own, dtype=np.float64)
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

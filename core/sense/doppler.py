@@ -26,7 +26,7 @@ def doppler_step(p: Any, s: Any, w: Any, io: Any) -> None:
         s[STARTED] = 1.0
         s[SUM] = height - p[GRATING]
         s[LAST] = signal
-    if math.isfinite(signal):
+    elif math.isfinite(signal):
         s[SUM] = settled(p[DECAY] * s[SUM] + 0.5 * p[DT] * (s[LAST] + signal))
         s[LAST] = signal
     w[io[SIGNAL]] = signal

@@ -10,6 +10,7 @@ import numpy as np
 from core.block import Context, Equation, FloatArray, Port
 from core.sense import tracker
 from core.sense.dual_beam import DualBeam
+from core.sense.quadrature import Quadrature
 from core.sense.sensor import (
     ERROR_PORT,
     LAST_PORT,
@@ -78,13 +79,13 @@ class QuadratureKalman(Tracker):
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of the phase as displacement; the filter's own error is smaller but not white."""
-        return calibrated(context, "dual_beam", DualBeam.Params).phase_noise_um
+        return Quadrature.noise_um(calibrated(context, "quadrature", Quadrature.Params), context)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         pair = calibrated(context, "dual_beam", DualBeam.Params)
-        noise = max(pair.phase_noise_um, 1e-6)
+        noise = max(cls.noise_um(params, context), 1e-6)
         own = [pair.pitch_um, pair.offset(context.seed), noise * noise]
         return np.array(own + tracker.pack_model(params, context))
 

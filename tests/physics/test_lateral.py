@@ -65,6 +65,14 @@ def test_pull_in_by_the_bias_alone():
     assert bias_pull_in(*stiff) == pytest.approx(sideways, rel=1e-3)
 
 
+def test_fingers_further_apart_than_drawn_pull_in_later():
+    """n eps0 t stays and the gap of the closed form is the one given: as of a device etched with that gap."""
+    closed = math.sqrt(4.51e-7 * 3e-6**3 / (4 * N * EPS * T * 1e-6 * (XR**3 - XS**3) * 1e-18 / 3))
+    assert bias_pull_in(*insides(bench(gap_um=3.0))) == pytest.approx(closed, rel=5e-3)
+    drawn = bench(values={"device.finger_gap_um": 3.0})
+    assert bias_pull_in(*insides(bench(gap_um=3.0))) == pytest.approx(bias_pull_in(*insides(drawn)), rel=1e-9)
+
+
 def test_pull_in_of_a_perfect_device_waits_for_noise():
     quiet = bench(29.0)
     trace = play(quiet, 200)

@@ -8,7 +8,7 @@ import math
 import control
 import numpy as np
 import pytest
-from scipy import integrate, linalg, signal, special
+from scipy import linalg, signal, special
 
 from core.block import Oscillator
 from core.device.response import held_response
@@ -266,60 +266,10 @@ def test_dry_friction_takes_the_same_off_every_cycle():
     assert -np.diff(tops) == pytest.approx(4 * friction / K * 1e6, rel=1e-2)
 
 
-@pytest.mark.parametrize("side", [1, -1])
-def test_a_stop_holds_the_shuttle(side):
-    x = play(
-        make(
-            {
-                **LCR,
-                "plant.model": "nonlinear",
-                "plant.cubic_n_m3": 0.0,
-                "plant.stop_um": 2.0,
-                "reference": {"kind": "constant", "amplitude_v": -side * 10.0},
-            }
-        ),
-        4000,
-    )["plant.displacement"]
-    pull = 0.5455e-6 * 10 * K  # N
-    rest = 2.0 + (pull - K * 2e-6) / (K + 50.0) * 1e6
-    assert side * x[-1] == pytest.approx(rest, rel=1e-5)
-    assert side * x.max() < 2.2 or side * x.min() < 2.2
-    free = play(make({**LCR, "reference": {"kind": "constant", "amplitude_v": -side * 10.0}}), 4000)
-    assert side * free["plant.displacement"][-1] == pytest.approx(5.455, rel=2e-3)
-
-
-def test_stops_and_spring_against_an_ode_solver():
-    values = {
-        "sample_rate_khz": 1000,
-        "plant.model": "nonlinear",
-        "plant.cubic_n_m3": 1e9,
-        "plant.stop_um": 2.5,
-        "plant.substeps": 16,
-        "plant.stop_stiffness_n_m": 0.5,
-        "plant.friction_nn": 5.0,
-        "plant.slip_velocity_um_ms": 1.0,
-        "plant.initial_velocity_um_ms": 60.0,
-        "reference": {"kind": "constant", "amplitude_v": 2.0},
-    }
-    trace = play(make(values), 700)
-    force = -4 * 24 * 8.8541878128e-12 * (2.0 / 2.1) * 20.0 * 2.0
-
-    def motion(_: float, state: np.ndarray) -> list[float]:
-        x, v = state
-        over = max(abs(x) - 2.5e-6, 0.0)
-        total = force - BETA * v - K * x - 1e9 * x**3 - 5e-9 * math.tanh(v / 1e-3)
-        total -= math.copysign(0.5 * over, x) + (2e-5 * v if over else 0.0)
-        return [v, total / M]
-
-    t = np.arange(700) * 1e-6
-    exact = integrate.solve_ivp(motion, (0, t[-1]), [0.0, 0.06], "DOP853", t, rtol=1e-10, atol=1e-15, max_step=1e-6).y
-    assert np.abs(exact[0]).max() > 2.5e-6
-    assert np.abs(trace["plant.displacement"] * 1e-6 - exact[0]).max() < 2e-4 * np.abs(exact[0]).max()
-
-
 def test_a_runaway_inside_one_tick_trips_the_board():
     values = {**STILL, "plant.model": "nonlinear", "plant.initial_displacement_um": 20.0}
-    board = make({**values, "plant.cubic_n_m3": 1e12, "guard.travel_um": 1000.0})
+    free = {"plant.stop_stiffness_n_m": 0.0, "plant.stop_damping_ns_m": 0.0}  # steps are short at a stop
+    board = make({**values, **free, "plant.cubic_n_m3": 1e12, "guard.travel_um": 1000.0})
     trace = play(board, 50)
     assert board.trip is not None, trace["plant.displacement"][:4]
     assert "plant" in board.trip.reason or "travel" in board.trip.reason

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
-from scipy import optimize
+from scipy import integrate, optimize
 
 from core.board import program
 from core.plant import slaved_lateral
@@ -32,11 +34,11 @@ def packed(board):
     return wiring.p[wiring.table[wiring.row("plant"), program.P_OFFSET] :]
 
 
-def textbook_slaved(x, v, k1=0.0784, kappa=0.42, overlap=5.0, bias=5.0):
+def textbook_slaved(x, v, k1=0.0784, kappa=0.42, overlap=5.0, bias=5.0, g=G):
     """The equation as written, uN."""
     a = N * EPS * T * 1e6
     eta = kappa * x
-    whole, slope = 2 * G / (G * G - eta * eta), 4 * G * eta / (G * G - eta * eta) ** 2
+    whole, slope = 2 * g / (g * g - eta * eta), 4 * g * eta / (g * g - eta * eta) ** 2
     one = (bias - v) ** 2 * (whole + kappa * slope * (overlap + x))
     other = (-bias - v) ** 2 * (-whole + kappa * slope * (overlap - x))
     return -k1 * x + 0.5 * a * (one + other)
@@ -62,6 +64,14 @@ def test_slaved_plant_folds_where_the_text_says():
     assert metrics["lateral.fold_um"] == pytest.approx(1.660, rel=5e-3)
 
 
+@pytest.mark.parametrize("gap", [1.5, 3.0])
+def test_the_force_is_that_of_the_gap_given(gap):
+    force = slaved_force(packed(slaved(plant={"gap_um": gap})), 0.0784)
+    for x, v in ((1.0, -3.0), (2.5, 2.0), (-1.7, 4.0)):
+        found = float(force(np.array([x]), (5 - v) ** 2, (-5 - v) ** 2)[0])
+        assert found == pytest.approx(textbook_slaved(x, v, g=gap), rel=1e-9)
+
+
 def slaved_after_a_tick():
     board = slaved()
     board.advance(1)
@@ -83,6 +93,32 @@ def test_unstable_poles_beyond_the_fold(x, volts, pole):
     late = (shift > 0.02) & (shift < 0.04)
     rate = np.polyfit(np.flatnonzero(late) * 2e-6, np.log(shift[late]), 1)[0]
     assert rate == pytest.approx(pole, rel=0.03)
+
+
+def test_hard_fingers_are_followed_whatever_step_is_asked_for():
+    """Insulated ones that bounce off the stator under a held voltage, against an adaptive solver."""
+    plant = {"contact_stiffness_n_m": 1e4, "step_us": 0.5, "ratio": 1.0, "short_on_contact": False}
+    volts = {"kind": "constant", "amplitude_v": -4.5}
+    rest = {"sample_rate_khz": 200, "guard.stop_on_contact": False, "device.bias_v": 3.0}
+    found = play(slaved(plant=plant, reference=volts, **rest), 120)["plant.displacement"]
+
+    def motion(_, state):
+        x, v = state
+        inside = min(max(x, -0.9 * G), 0.9 * G)
+        whole, slope = 2 * G / (G * G - inside**2), 4 * G * inside / (G * G - inside**2) ** 2
+        whole += slope * (x - inside)
+        pull = 7.5**2 * (whole + slope * max(5 + x, 0.0)) + 1.5**2 * (-whole + slope * max(5 - x, 0.0))
+        total = 0.5 * N * EPS * T * 1e6 * pull - 0.0784 * x - 7.09e-4 * v
+        over = abs(x) - (G - 0.15)
+        total -= (math.copysign(1e4 * over, x) + 1.5e-2 * v) if over > 0.0 else 0.0
+        return [v, total / 2.2090e-4]
+
+    t = np.arange(120) * 5e-3
+    exact = integrate.solve_ivp(motion, (0, t[-1]), [0.0, 0.0], "DOP853", t, rtol=1e-9, atol=1e-12, max_step=1e-4).y[0]
+    assert np.abs(exact).max() > G - 0.15
+    before = int(np.argmax(exact > 1.5))
+    np.testing.assert_allclose(found[:before], exact[:before], atol=1e-3)
+    assert np.abs(found).max() < np.abs(exact).max() + 0.02
 
 
 def test_acceptance_of_the_slaved_plant_s_contact():

@@ -28,6 +28,21 @@ def test_integral_of_the_signal_is_the_intensity():
     np.testing.assert_allclose(trace["doppler.height"] - trace["doppler.height"][0], expected, atol=2e-3)
 
 
+def test_the_height_begins_where_the_beam_is():
+    """Of a shuttle that starts at speed: nothing has been integrated yet, then the trapezoids between samples."""
+    moving = {"plant.initial_velocity_um_ms": 40.0, "plant.initial_displacement_um": 0.7}
+    offset = {f"sensors.{name}.grating_offset_um": 0.0 for name in ("doppler", "through_wafer")}
+    board = make({**BOTH, **moving, **offset, "sample_rate_khz": 50.0})
+    trace = play(board, 40)
+    # h = d (1 - o) of a grating half open, smoothed by a beam of 1.5 um: o = 1/2 + sum a_m cos(2 pi m x / L)
+    m = np.arange(1, 40)
+    harmonics = 2 / (np.pi * m) * np.sin(np.pi * m / 2) * np.exp(-0.5 * (np.pi * m * 1.5 / 4) ** 2)
+    first = 2.0 * (0.5 - np.sum(harmonics * np.cos(2 * np.pi * m * 0.7 / 4)))
+    signal = trace["doppler.velocity"]
+    expected = first + np.concatenate([[0.0], np.cumsum(0.5 * (signal[1:] + signal[:-1])) * board.dt_ms])
+    np.testing.assert_allclose(trace["doppler.height"], expected, atol=1e-4)
+
+
 def test_reflected_motion_gives_the_same_signal():
     p = np.array(Doppler.Params(grating_offset_um=0.3).packed(make().spec.context()))
     for x in np.linspace(-3, 3, 13):

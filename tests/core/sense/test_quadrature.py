@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.core.sense.bench import errors, make, rms_nm
+from tests.core.sense.bench import TICKS, errors, make, rms_nm
 from tests.lab import do, play
 
 PAIR = {"sensor.kind": "quadrature"}
@@ -36,9 +36,28 @@ def test_error_follows_the_noise(snr_db):
     assert rms_nm(error) == pytest.approx(closed_form_nm(snr_db), rel=0.05)
 
 
-def test_filters_are_told_the_noise():
-    context = make({**PAIR, "sensors.dual_beam.snr_db": 25.0}).spec.context()
-    assert context.sensor_noise_um == pytest.approx(closed_form_nm(25.0) / 1e3)
+@pytest.mark.parametrize("kind", ["quadrature", "quadrature_kalman"])
+@pytest.mark.parametrize("spacing", [1.0, 0.5, 1.7])
+def test_filters_are_told_the_noise(kind, spacing):
+    """The sine of the phase is (second - cos d first) / sin d: beams close together amplify the noise."""
+    apart = {"sensors.dual_beam.spacing_um": spacing, "sensors.quadrature.spacing_um": spacing}
+    context = make({"sensor.kind": kind, "sensors.dual_beam.snr_db": 25.0, **apart}).spec.context()
+    amplified = closed_form_nm(25.0) / abs(math.sin(2 * math.pi * spacing / 4.0))
+    assert context.sensor_noise_um == pytest.approx(amplified / 1e3)
+
+
+@pytest.mark.parametrize("spacing", [0.5, 1.3])
+def test_the_noise_told_is_the_noise_there_is(spacing):
+    """The mean over a pitch of what two detectors leave in the phase, and the residuals of a bank that is told it."""
+    apart = {"sensors.dual_beam.spacing_um": spacing, "sensors.quadrature.spacing_um": spacing}
+    bank = {"kind": "mmae", "process_noise_v": 0.01, "hypotheses": [{"name": "healthy"}, {"name": "m", "mass": 2.0}]}
+    values = {**PAIR, **apart, "sensors.dual_beam.spot_um": 2.0, "sensors.dual_beam.snr_db": 40.0}
+    board = make({**values, "diagnosers": {"kalman": bank}})
+    trace = play(board, TICKS)
+    error = trace["sensor.displacement"] - trace["plant.displacement"]
+    told = board.spec.context().sensor_noise_um
+    assert np.sqrt(np.mean(error[2000:] ** 2)) == pytest.approx(told, rel=0.05)
+    assert trace["kalman.nis.healthy"][2000:].mean() == pytest.approx(1.0, rel=0.1)
 
 
 def test_spacing_error_makes_an_ellipse_and_knowing_it_mends_it():
