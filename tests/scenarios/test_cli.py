@@ -149,6 +149,9 @@ BAD = [
     (["run", "ch5-seven-step", "--set", "device.id=[1]"], "device.id"),
     (["run", "ch5-seven-step", "--set", "metrics.tail_share=nan"], "metrics.tail_share"),
     (["run", "ch5-seven-step", "--set", "identifiers.indirect_mrac.kind=excitation"], "identifiers.indirect_mrac"),
+    (["run", "ch5-seven-step", "--set", "device" + ".a" * 500 + "=1"], "at most 50 levels"),
+    (["run", "ch5-seven-step", "--set", "device=" + "[" * 500], "--set: nested too deeply, at most 50 levels"),
+    (["run", "ch5-seven-step", "--set", "device={" + "a." * 500 + "a=1}"], "at most 50 levels"),
     (["run", "ch5-seven-step", "--nonsense"], "--nonsense"),
     (["sweep", "mine.toml", "--workers", "0"], "--workers"),
     (["sweep"], "file"),
@@ -175,6 +178,8 @@ def test_bad_input_is_exit_2_and_one_line(call, tmp_path, args, word):
     [
         ("schema = ", "malformed"),
         (FILE + "\nvalue = 1\n", "expect.0"),
+        ("device" + ".a" * 500 + " = 1", "scenario: nested too deeply, at most 50 levels"),
+        ("x = " + "[" * 500, "scenario: nested too deeply, at most 50 levels"),
         (FILE.replace("sine", "sinus"), "reference.kind"),
     ],
 )
