@@ -21,7 +21,7 @@ class Body(BaseModel):
 
 
 def strict_json(text: str | bytes) -> Any:
-    """Parse JSON as the standard has it: no NaN, no Infinity, no number that overflows, no double key.
+    """Parse JSON as the standard has it: no NaN, no Infinity, no number that overflows, no double key, no half letter.
 
     It is nested no deeper than any document, so that whatever is made of it can be copied and told back.
 
@@ -50,9 +50,12 @@ def strict_json(text: str | bytes) -> Any:
         found = json.loads(text, parse_constant=refuse, parse_float=number, object_pairs_hook=unique)
         if depth(found) > DEEPEST:
             raise json.JSONDecodeError(TOO_DEEP, "", 0)
+        json.dumps(found, ensure_ascii=False).encode()
         return found
     except UnicodeDecodeError:
         raise json.JSONDecodeError("not UTF-8", "", 0) from None
+    except UnicodeEncodeError:
+        raise json.JSONDecodeError("a \\u escape is half of a letter that takes two", "", 0) from None
     except RecursionError:
         raise json.JSONDecodeError(TOO_DEEP, "", 0) from None
     except ValueError as error:

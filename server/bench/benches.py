@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 
 import pyarrow.parquet as pq
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from core.board.board import Board
 from core.board.condition import parse_condition
@@ -35,6 +35,9 @@ from server.store.recordings import About, Recording, RecordingDetail, Recording
 from server.store.traces import schema_of
 from server.version import VERSION
 
+MOST_LAYOUT = 200_000
+"""Characters of a layout as JSON: many times what the page writes."""
+
 
 class Wanted(BaseModel):
     """What to record: from now, or from when a condition holds, with some of the past."""
@@ -46,6 +49,13 @@ class Wanted(BaseModel):
     ticks: int | None = Field(None, ge=0, description="Ends by itself so many ticks after its beginning")
     when: str | None = Field(None, max_length=200, description="Waits for '<signal> > <value>'")
     layout: dict[str, Any] | None = Field(None, description="Layout of the page, kept with it")
+
+    @field_validator("layout")
+    @classmethod
+    def _fits(cls, layout: dict[str, Any] | None) -> dict[str, Any] | None:
+        if (size := len(json.dumps(layout))) > MOST_LAYOUT:
+            raise ValueError(f"has {size} characters as JSON, at most {MOST_LAYOUT}")
+        return layout
 
     @model_validator(mode="after")
     def _has_something(self) -> Self:

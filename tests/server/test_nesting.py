@@ -1,4 +1,4 @@
-"""Documents nested beyond reason: one clear line each, and the bench runs on."""
+"""Documents nested beyond reason, or with half a letter: one clear line each, and the bench runs on."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 
 from tests.server.test_bad_input import check, runs_on
+
+JSON = {"Content-Type": "application/json"}
 
 
 def nested(levels: int, leaf: Any = 1) -> Any:
@@ -75,3 +77,39 @@ def test_a_key_of_very_many_parts_takes_no_time(live: Any, key: str) -> None:
     began = time.monotonic()
     check(live.http.post("/api/v1/scenarios/check", json={"scenario": f"{key} = 1"}), 422, "too_deep", "50 levels")
     assert time.monotonic() - began < 5.0
+
+
+@pytest.mark.parametrize(
+    ("layout", "status", "words"),
+    [
+        (nested(300), 400, ["nested too deeply"]),
+        (nested(60), 400, ["nested too deeply"]),
+        ({"text": "x" * 300_000}, 422, ["layout", "200000"]),
+    ],
+    ids=["300 deep", "60 deep", "large"],
+)
+def test_a_layout_that_could_not_be_read_back_is_not_kept(
+    live: Any, layout: Any, status: int, words: list[str]
+) -> None:
+    bench = live.bench()
+    recordings = f"/api/v1/benches/{bench['id']}/recordings"
+    check(live.http.post(recordings, json={"name": "x", "ticks": 10, "layout": layout}), status, None, *words)
+    assert live.http.get(recordings).json()["recordings"] == []
+    runs_on(live, bench)
+
+
+def test_a_layout_is_read_back_as_it_was(live: Any) -> None:
+    bench = live.bench()
+    layout = nested(48, "\N{GRINNING FACE}")
+    body = {"name": "x", "ticks": 10, "layout": layout}
+    made = live.http.post(f"/api/v1/benches/{bench['id']}/recordings", json=body)
+    assert made.status_code == 201
+    assert live.http.get(f"/api/v1/recordings/{made.json()['id']}").json()["layout"] == layout
+
+
+@pytest.mark.parametrize("text", [r'{"layout": {"a": "\ud800"}}', r'{"layout": {"\udc00": 1}}'])
+def test_half_a_letter_is_not_kept(live: Any, text: str) -> None:
+    bench = live.bench()
+    recordings = f"/api/v1/benches/{bench['id']}/recordings"
+    check(live.http.post(recordings, content=text, headers=JSON), 400, "malformed", "letter")
+    assert live.http.get(recordings).json()["recordings"] == []
