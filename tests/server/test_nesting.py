@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from typing import Any
 
@@ -113,3 +114,12 @@ def test_half_a_letter_is_not_kept(live: Any, text: str) -> None:
     recordings = f"/api/v1/benches/{bench['id']}/recordings"
     check(live.http.post(recordings, content=text, headers=JSON), 400, "malformed", "letter")
     assert live.http.get(recordings).json()["recordings"] == []
+
+
+def test_half_a_letter_in_a_message_is_answered(live: Any) -> None:
+    bench = live.bench()
+    with live.stream(bench["id"]) as stream:
+        stream.connection.send(json.dumps({"type": "command", "id": "\ud800", "command": {"kind": "pause"}}))
+        assert stream.until_type("error")["error"]["code"] == "malformed"
+        assert stream.command("time_scale", value=0.002)["ok"]
+    runs_on(live, bench)
