@@ -53,6 +53,11 @@ class Identity:
         return self.has_bearer(connection) or self.has_cookie(connection)
 
 
+def fits_header(token: str) -> bool:
+    """Whether a token arrives in a header as it is: visible ASCII, no space at either end."""
+    return token.isascii() and token.isprintable() and token == token.strip()
+
+
 def token_of(data: Path) -> str:
     """Return the token kept in the data folder; made there on the first start.
 

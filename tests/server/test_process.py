@@ -76,6 +76,16 @@ def test_what_is_loaded_is_not_looked_through_for_garbage_again(
     assert capsys.readouterr().out == "CombBench is at somewhere\n"
 
 
+def test_the_printed_link_lets_in_whatever_the_token(tmp_path: Path) -> None:
+    token = "aaaaaaaaaaaaaaaa&b+c#d%41 e"
+    with process(tmp_path, COMBBENCH_TOKEN=token) as running:
+        link = running.address.removeprefix("CombBench is at ")
+        with httpx.Client(trust_env=False, timeout=20) as page:
+            assert page.get(link).status_code == 303
+            assert page.get(link.partition("/?")[0] + "/api/v1/benches").status_code == 200
+    assert token not in (tmp_path / "stderr").read_text()
+
+
 def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
     from websockets.sync.client import connect
 
@@ -145,6 +155,7 @@ def test_a_kill_loses_nothing_that_was_written(tmp_path: Path) -> None:
     [
         (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": ""}, ["0.0.0.0", "token"]),
         (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": "short"}, ["16 characters"]),
+        ([], {"COMBBENCH_TOKEN": "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9"}, ["token", "header"]),
         ([], {"COMBBENCH_MAX_BENCHES": "none"}, ["max_benches", "COMBBENCH_MAX_BENCHES"]),
         ([], {"COMBBENCH_DATA": "/proc/nowhere"}, ["/proc/nowhere", "data"]),
     ],

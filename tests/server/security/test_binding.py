@@ -31,6 +31,10 @@ TOKEN = "sixteen-characters-or-more"
         ("0.0.0.0", "", False),
         ("0.0.0.0", "short", False),
         ("127.0.0.1", "short", False),
+        ("127.0.0.1", "aaaaaaaaaaaaaaaa&b+c#d%41 e", True),
+        ("127.0.0.1", "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9", False),
+        ("127.0.0.1", "aaaaaaaaaaaaaaaa\r\nb: c", False),
+        ("127.0.0.1", "aaaaaaaaaaaaaaaa ", False),
     ],
 )
 def test_where_it_may_listen(host: str, token: str | None, allowed: bool) -> None:
