@@ -86,6 +86,15 @@ def test_the_printed_link_lets_in_whatever_the_token(tmp_path: Path) -> None:
     assert token not in (tmp_path / "stderr").read_text()
 
 
+def test_a_damaged_token_file_does_not_keep_it_from_starting(tmp_path: Path) -> None:
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "token").write_bytes(b"\xff\xfe")
+    with process(tmp_path, COMBBENCH_TOKEN="") as running:
+        kept = (tmp_path / "data" / "token").read_text().strip()
+        assert running.address.endswith(f"/?token={kept}") and len(kept) >= 43
+    assert "Traceback" not in (tmp_path / "stderr").read_text()
+
+
 def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
     from websockets.sync.client import connect
 
