@@ -138,6 +138,8 @@ class Conversation:
             if text is None:
                 raise InputError("messages to the server are JSON text", code="malformed")
             document = strict_json(text)
+            if not isinstance(document, dict):
+                raise InputError("a message must be a JSON object with a type")
             await self._do(CLIENT_MESSAGE.validate_python(document, strict=True))
         except json.JSONDecodeError as error:
             self._refuse(None, ErrorBody(code="malformed", message=f"not valid JSON: {error.msg}"))
@@ -183,7 +185,10 @@ class Conversation:
         indices = session.indices(message.signals)
         trigger = None
         if message.mode == "triggered" and message.trigger is not None:
-            (trigger,) = session.indices([message.trigger.signal])
+            try:
+                (trigger,) = session.indices([message.trigger.signal])
+            except InputError as error:
+                raise InputError(error.message, "trigger.signal", error.hint, error.code) from None
         others = [panel for number, panel in client.panels.items() if number != message.panel]
         if len(others) >= MAX_PANELS:
             raise InputError(f"{MAX_PANELS} panels are shown, the limit", "panel")
@@ -213,6 +218,4 @@ class Conversation:
 
 def _line(error: ValidationError) -> ErrorBody:
     """Say what is wrong with a message; pydantic puts its type into the place, people do not."""
-    first: dict[str, Any] = {**error.errors(include_url=False)[0]}
-    first["loc"] = first["loc"][1:]
-    return clear_line([first])
+    return clear_line([{**one, "loc": one["loc"][1:]} for one in error.errors(include_url=False)])

@@ -160,7 +160,9 @@ MESSAGES: list[tuple[str, str | bytes, str, list[str]]] = [
     ("not JSON", "hello", "malformed", ["JSON"]),
     ("binary", b"\x01\x02", "malformed", ["text"]),
     ("NaN", '{"type": "ack", "frame": NaN}', "malformed", ["NaN"]),
-    ("not an object", "[1]", "invalid", []),
+    ("not an object", "[1]", "invalid", ["a message", "object"]),
+    ("nothing", "null", "invalid", ["a message", "object"]),
+    ("a text", '"x"', "invalid", ["a message", "object"]),
     ("no type", "{}", "invalid", ["type"]),
     ("unknown type", '{"type": "shout"}', "invalid", ["type", "subscribe"]),
     ("unknown field", '{"type": "ack", "frame": 1, "x": 2}', "unknown_field", ["x"]),
@@ -203,6 +205,17 @@ def test_a_wrong_message(live: Any, what: str, text: str | bytes, code: str, wor
         stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
         assert stream.until_frame(1)
     runs_on(live, bench)
+
+
+def test_a_trigger_on_a_signal_that_is_not_there(live: Any) -> None:
+    bench = live.bench()
+    with live.stream(bench["id"]) as stream:
+        shown = {"panel": 1, "signals": ["plant.velocity"], "window_ms": 1.0, "mode": "triggered"}
+        stream.send(type="subscribe", **shown, trigger={"signal": "moon"})
+        error = stream.until_type("error")["error"]
+        assert (error["code"], error["field"]) == ("unknown", "trigger.signal") and "moon" in error["message"]
+        stream.send(type="subscribe", **{**shown, "signals": ["moon"]}, trigger={"signal": "moon"})
+        assert stream.until_type("error")["error"]["field"] == "signals"
 
 
 def test_a_message_of_1_mb(live: Any) -> None:
