@@ -27,7 +27,7 @@ from server.bench.portrait import design_of
 from server.bench.recorder import CLOSED, Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
-from server.bench.tape import Tape
+from server.bench.tape import REFUSAL, Tape
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
@@ -217,6 +217,8 @@ class Benches:
         kind = command.kind
         try:
             if isinstance(command, Reset) and isinstance(session.board, Tape):
+                if command.values:
+                    raise InputError(REFUSAL, "values", "run its scenario to change something", "conflict")
                 event = await self._engine.call(session.execute, Seek(tick=session.board.first), actor)
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed
