@@ -56,8 +56,11 @@ class Server(uvicorn.Server):
             # What is loaded by now stays: looked through for garbage again it would hold up all benches for 0.1 s.
             gc.collect()
             gc.freeze()
-            sys.stdout.write(f"CombBench is at {self._address}\n")
-            sys.stdout.flush()
+            try:
+                sys.stdout.write(f"CombBench is at {self._address}\n")
+                sys.stdout.flush()
+            except OSError as error:  # a full disk behind it is no reason not to serve
+                log.warning("the address to open cannot be printed: %s", error.strerror)
             if self._service.settings.open_page:
                 await asyncio.to_thread(webbrowser.open, self._address)
 

@@ -239,3 +239,15 @@ def test_the_program_itself(args, code, tmp_path):
     assert done.returncode == code
     assert "Traceback" not in done.stderr
     assert (json.loads(done.stdout)["ok"] if code == 0 else done.stdout == "") is True
+
+
+@pytest.mark.parametrize("args", [["run", "ch3-mrac-spring-x2"], ["catalog", "--json"], ["--help"]], ids=" ".join)
+def test_a_full_disk_behind_the_answer_is_exit_2_and_one_line(args, tmp_path):
+    command = [sys.executable, "-m", "server.cli", *args]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 2
+    assert done.stderr == "combbench: cannot write to standard output: No space left on device\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import gc
 import io
 import os
@@ -74,6 +75,26 @@ def test_what_is_loaded_is_not_looked_through_for_garbage_again(
     finally:
         gc.unfreeze()
     assert capsys.readouterr().out == "CombBench is at somewhere\n"
+
+
+def test_a_full_disk_behind_the_printed_address_is_no_reason_not_to_serve(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def begin(self: uvicorn.Server, sockets: Any = None) -> None:
+        self.started = True
+
+    monkeypatch.setattr(uvicorn.Server, "startup", begin)
+    settings = Settings(data=tmp_path)
+    with contextlib.suppress(OSError), Path("/dev/full").open("w") as full, monkeypatch.context() as patched:
+        server = make_server(settings, create_app(settings), "somewhere")
+        patched.setattr(sys, "stdout", full)
+        try:
+            asyncio.run(server.startup())
+        except OSError as error:
+            pytest.fail(f"it did not start: {error}")
+        finally:
+            gc.unfreeze()
+    assert "cannot be printed: No space left on device" in caplog.text
 
 
 def test_the_printed_link_lets_in_whatever_the_token(tmp_path: Path) -> None:
