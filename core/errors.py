@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -34,6 +35,10 @@ UNITS = (
     "_gpa",
     "_kg_m3",
 )
+
+
+ALTERNATIVE = re.compile(r"(?:list|dict|literal)\[.*\]")
+"""What pydantic puts into the place of a value that may be one of several types, to say of which it speaks."""
 
 
 def one_line(text: str) -> str:
@@ -96,6 +101,14 @@ def finite(value: float, field: str = "") -> float:
     return value
 
 
+def field_of(complaint: Mapping[str, Any]) -> str:
+    """Return the dotted place of a complaint of pydantic as people write it."""
+    parts = [str(part) for part in complaint["loc"] if not ALTERNATIVE.fullmatch(str(part))]
+    if parts[-1:] == ["str"] and complaint["type"] == "string_type":
+        del parts[-1]
+    return ".".join(parts)
+
+
 def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] | None = None) -> InputError:
     """Turn the first problem pydantic found into one clear line.
 
@@ -106,11 +119,10 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
     known : mapping of str to sequence of str, optional
         Field names allowed under each dotted parent, to suggest the one that was meant.
     """
-    first = error.errors(include_url=False)[0]
-    path = ".".join(str(part) for part in first["loc"])
+    found = error.errors(include_url=False)
+    first, path = found[0], field_of(found[0])
     given = first.get("input")
     kind = first["type"]
-    limits: dict[str, Any] = first.get("ctx", {})
     if kind == "extra_forbidden":
         parent, _, leaf = path.rpartition(".")
         return unknown_field(leaf, (known or {}).get(parent, ()), path)
@@ -135,7 +147,10 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
         "model_type": "must be a table",
     }
     if kind in sayings:
-        saying = sayings[kind].format(**limits)
+        # of a value that may be one of several types pydantic speaks once for each
+        same = [one for one in found if field_of(one) == path and one["type"] in sayings]
+        saying = " or ".join(dict.fromkeys(sayings[one["type"]].format(**one.get("ctx", {})) for one in same))
+        saying = saying.replace(" or must be ", " or ")
     else:
         saying = str(first["msg"]).removeprefix("Value error, ")
         if kind == "value_error":

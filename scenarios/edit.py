@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from typing import Any
 
 from core.board.document import with_values as write
 from core.errors import InputError
+from core.nesting import read_toml
 from scenarios.schema import Scenario
 
 
@@ -27,12 +27,14 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     Raises
     ------
     InputError
-        When there is no ``=``.
+        When there is no ``=``, or the value is nested too deeply.
     """
     path, equals, value = text.partition("=")
     if not equals or not path.strip():
         raise InputError(f"must be PATH=VALUE, got {text!r}", "--set")
     try:
-        return path.strip(), tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
+        return path.strip(), read_toml(f"value = {value}", "--set")["value"]
+    except InputError as error:
+        if error.code != "malformed":
+            raise
         return path.strip(), value.strip()

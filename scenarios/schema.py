@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from typing import Any, Literal, Self
 
 import tomlkit
@@ -13,6 +12,7 @@ from core.board.document import Document
 from core.board.ensemble import twin_documents
 from core.board.spec import FIELDS, parse
 from core.errors import InputError, from_validation, unknown_field
+from core.nesting import read_toml
 from core.table import Table
 from scenarios.stretch import Stretch
 from scenarios.studies import parse_study
@@ -190,13 +190,7 @@ class Scenario:
         InputError
             Naming the field, or the line of malformed TOML.
         """
-        if isinstance(text, dict):
-            return cls(text)
-        try:
-            document = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            raise InputError(f"malformed TOML: {error}", "scenario", code="malformed") from None
-        return cls(document)
+        return cls(text if isinstance(text, dict) else read_toml(text, "scenario"))
 
     @property
     def id(self) -> str:

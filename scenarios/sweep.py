@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, Self
@@ -16,6 +15,7 @@ from core.block import FloatArray
 from core.board.spec import MOST_SEED
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
+from core.nesting import read_toml
 from core.table import Table
 from scenarios.edit import with_values
 from scenarios.key import content_hash, run_key
@@ -171,12 +171,7 @@ class Sweep:
         InputError
             Naming the field, or the line of malformed TOML.
         """
-        if isinstance(text, dict):
-            return cls(text)
-        try:
-            return cls(tomllib.loads(text))
-        except tomllib.TOMLDecodeError as error:
-            raise InputError(f"malformed TOML: {error}", "sweep", code="malformed") from None
+        return cls(text if isinstance(text, dict) else read_toml(text, "sweep"))
 
     @property
     def seeds(self) -> range:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fnmatch
 import json
 import os
@@ -47,6 +48,8 @@ class OneLine(TyperGroup):
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 
 MOST_WORKERS = 1024
+NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
+"""How a write to what is open already can fail."""
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
 
 
@@ -302,8 +305,20 @@ def doctor(as_json: JsonOption = False) -> None:
 
 
 def main() -> None:
-    """Run the command line."""
-    app()
+    """Run the command line; an answer that cannot be written, as on a full disk, is one line too."""
+    try:
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
+    except OSError as error:
+        if error.errno not in NOT_WRITTEN or error.filename is not None:
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left would fail again at the end
+        if isinstance(error, BrokenPipeError):  # whoever read it has seen enough
+            sys.exit(1)
+        sys.stderr.write(f"combbench: cannot write to standard output: {error.strerror}\n")
+        sys.exit(2)
 
 
 if __name__ == "__main__":

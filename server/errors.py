@@ -15,7 +15,7 @@ from sqlalchemy.exc import DBAPIError
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from core.errors import InputError, one_line
+from core.errors import InputError, field_of, one_line
 
 log = logging.getLogger(__name__)
 
@@ -113,17 +113,20 @@ def clear_line(errors: Sequence[Any]) -> ErrorBody:
     if isinstance(cause, InputError):
         return body_of(cause)
     where = [part for part in first["loc"] if part not in ("body", "query", "path")]
-    field = ".".join(str(part) for part in where)
+    field = field_of({**first, "loc": where})
     code = "unknown_field" if kind == "extra_forbidden" else "invalid"
     if not field and kind in ("missing", "model_attributes_type", "dict_type"):
         hint = "send JSON with the header Content-Type: application/json"
         return ErrorBody(code=code, message="the body must be a JSON object", hint=hint)
-    return ErrorBody(code=code, message=f"{field or 'body'}: {_reason(first)}", field=field)
+    # of a value that may be one of several types pydantic speaks once for each
+    reasons = dict.fromkeys(_reason(one) for one in errors if field_of(one) == field_of(first))
+    reason = " or ".join(reasons).replace(" or should be ", " or ") + _given(first)
+    return ErrorBody(code=code, message=f"{field or 'body'}: {reason}", field=field)
 
 
 def _reason(error: Any) -> str:
     """Word one pydantic complaint."""
-    kind, given = str(error["type"]), error.get("input")
+    kind = str(error["type"])
     if kind == "extra_forbidden":
         return "unknown field"
     if kind == "missing":
@@ -133,12 +136,17 @@ def _reason(error: Any) -> str:
         allowed = context.get("expected_tags")
         tag = context.get("discriminator", "kind")
         return f"needs {tag} to be one of {allowed}" if allowed else f"needs {tag}"
-    text = str(error["msg"])
-    text = text.removeprefix("Input ").removeprefix("Value error, ")
-    shown: Any = given if isinstance(given, bool | int | float) else None
-    if isinstance(given, str) and len(given) <= 40:
-        shown = repr(given)
-    return f"{text} (got {shown})" if shown is not None else text
+    return str(error["msg"]).removeprefix("Input ").removeprefix("Value error, ")
+
+
+def _given(error: Any) -> str:
+    """Show what was given, if it is short and not the name of a field."""
+    kind, given = str(error["type"]), error.get("input")
+    if kind in ("extra_forbidden", "missing") or kind.startswith("union_tag"):
+        return ""
+    if isinstance(given, bool | int | float):
+        return f" (got {given})"
+    return f" (got {given!r})" if isinstance(given, str) and len(given) <= 40 else ""
 
 
 def install(app: FastAPI) -> None:

@@ -10,11 +10,13 @@ import socket
 import sys
 import webbrowser
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
 import uvicorn
 
 from core.errors import InputError
 from server import logs
+from server.security.identity import fits_header
 from server.settings import Settings
 
 if TYPE_CHECKING:
@@ -54,8 +56,11 @@ class Server(uvicorn.Server):
             # What is loaded by now stays: looked through for garbage again it would hold up all benches for 0.1 s.
             gc.collect()
             gc.freeze()
-            sys.stdout.write(f"CombBench is at {self._address}\n")
-            sys.stdout.flush()
+            try:
+                sys.stdout.write(f"CombBench is at {self._address}\n")
+                sys.stdout.flush()
+            except OSError as error:  # a full disk behind it is no reason not to serve
+                log.warning("the address to open cannot be printed: %s", error.strerror)
             if self._service.settings.open_page:
                 await asyncio.to_thread(webbrowser.open, self._address)
 
@@ -82,6 +87,9 @@ def check_binding(settings: Settings) -> None:
     token = settings.token.get_secret_value() if settings.token else ""
     if token and len(token) < MIN_TOKEN:
         raise InputError(f"must have at least {MIN_TOKEN} characters", "token")
+    if not fits_header(token):
+        text = "cannot be sent in a header; allowed: letters without accents, digits and signs, no space at either end"
+        raise InputError(text, "token", "set COMBBENCH_TOKEN to another")
     if not settings.is_loopback and not token:
         raise InputError(
             f"{settings.host} can be reached from other machines, which needs an access token",
@@ -161,7 +169,7 @@ def serve(settings: Settings) -> None:
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else host
     port = listener.getsockname()[1]
-    address = f"http://{shown}:{port}/?token={app.state.identity.token}"
+    address = f"http://{shown}:{port}/?token={quote(app.state.identity.token, safe='')}"
     server = make_server(settings, app, address)
     # Once all is stopped uvicorn raises the signal again; being told to stop is no failure.
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -127,8 +127,10 @@ def load_settings(**given: Any) -> Settings:
             raise InputError(f"unknown setting '{name}' in {CONFIG_FILE}", field=name) from None
         source = _source(name, told, _file_values())
         raise InputError(f"setting '{name}' from {source}: {first['msg'].lower()}", field=name) from None
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError(f"{CONFIG_FILE} is not valid TOML: {error}") from None
+    except OSError as error:
+        raise InputError(f"cannot read {CONFIG_FILE}: {error.strerror}") from None
 
 
 def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting]:
@@ -155,6 +157,6 @@ def _source(name: str, told: dict[str, Any], file_values: dict[str, Any]) -> str
 def _file_values() -> dict[str, Any]:
     """Read combbench.toml if there is one."""
     try:
-        return tomllib.loads(CONFIG_FILE.read_text())
-    except (OSError, tomllib.TOMLDecodeError):
+        return tomllib.loads(CONFIG_FILE.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError):
         return {}

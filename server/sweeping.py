@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ import pyarrow.parquet as pq
 from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
+from core.nesting import read_toml
 from scenarios.campaign import Campaign, Stopped
 from scenarios.outcome import Outcome
 from scenarios.report import campaign_report, results_table
@@ -59,13 +59,11 @@ def read_sweep(path: Path) -> Sweep:
 
 def _toml(path: Path, field: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text("utf-8"))
+        return read_toml(path.read_text("utf-8"), field, f"TOML in {path}")
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror}", field) from None
     except UnicodeDecodeError:
         raise InputError(f"{path} is not UTF-8 text", field) from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"malformed TOML in {path}: {error}", field, code="malformed") from None
 
 
 def carry_out(

@@ -9,6 +9,7 @@ from typing import Any
 
 from core import registry
 from core.errors import InputError, short
+from core.nesting import DEEPEST, TOO_DEEP, depth
 
 Document = dict[str, Any]
 IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
@@ -22,6 +23,9 @@ EXCHANGED = {"reference.kind": ("reference", "kind", ()), "plant.model": ("plant
 
 ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_um": "amplitude_v"}
 """An amplitude is given in volts or in micrometres; setting one drops the other."""
+
+LONGEST_PATH = 60
+"""Characters of a path that is told back because of its length."""
 
 DEFAULTS: Document = {
     "device": {"id": "ch3"},
@@ -86,6 +90,9 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
         parts = path.split(".")
         if not all(parts):
             raise InputError("is not a dotted path", path)
+        if len(parts) + depth(value) > DEEPEST:
+            shown = path if len(path) <= LONGEST_PATH else f"{path[:LONGEST_PATH]}…"
+            raise InputError(TOO_DEEP, shown, code="too_deep")
         table: Any = doc
         for part in parts[:-1]:
             if isinstance(table, list):

@@ -11,6 +11,8 @@ from fastapi import Request, Response
 from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict
 
+from core.nesting import DEEPEST, TOO_DEEP, depth
+
 
 class Body(BaseModel):
     """Base of every request body."""
@@ -19,7 +21,9 @@ class Body(BaseModel):
 
 
 def strict_json(text: str | bytes) -> Any:
-    """Parse JSON as the standard has it: no NaN, no Infinity, no number that overflows, no double key.
+    """Parse JSON as the standard has it: no NaN, no Infinity, no number that overflows, no double key, no half letter.
+
+    It is nested no deeper than any document, so that whatever is made of it can be copied and told back.
 
     Raises
     ------
@@ -43,11 +47,17 @@ def strict_json(text: str | bytes) -> Any:
         return table
 
     try:
-        return json.loads(text, parse_constant=refuse, parse_float=number, object_pairs_hook=unique)
+        found = json.loads(text, parse_constant=refuse, parse_float=number, object_pairs_hook=unique)
+        if depth(found) > DEEPEST:
+            raise json.JSONDecodeError(TOO_DEEP, "", 0)
+        json.dumps(found, ensure_ascii=False).encode()
+        return found
     except UnicodeDecodeError:
         raise json.JSONDecodeError("not UTF-8", "", 0) from None
+    except UnicodeEncodeError:
+        raise json.JSONDecodeError("a \\u escape is half of a letter that takes two", "", 0) from None
     except RecursionError:
-        raise json.JSONDecodeError("nested too deeply", "", 0) from None
+        raise json.JSONDecodeError(TOO_DEEP, "", 0) from None
     except ValueError as error:
         if isinstance(error, json.JSONDecodeError):
             raise

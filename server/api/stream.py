@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
@@ -35,8 +36,9 @@ from server.stream.wire import (
 )
 
 router = APIRouter(tags=["stream"])
+log = logging.getLogger(__name__)
 
-CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
+CLOSE_VERSION, CLOSE_FLOOD, CLOSE_FAILED = 4001, 1008, 1011
 LAST_WORDS_S = 0.2
 """For what waits to be sent before a close; a line that is stuck takes none of it."""
 
@@ -79,7 +81,11 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         service.hub.remove(client)
         for task in tasks:
             task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+        for found in await asyncio.gather(*tasks, return_exceptions=True):
+            # to send to one who has gone is no failure
+            if isinstance(found, Exception) and not isinstance(found, WebSocketDisconnect):
+                log.error("a stream of bench %s broke off", bench_id, exc_info=found)
+                client.close(CLOSE_FAILED, "the server failed on this stream; its log says why")
         await _close(socket, client, service)
 
 
@@ -132,6 +138,8 @@ class Conversation:
             if text is None:
                 raise InputError("messages to the server are JSON text", code="malformed")
             document = strict_json(text)
+            if not isinstance(document, dict):
+                raise InputError("a message must be a JSON object with a type")
             await self._do(CLIENT_MESSAGE.validate_python(document, strict=True))
         except json.JSONDecodeError as error:
             self._refuse(None, ErrorBody(code="malformed", message=f"not valid JSON: {error.msg}"))
@@ -139,6 +147,10 @@ class Conversation:
             self._refuse(document, _line(error))
         except (InputError, ApiError) as error:
             self._refuse(document, body_of(error))
+        except Exception:
+            log.exception("unexpected error in a message to bench %s", self._client.session.id)
+            text = "the server failed on this message; its log says why"
+            self._refuse(document, ErrorBody(code="internal", message=text))
 
     async def _do(self, message: BaseModel) -> None:
         """Do what a valid message says."""
@@ -173,7 +185,10 @@ class Conversation:
         indices = session.indices(message.signals)
         trigger = None
         if message.mode == "triggered" and message.trigger is not None:
-            (trigger,) = session.indices([message.trigger.signal])
+            try:
+                (trigger,) = session.indices([message.trigger.signal])
+            except InputError as error:
+                raise InputError(error.message, "trigger.signal", error.hint, error.code) from None
         others = [panel for number, panel in client.panels.items() if number != message.panel]
         if len(others) >= MAX_PANELS:
             raise InputError(f"{MAX_PANELS} panels are shown, the limit", "panel")
@@ -203,6 +218,4 @@ class Conversation:
 
 def _line(error: ValidationError) -> ErrorBody:
     """Say what is wrong with a message; pydantic puts its type into the place, people do not."""
-    first: dict[str, Any] = {**error.errors(include_url=False)[0]}
-    first["loc"] = first["loc"][1:]
-    return clear_line([first])
+    return clear_line([{**one, "loc": one["loc"][1:]} for one in error.errors(include_url=False)])

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 
 import pyarrow.parquet as pq
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from core.board.board import Board
 from core.board.condition import parse_condition
@@ -27,13 +27,16 @@ from server.bench.portrait import design_of
 from server.bench.recorder import CLOSED, Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
-from server.bench.tape import Tape
+from server.bench.tape import REFUSAL, Tape
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
 from server.store.recordings import About, Recording, RecordingDetail, Recordings
 from server.store.traces import schema_of
 from server.version import VERSION
+
+MOST_LAYOUT = 200_000
+"""Characters of a layout as JSON: many times what the page writes."""
 
 
 class Wanted(BaseModel):
@@ -46,6 +49,13 @@ class Wanted(BaseModel):
     ticks: int | None = Field(None, ge=0, description="Ends by itself so many ticks after its beginning")
     when: str | None = Field(None, max_length=200, description="Waits for '<signal> > <value>'")
     layout: dict[str, Any] | None = Field(None, description="Layout of the page, kept with it")
+
+    @field_validator("layout")
+    @classmethod
+    def _fits(cls, layout: dict[str, Any] | None) -> dict[str, Any] | None:
+        if (size := len(json.dumps(layout))) > MOST_LAYOUT:
+            raise ValueError(f"has {size} characters as JSON, at most {MOST_LAYOUT}")
+        return layout
 
     @model_validator(mode="after")
     def _has_something(self) -> Self:
@@ -207,6 +217,8 @@ class Benches:
         kind = command.kind
         try:
             if isinstance(command, Reset) and isinstance(session.board, Tape):
+                if command.values:
+                    raise InputError(REFUSAL, "values", "run its scenario to change something", "conflict")
                 event = await self._engine.call(session.execute, Seek(tick=session.board.first), actor)
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed

@@ -15,7 +15,7 @@ from server.security.identity import COOKIE, Identity
 from server.security.origin import OriginPolicy
 
 OPEN_PATHS = frozenset({"/health/live", "/health/ready"})
-"""Answered without a token: a container's health check has none, and they tell nothing."""
+"""Answered without a token: a container's health check has none; they tell which parts are well."""
 
 CLOSE_ORIGIN, CLOSE_AUTH = 4003, 4401
 

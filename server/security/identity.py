@@ -6,6 +6,7 @@ import hashlib
 import hmac
 import os
 import secrets
+import tempfile
 from pathlib import Path
 
 from starlette.requests import HTTPConnection
@@ -53,21 +54,27 @@ class Identity:
         return self.has_bearer(connection) or self.has_cookie(connection)
 
 
+def fits_header(token: str) -> bool:
+    """Whether a token arrives in a header as it is: visible ASCII, no space at either end."""
+    return token.isascii() and token.isprintable() and token == token.strip()
+
+
 def token_of(data: Path) -> str:
-    """Return the token kept in the data folder; made there on the first start.
+    """Return the token kept in the data folder; made there on the first start, or when what is kept is no token.
 
     It survives restarts, so that an open page finds its way back; only the owner may read the file.
     """
     path = data / TOKEN_FILE
     try:
-        kept = path.read_text().strip()
-    except FileNotFoundError:
+        kept = path.read_text("ascii").strip()
+    except (FileNotFoundError, UnicodeDecodeError):
         kept = ""
-    if len(kept) >= 32:
+    if len(kept) >= 32 and fits_header(kept):
         return kept
     token = secrets.token_urlsafe(32)
     data.mkdir(parents=True, exist_ok=True)
-    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    descriptor, part = tempfile.mkstemp(dir=data, prefix=f"{TOKEN_FILE}.")  # for the owner alone
     with os.fdopen(descriptor, "w") as file:
         file.write(token + "\n")
+    os.replace(part, path)
     return token

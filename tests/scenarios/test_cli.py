@@ -149,6 +149,9 @@ BAD = [
     (["run", "ch5-seven-step", "--set", "device.id=[1]"], "device.id"),
     (["run", "ch5-seven-step", "--set", "metrics.tail_share=nan"], "metrics.tail_share"),
     (["run", "ch5-seven-step", "--set", "identifiers.indirect_mrac.kind=excitation"], "identifiers.indirect_mrac"),
+    (["run", "ch5-seven-step", "--set", "device" + ".a" * 500 + "=1"], "at most 50 levels"),
+    (["run", "ch5-seven-step", "--set", "device=" + "[" * 500], "--set: nested too deeply, at most 50 levels"),
+    (["run", "ch5-seven-step", "--set", "device={" + "a." * 500 + "a=1}"], "at most 50 levels"),
     (["run", "ch5-seven-step", "--nonsense"], "--nonsense"),
     (["sweep", "mine.toml", "--workers", "0"], "--workers"),
     (["sweep"], "file"),
@@ -175,6 +178,8 @@ def test_bad_input_is_exit_2_and_one_line(call, tmp_path, args, word):
     [
         ("schema = ", "malformed"),
         (FILE + "\nvalue = 1\n", "expect.0"),
+        ("device" + ".a" * 500 + " = 1", "scenario: nested too deeply, at most 50 levels"),
+        ("x = " + "[" * 500, "scenario: nested too deeply, at most 50 levels"),
         (FILE.replace("sine", "sinus"), "reference.kind"),
     ],
 )
@@ -234,3 +239,15 @@ def test_the_program_itself(args, code, tmp_path):
     assert done.returncode == code
     assert "Traceback" not in done.stderr
     assert (json.loads(done.stdout)["ok"] if code == 0 else done.stdout == "") is True
+
+
+@pytest.mark.parametrize("args", [["run", "ch3-mrac-spring-x2"], ["catalog", "--json"], ["--help"]], ids=" ".join)
+def test_a_full_disk_behind_the_answer_is_exit_2_and_one_line(args, tmp_path):
+    command = [sys.executable, "-m", "server.cli", *args]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 2
+    assert done.stderr == "combbench: cannot write to standard output: No space left on device\n"

@@ -113,6 +113,9 @@ BAD = [
     ("", ["--workers", "1", "--scheduler", "tcp://a:1"], "--scheduler"),
     ("nonsense = 1\n", [], "nonsense"),
     ("schema = ", [], "malformed"),
+    ("x = " + "[" * 500, [], "sweep: nested too deeply, at most 50 levels"),
+    ("set.device" + ".a" * 500 + " = 1", [], "sweep: nested too deeply, at most 50 levels"),
+    ('[grid]\n"device' + ".a" * 500 + '" = [1]\n', [], "nested too deeply, at most 50 levels"),
     ('[grid]\n"controller.kind" = []\n', [], "grid.controller.kind"),
     ('[grid]\n"controller.knd" = ["pid"]\n', [], "controller.knd"),
 ]

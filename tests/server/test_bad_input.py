@@ -75,6 +75,7 @@ BODIES: list[tuple[str, bytes, int, str, list[str]]] = [
     ("unknown field", b'{"scenario": "ch5-seven-step", "colour": 1}', 422, "unknown_field", ["colour"]),
     ("missing field", b"{}", 422, "invalid", ["scenario", "required"]),
     ("wrong type", b'{"scenario": "ch5-seven-step", "paused": "yes"}', 422, "invalid", ["paused"]),
+    ("one of two types", b'{"scenario": 7}', 422, "invalid", ["scenario: should be a valid string or a valid dict"]),
     ("number as text", b'{"scenario": "ch5-seven-step", "seed": "1"}', 422, "invalid", ["seed"]),
     ("out of range", b'{"scenario": "ch5-seven-step", "time_scale": 5}', 422, "invalid", ["time_scale", "1"]),
     ("not live path", b'{"scenario": "ch5-seven-step", "set": {"a.b": 1}}', 422, "unknown", ["a"]),
@@ -121,6 +122,8 @@ COMMANDS: list[tuple[str, dict[str, Any], str, list[str]]] = [
     ("unknown fault", {"kind": "inject", "fault": "rust", "severity": 1}, "unknown", ["rust", "added_mass"]),
     ("unknown controller", {"kind": "switch", "controller": "magic"}, "unknown", ["magic", "mrac"]),
     ("wrong type", {"kind": "inject", "fault": "damping", "severity": "heavy"}, "invalid", ["severity"]),
+    ("one of two types", {"kind": "heal", "faults": 5}, "invalid", ["faults: must be a list or one of 'all'"]),
+    ("a wrong entry", {"kind": "heal", "faults": [5]}, "invalid", ["faults.0: must be a text"]),
     ("unknown field", {"kind": "switch", "controller": "pid", "fast": True}, "unknown", ["fast"]),
     ("healing what is not there", {"kind": "heal", "faults": ["damping"]}, "conflict", ["damping", "not there"]),
     ("not live", {"kind": "set", "values": {"sample_rate_khz": 10}}, "not_live", ["sample_rate_khz"]),
@@ -157,7 +160,9 @@ MESSAGES: list[tuple[str, str | bytes, str, list[str]]] = [
     ("not JSON", "hello", "malformed", ["JSON"]),
     ("binary", b"\x01\x02", "malformed", ["text"]),
     ("NaN", '{"type": "ack", "frame": NaN}', "malformed", ["NaN"]),
-    ("not an object", "[1]", "invalid", []),
+    ("not an object", "[1]", "invalid", ["a message", "object"]),
+    ("nothing", "null", "invalid", ["a message", "object"]),
+    ("a text", '"x"', "invalid", ["a message", "object"]),
     ("no type", "{}", "invalid", ["type"]),
     ("unknown type", '{"type": "shout"}', "invalid", ["type", "subscribe"]),
     ("unknown field", '{"type": "ack", "frame": 1, "x": 2}', "unknown_field", ["x"]),
@@ -200,6 +205,17 @@ def test_a_wrong_message(live: Any, what: str, text: str | bytes, code: str, wor
         stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
         assert stream.until_frame(1)
     runs_on(live, bench)
+
+
+def test_a_trigger_on_a_signal_that_is_not_there(live: Any) -> None:
+    bench = live.bench()
+    with live.stream(bench["id"]) as stream:
+        shown = {"panel": 1, "signals": ["plant.velocity"], "window_ms": 1.0, "mode": "triggered"}
+        stream.send(type="subscribe", **shown, trigger={"signal": "moon"})
+        error = stream.until_type("error")["error"]
+        assert (error["code"], error["field"]) == ("unknown", "trigger.signal") and "moon" in error["message"]
+        stream.send(type="subscribe", **{**shown, "signals": ["moon"]}, trigger={"signal": "moon"})
+        assert stream.until_type("error")["error"]["field"] == "signals"
 
 
 def test_a_message_of_1_mb(live: Any) -> None:

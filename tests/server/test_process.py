@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import gc
 import io
 import os
@@ -76,6 +77,45 @@ def test_what_is_loaded_is_not_looked_through_for_garbage_again(
     assert capsys.readouterr().out == "CombBench is at somewhere\n"
 
 
+def test_a_full_disk_behind_the_printed_address_is_no_reason_not_to_serve(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def begin(self: uvicorn.Server, sockets: Any = None) -> None:
+        self.started = True
+
+    monkeypatch.setattr(uvicorn.Server, "startup", begin)
+    settings = Settings(data=tmp_path)
+    with contextlib.suppress(OSError), Path("/dev/full").open("w") as full, monkeypatch.context() as patched:
+        server = make_server(settings, create_app(settings), "somewhere")
+        patched.setattr(sys, "stdout", full)
+        try:
+            asyncio.run(server.startup())
+        except OSError as error:
+            pytest.fail(f"it did not start: {error}")
+        finally:
+            gc.unfreeze()
+    assert "cannot be printed: No space left on device" in caplog.text
+
+
+def test_the_printed_link_lets_in_whatever_the_token(tmp_path: Path) -> None:
+    token = "aaaaaaaaaaaaaaaa&b+c#d%41 e"
+    with process(tmp_path, COMBBENCH_TOKEN=token) as running:
+        link = running.address.removeprefix("CombBench is at ")
+        with httpx.Client(trust_env=False, timeout=20) as page:
+            assert page.get(link).status_code == 303
+            assert page.get(link.partition("/?")[0] + "/api/v1/benches").status_code == 200
+    assert token not in (tmp_path / "stderr").read_text()
+
+
+def test_a_damaged_token_file_does_not_keep_it_from_starting(tmp_path: Path) -> None:
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "token").write_bytes(b"\xff\xfe")
+    with process(tmp_path, COMBBENCH_TOKEN="") as running:
+        kept = (tmp_path / "data" / "token").read_text().strip()
+        assert running.address.endswith(f"/?token={kept}") and len(kept) >= 43
+    assert "Traceback" not in (tmp_path / "stderr").read_text()
+
+
 def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
     from websockets.sync.client import connect
 
@@ -145,6 +185,7 @@ def test_a_kill_loses_nothing_that_was_written(tmp_path: Path) -> None:
     [
         (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": ""}, ["0.0.0.0", "token"]),
         (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": "short"}, ["16 characters"]),
+        ([], {"COMBBENCH_TOKEN": "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9"}, ["token", "header"]),
         ([], {"COMBBENCH_MAX_BENCHES": "none"}, ["max_benches", "COMBBENCH_MAX_BENCHES"]),
         ([], {"COMBBENCH_DATA": "/proc/nowhere"}, ["/proc/nowhere", "data"]),
     ],

@@ -45,10 +45,12 @@ def test_the_command_line_wins_over_the_environment_over_the_file_over_the_defau
         ("port = 'many'", ["'port'", "combbench.toml", "integer"]),
         ("max_benches = 0", ["'max_benches'", "greater than or equal to 1"]),
         ("port = [", ["not valid TOML"]),
+        ("port = " + "[" * 5000, ["not valid TOML"]),
+        ("port = '\xff'", ["not valid TOML", "utf-8"]),
     ],
 )
 def test_a_wrong_file_is_refused_in_one_line(here: Path, text: str, words: list[str]) -> None:
-    (here / "combbench.toml").write_text(text)
+    (here / "combbench.toml").write_text(text, "latin-1")
     with pytest.raises(InputError) as caught:
         load_settings()
     said = str(caught.value)

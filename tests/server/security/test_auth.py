@@ -9,7 +9,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 OPEN = {
-    "/health/live": "a container's health check has no token, and it tells nothing",
+    "/health/live": "a container's health check has no token, and it tells only which parts are well",
     "/health/ready": "the same",
 }
 

@@ -31,6 +31,10 @@ TOKEN = "sixteen-characters-or-more"
         ("0.0.0.0", "", False),
         ("0.0.0.0", "short", False),
         ("127.0.0.1", "short", False),
+        ("127.0.0.1", "aaaaaaaaaaaaaaaa&b+c#d%41 e", True),
+        ("127.0.0.1", "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9", False),
+        ("127.0.0.1", "aaaaaaaaaaaaaaaa\r\nb: c", False),
+        ("127.0.0.1", "aaaaaaaaaaaaaaaa ", False),
     ],
 )
 def test_where_it_may_listen(host: str, token: str | None, allowed: bool) -> None:
@@ -59,6 +63,16 @@ def test_the_token_is_made_once_and_only_the_owner_reads_it(tmp_path: Path) -> N
     assert token_of(tmp_path / "data") == token
     assert (tmp_path / "data" / "token").stat().st_mode & 0o777 == 0o600
     assert token_of(tmp_path / "other") != token
+
+
+@pytest.mark.parametrize("damaged", [b"\xff\xfe", b"", b"a" * 31, "\u00e9".encode() * 40, b"a" * 20 + b"\x00" * 20])
+def test_a_token_file_with_no_token_in_it_gets_a_new_one(tmp_path: Path, damaged: bytes) -> None:
+    (tmp_path / "token").write_bytes(damaged)
+    (tmp_path / "token").chmod(0o644)
+    token = token_of(tmp_path)
+    assert len(token) >= 43 and token_of(tmp_path) == token
+    assert (tmp_path / "token").stat().st_mode & 0o777 == 0o600
+    assert [path.name for path in tmp_path.iterdir()] == ["token"]
 
 
 def test_a_cookie_belongs_to_its_token() -> None:

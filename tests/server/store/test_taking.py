@@ -217,6 +217,9 @@ def test_a_replay_seeks_and_loops(live: Any) -> None:
     assert live.command(replay, "seek", tick=2500).status_code == 200 and live.get(replay)["tick"] == 2500
     assert live.command(replay, "step", ticks=9000).status_code == 200 and live.get(replay)["tick"] == 3000
     assert live.command(replay, "seek", tick=10).status_code == 422
+    refused = live.command(replay, "reset", values={"seed": 3})
+    assert refused.status_code == 422 and refused.json()["error"]["field"] == "values"
+    assert refused.json()["error"]["code"] == "conflict" and live.get(replay)["tick"] == 3000
     assert live.command(replay, "reset").status_code == 200 and live.get(replay)["tick"] == 1000
     assert live.command(replay, "loop", start_tick=2000, end_tick=2050).status_code == 422
     assert live.command(replay, "loop", start_tick=2000, end_tick=2200).status_code == 200

@@ -1,0 +1,45 @@
+"""How deep a document may be nested: whoever copies, checks or prints a deeper one may run out of stack."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+from core.errors import InputError
+
+DEEPEST = 50
+TOO_DEEP = f"nested too deeply, at most {DEEPEST} levels"
+
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"""(?<![\w"'-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST}}}""")
+"""A dotted key of too many parts; found before TOML is read, which takes time by the square of their number."""
+
+
+def depth(document: Any) -> int:
+    """Return how many tables and lists lie in one another."""
+    levels, inside = 0, [document]
+    while tables := [one for one in inside if isinstance(one, dict | list)]:
+        inside = [one for table in tables for one in (table.values() if isinstance(table, dict) else table)]
+        levels += 1
+    return levels
+
+
+def read_toml(text: str, field: str, what: str = "TOML") -> dict[str, Any]:
+    """Read TOML.
+
+    Raises
+    ------
+    InputError
+        Naming the line of malformed TOML, with the code ``malformed``; or saying how deep it may be nested.
+    """
+    if not _LONG_KEY.search(text):
+        try:
+            document = tomllib.loads(text)
+            if depth(document) <= DEEPEST:
+                return document
+        except tomllib.TOMLDecodeError as error:
+            raise InputError(f"malformed {what}: {error}", field, code="malformed") from None
+        except RecursionError:
+            pass  # lists in lists, which the reader goes into one by one
+    raise InputError(TOO_DEEP, field, code="too_deep")
