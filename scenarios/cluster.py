@@ -77,6 +77,24 @@ class Cluster(Executor):
         return answer
 
 
+def check_address(address: str) -> None:
+    """Refuse what is no address; a client that is given one does not only refuse it, it leaves half of itself behind.
+
+    Raises
+    ------
+    InputError
+        When it is none.
+    """
+    from distributed.comm.addressing import get_address_host_port
+
+    try:
+        _, port = get_address_host_port(address)
+        if not 0 < port < 65536:
+            raise ValueError(f"there is no port {port}")
+    except ValueError as error:
+        raise InputError(f"is no address of a scheduler: {error}", "--scheduler") from None
+
+
 @contextmanager
 def open_cluster(address: str) -> Iterator[Cluster]:
     """Connect to the scheduler at an address.
@@ -90,11 +108,9 @@ def open_cluster(address: str) -> Iterator[Cluster]:
     """
     from distributed import Client
 
+    check_address(address)
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told by the futures
-    try:
-        client = Client(address, timeout=CONNECT_S, set_as_default=False)
-    except ValueError as error:
-        raise InputError(f"is no address of a scheduler: {error}", "--scheduler") from None
+    client = Client(address, timeout=CONNECT_S, set_as_default=False)
     try:
         yield Cluster(client)
     finally:

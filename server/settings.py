@@ -49,7 +49,9 @@ class Settings(BaseSettings):
     )
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
-    quota_bytes: int = Field(50_000_000_000, ge=0, description="Bytes of recordings and runs; beyond, no new ones.")
+    quota_bytes: int = Field(
+        50_000_000_000, ge=0, description="Bytes of recordings, runs and their database; beyond, no new ones."
+    )
     disk_reserve_bytes: int = Field(
         100_000_000, ge=0, description="Free space that is never used: recordings end, runs are refused."
     )

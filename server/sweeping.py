@@ -15,16 +15,19 @@ from sqlalchemy.exc import DBAPIError
 from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.campaign import Campaign, Stopped
+from scenarios.cluster import check_address
+from scenarios.html import as_toml
 from scenarios.outcome import Outcome
 from scenarios.report import campaign_report, results_table
 from scenarios.sweep import Sweep
 from scenarios.tally import tally
-from scenarios.traces import write_json
+from scenarios.traces import write_json, write_text
 from server.store.database import Database, reason_of
 from server.store.results import Results
 
-TABLE, REPORT, POINTS, RUNS_PARQUET, RUNS_CSV = (
+TABLE, CAMPAIGN, REPORT, POINTS, RUNS_PARQUET, RUNS_CSV = (
     "campaign.sqlite3",
+    "campaign.toml",
     "report.html",
     "points.json",
     "runs.parquet",
@@ -80,14 +83,20 @@ def carry_out(
     Raises
     ------
     InputError
-        When the folder holds a campaign and it is not to be gone on with, or cannot be written.
+        When the folder holds another campaign, or one that is not to be gone on with, or cannot be written; and when
+        the address of the scheduler is none. Nothing is written then.
     Stopped
         When nothing computes any more, or nothing can be written; what is done is in the table.
     """
-    place = folder / TABLE
-    if (place.exists() or (folder / REPORT).exists()) and not resume:
+    if scheduler:
+        check_address(scheduler)
+    place, named = folder / TABLE, folder / CAMPAIGN
+    if any(path.exists() for path in (place, named, folder / REPORT)) and not resume:
         text = f"{folder} holds a campaign already"
         raise InputError(text, "--out", "--resume goes on with it; or choose another folder")
+    held = _toml(named, "--out").get("id") if named.exists() else sweep.head.id
+    if held != sweep.head.id:
+        raise InputError(f"{folder} holds the campaign {held}, not {sweep.head.id}", "--out", "choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if not os.access(folder, os.W_OK):
@@ -99,6 +108,7 @@ def carry_out(
     campaign = Campaign(sweep, results, workers=workers, scheduler=scheduler, on_progress=on_progress)
     try:
         database.migrate()
+        write_text(named, as_toml({**sweep.document, "id": sweep.head.id}))
         try:
             campaign.run()
         finally:

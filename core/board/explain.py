@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
 from core.board.spec import Section, Spec
 from core.board.wiring import scored
@@ -38,6 +38,7 @@ class Account(BaseModel):
     tick: int
     time_ms: float
     floor: float
+    evidence: str = Field(description="What log_likelihood is, in LaTeX; empty for that of the normal density")
     models: list[ModelAccount]
 
 
@@ -103,6 +104,7 @@ def explain(
         tick=tick,
         time_ms=tick * spec.dt_ms,
         floor=floor,
+        evidence=block.evidence,
         models=[
             ModelAccount(
                 name=label,

@@ -138,6 +138,9 @@ class ArxBank(Block):
         """Return the probabilities before a measurement from those after the one before."""
         return before
 
+    evidence: ClassVar[str] = ""
+    """What `log_likelihood` is, in LaTeX; nothing for the logarithm of the normal density."""
+
     @classmethod
     def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
         """Return the logarithm of the density of a residual."""

@@ -102,6 +102,8 @@ class LockIn(KalmanBank):
         )
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
 
+    evidence = r"-\frac{T_k}{2W}"
+
     @classmethod
     def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
         """Return the evidence of a sample: what of the residuals is at the tone, spread over the window."""

@@ -25,7 +25,7 @@ class SweptSine(Study):
     class Params(BlockParams):
         """How the sweep is made."""
 
-        amplitude_v: float = parameter(2.0, "amplitude", "V", gt=0, le=1000)
+        amplitude_v: float = parameter(2.0, "amplitude", "V", ge=1e-6, le=1000)
         points: int = parameter(31, "tones of each of the two passes", ge=4, le=1000)
         cycles: float = parameter(40.0, "cycles measured at each tone", ge=2, le=10_000)
         settle: float = parameter(12.0, "time constants waited before", ge=0, le=100)

@@ -35,7 +35,7 @@ T = TypeVar("T")
 class SweptSine(Body):
     """How to sweep."""
 
-    amplitude_v: float = Field(2.0, gt=0, le=1000)
+    amplitude_v: float = Field(2.0, ge=1e-6, le=1000)
     points: int = Field(31, ge=4, le=200, description="Tones of each of the two passes")
     cycles: float = Field(40.0, ge=2, le=1000, description="Cycles measured at each tone")
     settle: float = Field(12.0, ge=0, le=100, description="Time constants waited before")

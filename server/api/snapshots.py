@@ -30,19 +30,19 @@ async def take_snapshot(
 ) -> Snapshot:
     """Keep this moment."""
     name = body.name if body else ""
-    return await service.engine.call(session.take_snapshot, name, caller, service.settings.max_snapshots)
+    return await service.engine.call(session.snapshots.take, name, caller, service.settings.max_snapshots)
 
 
 @router.get("")
 async def list_snapshots(session: SessionDep) -> SnapshotList:
     """List the moments kept."""
-    return SnapshotList(snapshots=[kept.snapshot for kept in list(session.snapshots.values())])
+    return SnapshotList(snapshots=session.snapshots.all())
 
 
 @router.delete("/{snapshot_id}", status_code=204, dependencies=[RateLimited])
 async def delete_snapshot(snapshot_id: str, session: SessionDep, service: ServiceDep) -> None:
     """Forget a moment."""
-    await service.engine.call(session.forget_snapshot, snapshot_id)
+    await service.engine.call(session.snapshots.forget, snapshot_id)
 
 
 @router.post("/{snapshot_id}/restore", dependencies=[RateLimited])

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ValidationError
 from core.errors import InputError
 from server.api.bodies import strict_json
 from server.api.deps import SocketServiceDep, rate_limited
+from server.bench.events import Event
 from server.errors import ApiError, ErrorBody, body_of, clear_line
 from server.security.limits import Bucket
 from server.service import Service
@@ -173,11 +174,18 @@ class Conversation:
             client.resume(message.after)
 
     async def _command(self, message: CommandMessage) -> None:
-        """Carry out a command and say at which tick."""
+        """Carry out a command and say at which tick; the page is listened to while it steps."""
         if not self._commands.take():
             raise rate_limited(self._service.settings)
-        event = await self._service.benches.command(self._client.session, message.command, self._client.name)
-        self._client.post(Reply(id=message.id, ok=True, tick=event.tick))
+
+        def done(event: Event) -> None:
+            self._client.post(Reply(id=message.id, ok=True, tick=event.tick))
+
+        found = await self._service.benches.begin(self._client.session, message.command, self._client.name)
+        if isinstance(found, Event):
+            done(found)
+        else:
+            asyncio.wrap_future(found).add_done_callback(lambda step: done(step.result()))
 
     def _subscribe(self, message: Subscribe) -> None:
         """Show signals in a panel."""

@@ -52,6 +52,7 @@ async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -
     document = (
         body.sweep if isinstance(body.sweep, dict) else (await asyncio.to_thread(Sweep.load, body.sweep)).document
     )
+    await service.keeping.room()
     found, is_new = await service.sweeps.start(document)
     response.status_code = 202 if is_new else 200
     response.headers["Location"] = f"/api/v1/sweeps/{found.id}"

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 from collections import Counter
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, Self
 
@@ -141,7 +142,7 @@ class Benches:
         self._coming += 1
         try:
             twin = await self._engine.call(session.fork, snapshot_id)
-            await self._engine.call(self._open, twin, session.is_running)
+            await self._engine.call(self._open, twin, session.is_started)
         finally:
             self._coming -= 1
         self._sessions[twin.id] = twin
@@ -158,7 +159,7 @@ class Benches:
             If there are too many benches.
         """
         document = await self._engine.call(design_of, session)
-        paused, scale = not session.is_running, session.pacer.scale
+        paused, scale = not session.is_started, session.pacer.scale
         return await self.create(document, values, session.board.spec.seed, paused, scale)
 
     async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> Session:
@@ -207,14 +208,20 @@ class Benches:
             await self.close_bench(session)
 
     async def command(self, session: Session, command: Any, actor: str) -> Event:
-        """Carry out a command at the next tick edge.
+        """Carry out a command at the next tick edge, a step to its end.
 
         Raises
         ------
         InputError
             If it cannot be; nothing has changed then.
         """
+        found = await self.begin(session, command, actor)
+        return found if isinstance(found, Event) else await asyncio.wrap_future(found)
+
+    async def begin(self, session: Session, command: Any, actor: str) -> Event | Future[Event]:
+        """Carry out a command at the next tick edge; what is returned for a step has its event when it has ended."""
         kind = command.kind
+        event: Event | Future[Event]
         try:
             if isinstance(command, Reset) and isinstance(session.board, Tape):
                 if command.values:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Any
 
 from core.errors import InputError
@@ -59,7 +60,7 @@ class Replay(Session):
             fields: list[Any] = [event.get(name) for name in names]
             self.events.add(*fields)
 
-    def _run_command(self, command: RunsBench, actor: str) -> Event:
+    def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
         """Carry out a command to time; only here it can be turned back."""
         tape = self._tape
         if isinstance(command, Seek):
@@ -92,6 +93,7 @@ class Replay(Session):
 
     def _jump(self) -> None:
         """Let history and clock follow the tape."""
+        self.steps.end()
         self._rewind_history()
         if self._ends_at is None:
             self._ends_at = self._tape.end

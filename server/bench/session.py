@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from concurrent.futures import Future
 from datetime import UTC, datetime
 from typing import Any, get_args
 
-from core.board.board import Board, Checkpoint
+from core.board.board import Board
 from core.board.history import History
 from core.board.rows import Rows
 from core.device.geometry import Geometry
@@ -25,9 +25,10 @@ from server.bench.pacing import Pacer
 from server.bench.portrait import MAX_PENDING, document_of, status_of
 from server.bench.recorder import Recorder
 from server.bench.recordings import Recordings
-from server.bench.status import Snapshot
+from server.bench.snapshots import Snapshots
+from server.bench.steps import Steps
 from server.bench.tape import Tape
-from server.errors import ApiError, not_found
+from server.errors import not_found
 from server.metrics import Metrics
 
 RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
@@ -35,14 +36,6 @@ RUN = get_args(RunsBench)
 STATUS_S = 0.2
 FORK_TICKS = 20_000
 """Past a fork brings along."""
-
-
-@dataclass(frozen=True)
-class Kept:
-    """A snapshot and the moment it holds."""
-
-    snapshot: Snapshot
-    checkpoint: Checkpoint
 
 
 class Session:
@@ -84,8 +77,9 @@ class Session:
         self.created = datetime.now(UTC)
         self.events = EventLog()
         self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
-        self.snapshots: dict[str, Kept] = {}
+        self.snapshots = Snapshots(self)
         self.recordings = Recordings(self)
+        self.steps = Steps(self)
         self._history_ticks, self._metrics, self._clock = history_ticks, metrics, clock
         self._running = False
         self._closed = False
@@ -113,11 +107,18 @@ class Session:
 
     @property
     def is_running(self) -> bool:
-        """Whether time runs."""
+        """Whether time runs, be it to the end of a step."""
+        return self._running or bool(self.steps)
+
+    @property
+    def is_started(self) -> bool:
+        """Whether time runs until it is paused."""
         return self._running
 
     def target(self, now: float) -> int | None:
         """Return the tick to reach in this round; the end of the scenario is not passed unasked."""
+        if self.steps:
+            return None
         target = self.pacer.target(self.board.tick, now)
         if self._ends_at is not None:
             return self._ends_at if target is None else min(target, self._ends_at)
@@ -125,16 +126,19 @@ class Session:
 
     def slice(self, target: int | None) -> bool:
         """Advance by one slice; true while there is more to do."""
+        if self.steps:
+            return self.steps.slice()
         wanted = self.board.chunk if target is None else min(self.board.chunk, target - self.board.tick)
         if wanted > 0:
-            self._advance(wanted)
+            self.advance(wanted)
         if self._ends_at is not None and self.board.tick >= self._ends_at and self._running:
             self._finish()
         return self._running and (target is None or self.board.tick < target)
 
     def finish_round(self, target: int | None, now: float) -> None:
         """Account for a round; renew the status now and then."""
-        self.pacer.record(self.board.tick, target if self.pacer.scale is not None else None, now)
+        if self._running:
+            self.pacer.record(self.board.tick, target if self.pacer.scale is not None else None, now)
         overruns, given_up = self._counted
         if self.pacer.overruns > overruns:
             self._metrics.overruns.inc(self.pacer.overruns - overruns)
@@ -148,6 +152,7 @@ class Session:
     def fail(self, error: Exception) -> None:
         """Pause after an error nobody expected, and say so."""
         self._running = False
+        self.steps.end()
         self.note("board", "failed", f"stopped by an internal error: {error}")
         self.look()
 
@@ -161,8 +166,8 @@ class Session:
         self.note("board", "opened", "running" if start else "paused at the first tick")
         self.look()
 
-    def execute(self, command: Any, actor: str) -> Event:
-        """Carry out a command at this tick edge.
+    def execute(self, command: Any, actor: str) -> Event | Future[Event]:
+        """Carry out a command at this tick edge; what is returned for a step has its event when it has ended.
 
         Raises
         ------
@@ -172,6 +177,8 @@ class Session:
         self.must_be_open()
         if isinstance(command, RUN):
             event = self._run_command(command, actor)
+            if isinstance(event, Future):  # a short one is over before its status is worth a look
+                return event
         else:
             if len(self.board.pending) >= MAX_PENDING:
                 raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
@@ -204,18 +211,9 @@ class Session:
         self._sync_log()
         return event
 
-    def take_snapshot(self, name: str, actor: str, most: int) -> Snapshot:
-        """Keep this moment."""
-        if len(self.snapshots) >= most:
-            raise ApiError(409, "too_many_snapshots", f"{most} snapshots are kept, the limit (max_snapshots)")
-        snapshot = Snapshot(id=secrets.token_hex(6), tick=self.board.tick, name=name, created=datetime.now(UTC))
-        self.snapshots[snapshot.id] = Kept(snapshot, self.board.checkpoint())
-        self.note(actor, "snapshot_taken", f"kept this moment as {name or snapshot.id}")
-        return snapshot
-
     def restore(self, snapshot_id: str, actor: str) -> Event:
         """Go back to a moment."""
-        kept = self.snapshot(snapshot_id)
+        kept = self.snapshots.get(snapshot_id)
         self.board = Board.restore(kept.checkpoint)
         self._logged = self.board.log.last
         self._rewind_history()
@@ -223,13 +221,9 @@ class Session:
         self._ends_at = samples if samples is not None and self.board.tick < samples else None
         return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
 
-    def forget_snapshot(self, snapshot_id: str) -> None:
-        """Forget a kept moment."""
-        del self.snapshots[self.snapshot(snapshot_id).snapshot.id]
-
     def fork(self, snapshot_id: str | None) -> Session:
         """Return a second bench that goes on from this moment or a kept one."""
-        checkpoint = self.snapshot(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
+        checkpoint = self.snapshots.get(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
         board = Board.restore(checkpoint)
         twin = Session(self.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
         twin._logged = board.log.last
@@ -242,15 +236,10 @@ class Session:
         twin.look()
         return twin
 
-    def snapshot(self, snapshot_id: str) -> Kept:
-        """Return a kept moment."""
-        if snapshot_id not in self.snapshots:
-            raise not_found("snapshot", snapshot_id)
-        return self.snapshots[snapshot_id]
-
     def close(self) -> list[Recorder]:
         """Stop for good; returns the recordings that were under way."""
         self._running, self._closed = False, True
+        self.steps.end()
         return self.recordings.close()
 
     # ---- what the event loop reads
@@ -292,7 +281,7 @@ class Session:
 
     # ---- inside
 
-    def _run_command(self, command: RunsBench, actor: str) -> Event:
+    def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
         """Carry out a command that runs the bench."""
         document = command.model_dump()
         if isinstance(command, Seek | Loop):
@@ -306,6 +295,7 @@ class Session:
             return self.note(actor, "time_scale", text, document, old, command.value)
         if isinstance(command, Pause):
             self._running = False
+            self.steps.end()
             return self.note(actor, "pause", "paused", document)
         if self.board.trip is not None:
             raise InputError(
@@ -314,26 +304,15 @@ class Session:
                 code="tripped",
             )
         if isinstance(command, Start):
+            self.steps.end()
             self._running = True
             self.pacer.anchor(self.board.tick, self._clock())
             return self.note(actor, "start", "started", document)
+        ended = self.steps.add(command, actor)
         self._running = False
-        ticks = command.ticks if isinstance(command, Step) else self._period()
-        goal = self.board.tick + ticks
-        event = self.note(actor, command.kind, f"stepped {ticks} tick{'s' if ticks > 1 else ''}", document)
-        while self.board.tick < goal and self.board.trip is None:
-            if not self._advance(min(self.board.chunk, goal - self.board.tick)):
-                break
-        return event
+        return ended
 
-    def _period(self) -> int:
-        """Return the drive period as a number of ticks one may step."""
-        period = self.drive_period_ticks
-        if period is None:
-            raise InputError("the reference has no period", "kind", "step a number of ticks", "conflict")
-        return max(1, min(100_000, round(period)))
-
-    def _advance(self, ticks: int) -> int:
+    def advance(self, ticks: int) -> int:
         """Run ticks; keep them, record them, note what happened; return how many there were."""
         rows = self.board.advance(ticks)
         if rows.count:
@@ -359,6 +338,7 @@ class Session:
 
     def _jumped(self, actor: str, kind: str, text: str) -> Event:
         """Note that time has jumped: recordings end, the clock is anchored anew."""
+        self.steps.end()
         self.recordings.close(f"the bench was {kind}")
         if self.board.trip is not None:
             self._running = False
@@ -375,10 +355,12 @@ class Session:
         command: dict[str, Any] | None = None,
         old: Any = None,
         new: Any = None,
+        tick: int | None = None,
     ) -> Event:
-        """Add an event of the bench itself."""
+        """Add an event of the bench itself, of now unless a tick is given."""
         self._metrics.events.labels(kind).inc()
-        return self.recordings.tell(self.events.add(self.board.tick, actor, kind, text, command, old, new))
+        at = self.board.tick if tick is None else tick
+        return self.recordings.tell(self.events.add(at, actor, kind, text, command, old, new))
 
     def _sync_log(self) -> list[Event]:
         """Take over what the board has logged since the last time."""

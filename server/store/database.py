@@ -83,11 +83,11 @@ class Database:
         return await asyncio.get_running_loop().run_in_executor(self._thread, self.transact, work)
 
     async def is_writable(self) -> bool:
-        """Whether a write transaction can be opened."""
+        """Whether something can be written now."""
 
         def probe(session: Session) -> bool:
             if session.get_bind().dialect.name == "sqlite":
-                session.execute(text("BEGIN IMMEDIATE"))
+                session.execute(text("PRAGMA user_version = 0"))  # writes a page, though it is 0 already
                 return True
             return not session.execute(text("SELECT pg_is_in_recovery()")).scalar()
 
@@ -95,6 +95,13 @@ class Database:
             return await asyncio.wait_for(self.run(probe), 2.0)
         except Exception:
             return False
+
+    async def used_bytes(self) -> int:
+        """Return the bytes of a file of SQLite that are in use; 0 for PostgreSQL, which keeps house for itself."""
+        if not self.url.startswith("sqlite"):
+            return 0
+        pages = "SELECT page_size * (page_count - freelist_count) FROM pragma_page_size, pragma_page_count, "
+        return await self.run(lambda session: int(session.execute(text(f"{pages}pragma_freelist_count")).scalar() or 0))
 
     def close(self) -> None:
         """Finish what is under way and close the file."""

@@ -48,10 +48,11 @@ class Keeping:
         if free <= self._settings.disk_reserve_bytes:
             text = f"{free} bytes of the disk are free, which is its reserve (disk_reserve_bytes)"
             raise ApiError(507, "no_space", text, hint="delete recordings, or make room on the disk")
-        used = await asyncio.to_thread(self._used)
+        used = await asyncio.to_thread(self._used) + await self._database.used_bytes()
         left = self._settings.quota_bytes - used
         if left <= 0:
-            text = f"recordings and runs take {used} bytes, the quota is {self._settings.quota_bytes} (quota_bytes)"
+            quota = f"the quota is {self._settings.quota_bytes} (quota_bytes)"
+            text = f"recordings, runs and their database take {used} bytes, {quota}"
             raise ApiError(507, "no_space", text, hint="delete recordings, or wait for their retention to end")
         return left
 
@@ -74,9 +75,10 @@ class Keeping:
             query = select(table.id).where(table.finished < before)
             ids = await self._database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
             for one in ids:
+                # The files first: on a full disk the row can only go once they have made room.
+                await asyncio.to_thread(_remove, self._settings.data / folder, one)
                 statement = delete(table).filter_by(id=one)
                 await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
-                await asyncio.to_thread(_remove, self._settings.data / folder, one)
             count += len(ids)
         if count:
             log.info("deleted %d recordings and runs older than %g days", count, self._settings.retention_days)

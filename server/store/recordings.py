@@ -188,12 +188,14 @@ class Recordings:
         return recording, path
 
     async def delete(self, recording_id: str) -> None:
-        """Delete a recording that has ended, row and file."""
+        """Delete a recording that has ended: the files first, as a full disk lets the row go only when they have."""
         recording = await self.get(recording_id)
         if recording.state in OPEN:
             raise ApiError(409, "conflict", "the recording is under way", hint="stop it first")
+        for path in (self.path(recording_id).with_suffix(kind) for kind in (".parquet", PART, EVENTS)):
+            await asyncio.to_thread(path.unlink, missing_ok=True)
+        self._unclosed.pop(recording_id, None)
         await self._database.run(lambda session: session.execute(delete(RecordingRow).filter_by(id=recording_id)))
-        await asyncio.to_thread(self.path(recording_id).unlink, missing_ok=True)
 
     async def recover(self) -> None:
         """Make whole what a crash has left: keep the ticks that reached the disk, mark the row aborted."""

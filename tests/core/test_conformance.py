@@ -241,6 +241,15 @@ def test_documented(entry):
     assert json.loads(card.model_dump_json())["name"] == entry.name
 
 
+def test_a_likelihood_of_its_own_says_what_it_is():
+    """The page explains a sample by the normal density unless the class says beside its likelihood what it has."""
+    told = [entry for entry in ALL if hasattr(entry, "log_likelihood")]
+    assert told
+    for entry in told:
+        owner = next(base for base in entry.__mro__ if "log_likelihood" in vars(base))
+        assert "evidence" in vars(owner), name_of(entry)
+
+
 def test_units_are_written_in_the_names_of_parameters_or_beside_them():
     suffixes = {"um": "_um", "V": "_v", "ms": "_ms", "Hz": "_hz", "K": "_k", "nN": "_nn", "deg": "_deg"}
     for entry in ALL:

@@ -23,6 +23,10 @@ def test_named_paths_exist(name: str, root: Path, documents: dict[str, str]) -> 
     missing = []
     for span in code_spans(documents[name]):
         top = span.split("/")[0]
+        if "/" in span and (new := PLACEHOLDER.search(span)):  # the folder of a new file is there
+            folder = span[: new.start()].rpartition("/")[0]
+            if (root / top).is_dir() and not (root / folder).is_dir():
+                missing.append(span)
         is_ours = "/" in span and top and (root / top).is_dir() and re.fullmatch(r"[\w.*/-]+", span)
         if is_ours and not PLACEHOLDER.search(span) and not list(root.glob(span.rstrip("/"))):
             missing.append(span)

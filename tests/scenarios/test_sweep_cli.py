@@ -83,6 +83,20 @@ def test_a_campaign_leaves_report_and_tables(sweep: Any, tmp_path: Path) -> None
     assert before.items() <= made(folder).items() and len(made(folder)) == 16
 
 
+def test_the_results_of_another_campaign_are_left_alone(sweep: Any, tmp_path: Path) -> None:
+    short = 'schema = 1\nscenario = "ch5-seven-step"\nset.samples = 50\n'
+    (tmp_path / "mine.toml").write_text(short + 'id = "one"\n')
+    assert sweep("--out", "here", "--workers", "1").exit_code == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()}
+    (tmp_path / "mine.toml").write_text(short + 'id = "two"\n')
+    refused = sweep("--out", "here", "--workers", "1", "--resume")
+    assert refused.exit_code == 2 and "here holds the campaign one, not two" in refused.stderr
+    assert len(refused.stderr.strip().splitlines()) == 1
+    assert {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()} == before
+    (tmp_path / "mine.toml").write_text((tmp_path / "here" / "campaign.toml").read_text())  # it says what was run
+    assert sweep("--out", "here", "--resume").exit_code == 0
+
+
 def test_one_that_stops_says_how_to_go_on(sweep: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def stops(*_: Any) -> None:
         raise Stopped("lost worker processes 5 times in a row; 3 of 12 runs are done")
@@ -111,6 +125,9 @@ def test_a_run_that_cannot_be_carried_out_is_exit_1(sweep: Any, tmp_path: Path) 
 
 BAD = [
     ("", ["--workers", "1", "--scheduler", "tcp://a:1"], "--scheduler"),
+    ("", ["--scheduler", "nope"], "no address of a scheduler"),
+    ("", ["--scheduler", "carrier-pigeon://a:1"], "no address of a scheduler"),
+    ("", ["--scheduler", "tcp://a:70000"], "there is no port 70000"),
     ("nonsense = 1\n", [], "nonsense"),
     ("schema = ", [], "malformed"),
     ("x = " + "[" * 500, [], "sweep: nested too deeply, at most 50 levels"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -146,6 +147,43 @@ def test_a_paused_bench_stands_still_and_steps_exactly(live: Any) -> None:
     assert live.get(bench["id"])["tick"] == 26
     time.sleep(0.1)
     assert live.get(bench["id"])["tick"] == 26
+
+
+SLOW = {"reference": {"kind": "sine", "amplitude_v": 5.0, "frequency_hz": 1.0}}
+"""A planar plant at 100 kHz: one period of the drive takes a second or two."""
+
+
+def test_a_long_step_holds_up_no_other_bench(live: Any) -> None:
+    other = live.bench("first-look", time_scale=0.002)
+    bench = live.bench("ch3-case3-adhesion", set=SLOW, paused=True)
+    with ThreadPoolExecutor(1) as pool:
+        asked = pool.submit(live.command, bench["id"], "step_period")
+        while live.get(bench["id"])["tick"] == 0:
+            time.sleep(0.01)
+        for severity in (0.01, 0.02, 0.03):
+            assert live.command(other["id"], "inject", fault="added_mass", severity=severity).status_code == 200
+        assert not asked.done()
+        assert live.get(bench["id"])["state"] == "running"
+        entry = asked.result(60).json()["entry"]
+    assert (entry["tick"], entry["text"]) == (0, "stepped 100000 ticks")
+    after = live.get(bench["id"])
+    assert (after["tick"], after["state"]) == (100_000, "paused")
+
+
+def test_the_page_that_steps_can_pause_the_step(live: Any) -> None:
+    bench = live.bench("ch3-case3-adhesion", set=SLOW, paused=True)
+    with live.stream(bench["id"]) as stream:
+        stream.send(type="command", id="a", command={"kind": "step_period"})
+        stream.send(type="command", id="b", command={"kind": "pause"})
+        replies = [stream.until_type("reply"), stream.until_type("reply")]
+        assert {(reply["id"], reply["ok"]) for reply in replies} == {("a", True), ("b", True)}
+        event = stream.until(lambda m: isinstance(m, dict) and m["type"] == "event" and m["event"]["kind"] == "pause")
+    assert event["event"]["tick"] < 100_000
+    said = live.http.get(f"/api/v1/benches/{bench['id']}/events").json()["events"]
+    assert said[-2]["text"] == f"stepped {event['event']['tick']} of 100000 ticks"
+    time.sleep(0.05)
+    after = live.get(bench["id"])
+    assert (after["tick"], after["state"]) == (event["event"]["tick"], "paused")
 
 
 def test_a_trip_stops_one_bench_and_says_why(live: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from scenarios.library import get
 from scenarios.run import build, run
 from scenarios.schema import Scenario
 from server.bench.commands import parse
+from server.bench.events import Event
 from server.bench.session import Session
 from server.metrics import Metrics
 
@@ -30,6 +32,13 @@ def advance(bench: Session, tick: int) -> None:
     while bench.is_running and bench.board.tick < tick:
         end = bench.target(0.0)
         bench.slice(tick if end is None else min(tick, end))
+
+
+def step(bench: Session, kind: str = "step", **fields: Any) -> Future[Event]:
+    """Ask for a step; it is not taken yet."""
+    asked = bench.execute(parse({"kind": kind, **fields}), "test")
+    assert isinstance(asked, Future)
+    return asked
 
 
 def kinds(bench: Session) -> list[str]:
@@ -84,23 +93,75 @@ def test_a_refused_command_changes_nothing() -> None:
 
 def test_steps_are_exact() -> None:
     bench = session()
-    bench.execute(parse({"kind": "step", "ticks": 7}), "test")
-    assert bench.board.tick == 7 and bench.status.state == "paused"
-    bench.execute(parse({"kind": "step_period"}), "test")
+    asked = step(bench, ticks=7), step(bench, "step_period")
+    while bench.is_running:
+        bench.slice(bench.target(1e9))
     assert bench.board.tick == 7 + 25  # 2 kHz at 50 kHz
-    assert bench.history.end_tick == 32
+    assert bench.history.end_tick == 32 and bench.status.state == "paused"
+    assert [(event.result(0).tick, event.result(0).text) for event in asked] == [
+        (0, "stepped 7 ticks"),
+        (7, "stepped 25 ticks"),
+    ]
 
 
-def test_a_reference_without_a_period_cannot_be_stepped_by_one() -> None:
+def test_a_long_step_is_taken_in_slices_with_commands_between() -> None:
+    """A pause ends it, and the log says how far it came; the bits are those of a bench that runs."""
+    bench = session(samples=9000)
+    asked, behind = step(bench, ticks=5000), step(bench, ticks=3)
+    bench.slice(bench.target(0.0))
+    assert bench.board.tick == bench.board.chunk and bench.is_running and not bench.is_started
+    bench.execute(parse_command({"kind": "inject", "fault": "damping", "severity": 0.3}), "test")
+    bench.slice(bench.target(0.0))
+    bench.finish_round(bench.target(0.0), 0.0)
+    assert (bench.pacer.overruns, bench.status.state, bench.status.achieved_scale) == (0, "running", 0.0)
+    assert not asked.done()
+    bench.execute(parse({"kind": "pause"}), "test")
+    assert asked.result(0).text == "stepped 1024 of 5000 ticks" and asked.result(0).tick == 0
+    assert behind.result(0).text == "stepped 0 of 3 ticks"
+    assert kinds(bench)[-3:] == ["step", "step", "pause"]
+    assert not bench.is_running and bench.status.state == "paused" and bench.board.tick == 1024
+    saved = Scenario.load(bench.document())
+    assert run(saved).digest == bench.board.digest()
+
+
+@pytest.mark.parametrize("how", ["reset", "restore", "close", "fail", "start", "trip"])
+def test_who_waits_for_a_step_hears_how_it_ended(how: str) -> None:
+    bench = session()
+    kept = bench.snapshots.take("here", "test", 8)
+    asked = step(bench, ticks=5000)
+    bench.slice(None)
+    if how == "reset":
+        bench.reset(bench.scenario, build(bench.scenario), "test")
+    elif how == "restore":
+        bench.restore(kept.id, "test")
+    elif how == "close":
+        bench.close()
+    elif how == "fail":
+        bench.fail(RuntimeError("broken on purpose"))
+    elif how == "start":
+        bench.execute(parse({"kind": "start"}), "test")
+    else:
+        bench.execute(parse({"kind": "set", "values": {"guard.travel_um": 1e-3}}), "test")
+        while bench.is_running:
+            bench.slice(None)
+    assert asked.result(0).text == f"stepped {asked.result(0).text.split()[1]} of 5000 ticks"
+    assert bench.is_running == (how == "start")
+
+
+def test_a_step_that_is_refused_does_not_pause() -> None:
     bench = session(**{"reference": {"kind": "constant", "amplitude_v": 1.0}})
     with pytest.raises(InputError, match="no period"):
-        bench.execute(parse({"kind": "step_period"}), "test")
+        step(bench, "step_period")
+    assert bench.is_started
+    with pytest.raises(InputError, match="wait for their turn"):
+        for _ in range(200):
+            step(bench, ticks=3)
 
 
 def test_going_back_and_on_gives_the_same_bits_and_keeps_the_past() -> None:
     bench = session()
     advance(bench, 1500)
-    snapshot = bench.take_snapshot("here", "test", 8)
+    snapshot = bench.snapshots.take("here", "test", 8)
     advance(bench, 4000)
     digest, past = bench.board.digest(), bench.history.read([0], 0, 1500)
     bench.restore(snapshot.id, "test")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import io
+import resource
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 from sqlalchemy.exc import OperationalError
 
+from server.store.database import Database
 from tests.server.forks import forks
 from tests.server.store.test_taking import recordings, until
 
@@ -53,7 +56,13 @@ def test_a_recording_ends_while_there_is_room_to_make_it_whole(serve: Any, monke
         found = broken_off(live, bench, started["id"])
         assert found["state"] == "done" and "150 MB are free" in found["reason"]
         is_whole(live, found)
-        for path, body in ((recordings(bench), {}), ("/api/v1/runs", {"scenario": "first-look"})):
+        headless = {"scenario": "first-look"}
+        for path, body in (
+            (recordings(bench), {}),
+            ("/api/v1/runs", headless),
+            ("/api/v1/gallery/run", {"only": "first-look"}),
+            ("/api/v1/sweeps", {"sweep": {"schema": 1, **headless}}),
+        ):
             refused = live.http.post(path, json=body)
             assert refused.status_code == 507 and refused.json()["error"]["code"] == "no_space"
             assert "disk_reserve_bytes" in refused.text
@@ -111,3 +120,49 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
         assert live.get(bench["id"])["state"] == "running"
         again = live.http.post(recordings(bench), json={"past_ticks": 100, "ticks": 0}).json()
         assert (again["state"], again["ticks"]) == ("done", 100)
+
+
+def test_on_a_full_disk_a_recording_can_be_deleted(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The database takes nothing before the file has made room; a row that stays behind does no harm."""
+    with serve() as live:
+        bench = live.bench("first-look", paused=True)
+        live.command(bench["id"], "step", ticks=50)
+        kept = live.http.post(recordings(bench), json={"past_ticks": 50, "ticks": 0}).json()["id"]
+        path, transact = live.service.recordings.path(kept), live.service.database.transact
+        is_full = True
+
+        def refuse(work: Any) -> Any:
+            if work.__qualname__.startswith("Recordings.delete") and (path.exists() or is_full):
+                raise OperationalError("DELETE", {}, Exception("database or disk is full"))
+            return transact(work)
+
+        monkeypatch.setattr(live.service.database, "transact", refuse)
+        assert live.http.delete(f"/api/v1/recordings/{kept}").status_code == 503
+        assert not path.exists() and said(live, kept)["state"] == "done"
+        assert live.http.get(f"/api/v1/recordings/{kept}/trace").status_code == 404
+        assert live.http.post(f"/api/v1/recordings/{kept}/replay", json={}).status_code == 404
+        is_full = False
+        assert live.http.delete(f"/api/v1/recordings/{kept}").status_code == 204
+        assert live.http.get(f"/api/v1/recordings/{kept}").status_code == 404
+
+
+def test_the_database_counts_as_used(serve: Any) -> None:
+    """Results of campaigns are in it alone."""
+    with serve(quota_bytes=50_000) as live:
+        answer = live.http.post("/api/v1/sweeps", json={"sweep": {"schema": 1, "scenario": "first-look"}})
+        assert answer.status_code == 507 and "quota_bytes" in answer.text
+
+
+def test_a_database_that_takes_nothing_more_is_not_ready(tmp_path: Path) -> None:
+    """A real limit of the kernel: no file may grow."""
+    database = Database(tmp_path / "x.sqlite3")
+    database.migrate()
+    assert asyncio.run(database.is_writable())
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, ((tmp_path / "x.sqlite3-wal").stat().st_size, hard))
+    try:
+        assert not asyncio.run(database.is_writable())
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert asyncio.run(database.is_writable())
+    database.close()

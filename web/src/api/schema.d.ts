@@ -1163,6 +1163,11 @@ export interface components {
             time_ms: number;
             /** Floor */
             floor: number;
+            /**
+             * Evidence
+             * @description What log_likelihood is, in LaTeX; empty for that of the normal density
+             */
+            evidence: string;
             /** Models */
             models: components["schemas"]["ModelAccount"][];
         };

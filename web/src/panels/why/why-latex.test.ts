@@ -16,6 +16,7 @@ const account: Account = {
   tick: 7,
   time_ms: 0.07,
   floor: 0.01,
+  evidence: "",
   // exp(-r^2/2psi): 1 and exp(-2)
   models: [model("healthy", 0, 0.5, 0.8808), model("m+5", -0.2, 0.5, 0.1192)],
 };
@@ -28,9 +29,14 @@ it.each([
 ])("%s is set as %s", (value, tex) => expect(texNumber(value)).toBe(tex));
 
 it("puts the numbers of the model into the density", () => {
-  const tex = densityLatex("mmae", account.models[1]);
+  const tex = densityLatex(account.evidence, account.models[1]);
   expect(tex).toContain("\\frac{(-0.2000)^2}{0.01000}");
   expect(tex).toMatch(/=-0\.6164$/); // 1.38365 for a residual of 0, less 2
+});
+
+it("shows the evidence of a diagnoser that has another than the normal density, as it says it", () => {
+  const tone = { ...account.models[1], log_likelihood: -0.25 };
+  expect(densityLatex("-\\frac{T_k}{2W}", tone)).toBe("\\ln f=-\\frac{T_k}{2W}=-0.2500");
 });
 
 it("works out Bayes' rule: 0.5 against 0.5 exp(-2)", () => {
@@ -41,7 +47,7 @@ it("works out Bayes' rule: 0.5 against 0.5 exp(-2)", () => {
 it("has nothing to work out before the first residual, and no floor where there is none", () => {
   const blank = { ...account, models: account.models.map((m) => ({ ...m, log_likelihood: null })) };
   expect(posteriorLatex(blank, 0)).toBeUndefined();
-  expect(densityLatex("mmae", blank.models[0])).toBeUndefined();
+  expect(densityLatex("", blank.models[0])).toBeUndefined();
   expect(floorLatex({ ...account, floor: 0 }, 0)).toBeUndefined();
   expect(floorLatex(account, 1)).toMatch(/=0\.1192$/);
 });

@@ -13,14 +13,11 @@ export function texNumber(value: number, digits = 4): string {
 
 const bracketed = (value: number) => (value < 0 ? `(${texNumber(value)})` : texNumber(value));
 
-/** Whether the density of a residual is the normal one; the lock-in bank weighs the tone in its residuals instead. */
-export const isGaussian = (kind: string): boolean => kind !== "lock_in";
-
-/** The density of a model's residual with its numbers put in. */
-export function densityLatex(kind: string, model: ModelAccount): string | undefined {
+/** The density of a model's residual: the normal one with its numbers put in, or what its diagnoser has instead. */
+export function densityLatex(evidence: string, model: ModelAccount): string | undefined {
   const { residual_um: r, covariance_um2: psi, log_likelihood: log } = model;
-  if (log === null) return undefined;
-  if (!isGaussian(kind) || psi === null) return `\\ln f=-\\frac{T}{2N}=${texNumber(log)}`;
+  if (log === null || psi === null) return undefined;
+  if (evidence) return `\\ln f=${evidence}=${texNumber(log)}`;
   return (
     "\\ln f=-\\tfrac12\\Bigl(\\frac{r^2}{\\psi}+\\ln 2\\pi\\psi\\Bigr)" +
     `=-\\tfrac12\\Bigl(\\frac{${bracketed(r)}^2}{${texNumber(psi)}}+\\ln(2\\pi\\cdot${texNumber(psi)})\\Bigr)` +

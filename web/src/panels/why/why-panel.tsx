@@ -13,7 +13,7 @@ import { NumberField } from "../../ui/number-field";
 import { formatDeviceTime } from "../../ui/time-axis";
 import { ModelTable } from "./model-table";
 import styles from "./why.module.css";
-import { densityLatex, floorLatex, isGaussian, posteriorLatex } from "./why-latex";
+import { densityLatex, floorLatex, posteriorLatex } from "./why-latex";
 
 const LAST_TICK = 2 ** 53;
 
@@ -114,7 +114,7 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
   const wanted = account.models.findIndex((m) => m.name === name);
   const chosen = wanted >= 0 ? wanted : likeliest;
   const model = account.models[chosen];
-  const density = densityLatex(account.kind, model);
+  const density = densityLatex(account.evidence, model);
   const posterior = posteriorLatex(account, chosen);
   const floor = floorLatex(account, chosen);
   return (
@@ -124,7 +124,7 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
       {density && posterior ? (
         <ol className={styles.steps}>
           <li>
-            <span>How well it predicted what was measured{isGaussian(account.kind) ? "" : ", at the tone"}</span>
+            <span>How well it predicted what was measured</span>
             <Formula latex={density} />
           </li>
           <li>

@@ -1,0 +1,103 @@
+"""Steps of a bench: so many ticks and no more, taken in slices of the engine like those of a bench that runs."""
+
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from core.errors import InputError
+from server.bench.commands import Step, StepPeriod
+from server.bench.events import Event
+from server.bench.portrait import MAX_PENDING
+
+if TYPE_CHECKING:
+    from server.bench.session import Session
+
+LONGEST_PERIOD = 100_000
+"""Most ticks of a step by one period of the drive."""
+
+
+@dataclass
+class Asked:
+    """A step somebody asked for and waits for, and how far it has come."""
+
+    command: Step | StepPeriod
+    actor: str
+    start: int
+    ticks: int
+    ended: Future[Event] = field(default_factory=Future)
+    done: int = 0
+
+    def text(self) -> str:
+        """Say what was done of it."""
+        plural = "s" if self.ticks != 1 else ""
+        if self.done < self.ticks:
+            return f"stepped {self.done} of {self.ticks} tick{plural}"
+        return f"stepped {self.ticks} tick{plural}"
+
+
+class Steps:
+    """The steps of a bench that are not at their end yet, one behind the other; on the engine thread.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._asked: deque[Asked] = deque()
+
+    def __len__(self) -> int:
+        return len(self._asked)
+
+    def add(self, command: Step | StepPeriod, actor: str) -> Future[Event]:
+        """Ask for a step, behind those asked for before; the event is there when it has ended.
+
+        Raises
+        ------
+        InputError
+            When the reference has no period to step by, or too many steps wait already.
+        """
+        if len(self) >= MAX_PENDING:
+            raise InputError(f"{MAX_PENDING} steps wait for their turn already", code="limit")
+        ticks = command.ticks if isinstance(command, Step) else self._period()
+        last = self._asked[-1] if self._asked else None
+        start = self._session.board.tick if last is None else last.start + last.ticks
+        asked = Asked(command, actor, start, ticks)
+        asked.ended.set_running_or_notify_cancel()  # who no longer waits for it does not stop it
+        self._asked.append(asked)
+        return asked.ended
+
+    def slice(self) -> bool:
+        """Advance by one slice of the first; true while there is more to do."""
+        session, first = self._session, self._asked[0]
+        ran = session.advance(min(session.board.chunk, first.ticks - first.done))
+        first.done += ran
+        if not ran or session.board.trip is not None:  # the end of a recording that is played, or a trip
+            self.end()
+        elif first.done == first.ticks:
+            self._answer(self._asked.popleft())
+        return bool(self._asked)
+
+    def end(self) -> None:
+        """End all of them here."""
+        while self._asked:
+            self._answer(self._asked.popleft())
+
+    def _answer(self, asked: Asked) -> None:
+        """Note what was done of a step at the tick it began, and tell who waits for it."""
+        command = asked.command
+        event = self._session.note(asked.actor, command.kind, asked.text(), command.model_dump(), tick=asked.start)
+        self._session.look()
+        asked.ended.set_result(event)
+
+    def _period(self) -> int:
+        """Return the drive period as a number of ticks one may step."""
+        period = self._session.drive_period_ticks
+        if period is None:
+            raise InputError("the reference has no period", "kind", "step a number of ticks", "conflict")
+        return max(1, min(LONGEST_PERIOD, round(period)))
