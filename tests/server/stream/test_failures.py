@@ -21,7 +21,7 @@ def test_a_message_the_server_fails_on_is_answered(
     bench = live.bench()
     with live.stream(bench["id"]) as stream:
         with monkeypatch.context() as patched:
-            patched.setattr(live.service.benches, "command", broken)
+            patched.setattr(live.service.benches, "begin", broken)
             reply = stream.command("pause")
             assert reply["ok"] is False and reply["error"]["code"] == "internal"
             assert "broken on purpose" not in reply["error"]["message"]
