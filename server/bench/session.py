@@ -36,6 +36,8 @@ RUN = get_args(RunsBench)
 STATUS_S = 0.2
 FORK_TICKS = 20_000
 """Past a fork brings along."""
+SLICE_S = 0.005
+"""Longest slice, by what a tick of the one before took; other benches and commands wait for it."""
 
 
 class Session:
@@ -81,6 +83,7 @@ class Session:
         self.recordings = Recordings(self)
         self.steps = Steps(self)
         self._history_ticks, self._metrics, self._clock = history_ticks, metrics, clock
+        self._slice_ticks = board.chunk
         self._running = False
         self._closed = False
         self._logged = 0
@@ -128,7 +131,7 @@ class Session:
         """Advance by one slice; true while there is more to do."""
         if self.steps:
             return self.steps.slice()
-        wanted = self.board.chunk if target is None else min(self.board.chunk, target - self.board.tick)
+        wanted = self.board.chunk if target is None else target - self.board.tick
         if wanted > 0:
             self.advance(wanted)
         if self._ends_at is not None and self.board.tick >= self._ends_at and self._running:
@@ -313,9 +316,12 @@ class Session:
         return ended
 
     def advance(self, ticks: int) -> int:
-        """Run ticks; keep them, record them, note what happened; return how many there were."""
-        rows = self.board.advance(ticks)
+        """Run ticks, as many as a slice has; keep them, record them, note what happened; return how many there were."""
+        began = self._clock()
+        rows = self.board.advance(min(ticks, self._slice_ticks))
         if rows.count:
+            took = max(self._clock() - began, 1e-9)
+            self._slice_ticks = max(1, int(SLICE_S * rows.count / took))
             self.history.append(rows)
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)

@@ -75,7 +75,7 @@ class Steps:
     def slice(self) -> bool:
         """Advance by one slice of the first; true while there is more to do."""
         session, first = self._session, self._asked[0]
-        ran = session.advance(min(session.board.chunk, first.ticks - first.done))
+        ran = session.advance(first.ticks - first.done)
         first.done += ran
         if not ran or session.board.trip is not None:  # the end of a recording that is played, or a trip
             self.end()

@@ -158,6 +158,30 @@ def test_a_step_that_is_refused_does_not_pause() -> None:
             step(bench, ticks=3)
 
 
+@pytest.mark.parametrize("steps", [False, True])
+def test_a_slice_of_a_slow_bench_is_short(steps: bool) -> None:
+    """At 2^-16 s a tick 5 ms are 327 ticks; after a hiccup of 128 times that the next but one has the pace again."""
+    now = [0.0]
+    scenario = get("ch5-seven-step")
+    bench = Session(scenario, build(scenario), None, 20_000, Metrics(), lambda: now[0])
+    board = bench.board
+    ran: list[int] = []
+
+    def slow(n: int) -> Any:
+        rows = type(board).advance(board, n)
+        ran.append(rows.count)
+        now[0] += rows.count * 2.0 ** (-16 if len(ran) != 3 else -9)
+        return rows
+
+    board.advance = slow  # type: ignore[method-assign]
+    bench.begin(not steps)
+    if steps:
+        step(bench, ticks=1500)
+    for _ in range(5):
+        bench.slice(None)
+    assert ran == [512, 327, 327, 2, 327]
+
+
 def test_going_back_and_on_gives_the_same_bits_and_keeps_the_past() -> None:
     bench = session()
     advance(bench, 1500)
