@@ -109,6 +109,11 @@ def field_of(complaint: Mapping[str, Any]) -> str:
     return ".".join(parts)
 
 
+def either(sayings: Iterable[str], verb: str) -> str:
+    """Join what pydantic says of a value that may be one of several types: once for each, and the verb once."""
+    return " or ".join(dict.fromkeys(sayings)).replace(f" or {verb} ", " or ")
+
+
 def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] | None = None) -> InputError:
     """Turn the first problem pydantic found into one clear line.
 
@@ -147,10 +152,8 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
         "model_type": "must be a table",
     }
     if kind in sayings:
-        # of a value that may be one of several types pydantic speaks once for each
         same = [one for one in found if field_of(one) == path and one["type"] in sayings]
-        saying = " or ".join(dict.fromkeys(sayings[one["type"]].format(**one.get("ctx", {})) for one in same))
-        saying = saying.replace(" or must be ", " or ")
+        saying = either((sayings[one["type"]].format(**one.get("ctx", {})) for one in same), "must be")
     else:
         saying = str(first["msg"]).removeprefix("Value error, ")
         if kind == "value_error":

@@ -15,7 +15,7 @@ from sqlalchemy.exc import DBAPIError
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from core.errors import InputError, field_of, one_line
+from core.errors import InputError, either, field_of, one_line
 
 log = logging.getLogger(__name__)
 
@@ -118,9 +118,8 @@ def clear_line(errors: Sequence[Any]) -> ErrorBody:
     if not field and kind in ("missing", "model_attributes_type", "dict_type"):
         hint = "send JSON with the header Content-Type: application/json"
         return ErrorBody(code=code, message="the body must be a JSON object", hint=hint)
-    # of a value that may be one of several types pydantic speaks once for each
-    reasons = dict.fromkeys(_reason(one) for one in errors if field_of(one) == field_of(first))
-    reason = " or ".join(reasons).replace(" or should be ", " or ") + _given(first)
+    reasons = (_reason(one) for one in errors if field_of(one) == field_of(first))
+    reason = either(reasons, "should be") + _given(first)
     return ErrorBody(code=code, message=f"{field or 'body'}: {reason}", field=field)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from core.block import Block, Context, Oscillator, Port, kernel, parameter, settled
 from core.device.oscillator import transition
 from core.diagnose.hypothesis import BankParams, assumed_noise, lacking
-from core.diagnose.kalman import gaussian, memory_ms
+from core.diagnose.kalman import gaussian, shuttle_memory
 
 COUNT, EVERY, FILTER1, FILTER2, MEMORY, LEAST_DRIVE, LANES = range(7)
 """Packed parameters of every bank; the lanes of the hypotheses follow, then a bank's own."""
@@ -161,12 +161,11 @@ class ArxBank(Block):
             theta = coefficients(hypothesis.oscillator(context.device), context.dt_ms)
             error = variance if filtered else variance * (1.0 + theta[2] ** 2 + theta[3] ** 2)
             lanes[:, i] = (*theta, error, 0.5 * math.log(error))
-        memory = math.exp(-context.dt_ms / memory_ms(context))
         head = [
             len(params.hypotheses),
             context.every,
             *(nominal[2:] if filtered else (0.0, 0.0)),
-            memory,
+            shuttle_memory(context),
             params.least_drive_v**2,
         ]
         return [*map(float, head), *lanes.ravel().tolist()]

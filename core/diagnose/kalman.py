@@ -100,13 +100,12 @@ class KalmanBank(Block):
             device = hypothesis.oscillator(context.device)
             tick = transition(device.mass, device.damping, device.stiffness, context.dt_ms / context.every)
             push = ((1.0 - tick[0]) * device.static_gain, -tick[2] * device.static_gain)
-            phi, noise = over_ticks(tick, push, q, context.every)
+            phi, noise = over_ticks(np.reshape(tick, (2, 2)), np.outer(push, push) * q, context.every)
             table[: NOISE22 + 1, i] = (*phi.flat, noise[0, 0], noise[0, 1], noise[1, 1])
             table[MOVE11:, i] = (*tick, *push)
             if steady:
                 table[GAIN1 : PSI + 1, i] = steady_gain(phi, noise, r, printed)
                 table[INVERSE_PSI, i] = 1.0 / table[PSI, i]
-        memory = memory_ms(context)
         head = [
             len(hypotheses),
             r,
@@ -114,7 +113,7 @@ class KalmanBank(Block):
             printed,
             context.every,
             params.voltage == "start",
-            math.exp(-context.dt_ms / memory),
+            shuttle_memory(context),
             params.least_drive_v**2,
         ]
         return [float(value) for value in (*head, *table.ravel())]
@@ -135,43 +134,35 @@ def gaussian(residual: float, covariance: float) -> float:
     return -0.5 * (residual * residual / covariance + math.log(2.0 * math.pi * covariance))
 
 
-def memory_ms(context: Context) -> float:
-    """Return how long the shuttle remembers, 2m/beta; a cycle at least."""
+def shuttle_memory(context: Context) -> float:
+    """Return what a mean with the memory of the shuttle, 2m/beta or a cycle, keeps from sample to sample."""
     device = context.device
     cycle = 2.0 * math.pi / device.natural_frequency
-    return max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
+    lasting = max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
+    return math.exp(-context.dt_ms / lasting)
 
 
-def over_ticks(
-    tick: tuple[float, float, float, float], push: tuple[float, float], q: float, ticks: int
-) -> tuple[FloatArray, FloatArray]:
-    r"""Return the transition over some ticks, and the covariance that voltage noise leaves behind them.
+def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatArray, FloatArray]:
+    r"""Return the transition over some ticks, and the covariance that the noise of each leaves behind them.
 
-    .. math:: \Phi=\varphi^N,\qquad W=\sum_{j=0}^{N-1}\varphi^j\gamma q\gamma^T(\varphi^T)^j
+    .. math:: \Phi=\varphi^N,\qquad W=\sum_{j=0}^{N-1}\varphi^jw(\varphi^T)^j
 
-    The noise is another at every tick; one held for all of them would be :math:`\Gamma q\Gamma^T`, far more. The sum
-    over twice as many ticks is :math:`W+\Phi W\Phi^T`.
+    The noise is another at every tick; that of a voltage held for all of them would be far more. The sum over twice as
+    many ticks is :math:`W+\Phi W\Phi^T`.
 
     Parameters
     ----------
-    tick : tuple of float
-        Transition of a tick, row by row.
-    push : tuple of float
-        What a volt held over a tick does to displacement (um) and velocity (um/ms).
-    q : float
-        Variance of the noise, V^2.
+    tick, noise : array of shape (2, 2)
+        Transition of a tick, and the covariance of what noise does in it.
     ticks : int
         N.
     """
-    phi, doubled = np.eye(2), np.array(tick).reshape(2, 2)
-    total, noise = np.zeros((2, 2)), np.outer(push, push) * q
-    while ticks:
-        if ticks % 2:
-            total = noise + doubled @ total @ doubled.T
-            phi = doubled @ phi
-        noise = noise + doubled @ noise @ doubled.T
-        doubled = doubled @ doubled
-        ticks //= 2
+    if ticks == 1:
+        return tick, noise
+    half, part = over_ticks(tick, noise, ticks // 2)
+    phi, total = half @ half, part + half @ part @ half.T
+    if ticks % 2:
+        phi, total = tick @ phi, noise + tick @ total @ tick.T
     return phi, total
 
 
