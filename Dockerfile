@@ -1,4 +1,5 @@
 # The bench in one image: page built, kernels compiled, one worker, no root.
+# A tag moves; README.md says how to pin it by its digest.
 ARG BASE=python:3.11-slim-bookworm
 
 # ---- what both builds need
@@ -38,7 +39,7 @@ FROM ${BASE}
 WORKDIR /app
 COPY --from=service /app /app
 COPY --from=page /app/web/dist web/dist
-RUN install -d -o 10001 -g 10001 /data
+RUN install -d -m 700 -o 10001 -g 10001 /data
 ENV PATH=/app/.venv/bin:$PATH \
     PYTHONDONTWRITEBYTECODE=1 \
     HOME=/tmp \

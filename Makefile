@@ -14,7 +14,7 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run setup test check fix dev bench load soak image codegen lock clean help
+.PHONY: run setup test check fix dev bench load soak image codegen digests lock clean help
 
 run: setup  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@.venv/bin/combbench serve $(ARGS) || [ $$? -eq 130 ]
@@ -49,6 +49,9 @@ image: ## Build the container image, start it, ask for its health and stop it
 codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document
 	@.venv/bin/python -m server.openapi > web/openapi.json
 	@scripts/npm --prefix web run codegen
+
+digests: $(KERNEL_STAMP)  ## Renew the digests tests hold runs to (ARGS=--draw: with other benches)
+	@.venv/bin/python -m tests.scenarios.digests --renew $(ARGS)
 
 lock: $(PYTHON_STAMP)  ## Renew requirements.lock (ARGS=--upgrade for newer versions)
 	@.venv/bin/uv pip compile --quiet --universal --fork-strategy fewest --generate-hashes --all-extras \

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, TypeVar, cast
+from typing import Any, ClassVar, Self, TypeVar, cast
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from core.table import Table
 
@@ -103,10 +104,25 @@ class Equation:
     why: str = ""
 
 
+LEAST, MOST = 1e-60, 1e100
+"""Parameters are 0 or lie between these in size: products and ratios of a few of them are still numbers."""
+
+
 class BlockParams(Table):
     """Parameters of a block."""
 
     model_config = ConfigDict(frozen=True, validate_default=False)
+
+    @model_validator(mode="after")
+    def _of_a_size_to_compute_with(self) -> Self:
+        """Refuse a number so small or so large that what is worked out from it is none."""
+        for name, value in self.__dict__.items():
+            for one in value if type(value) is list else (value,):
+                if type(one) in (int, float) and one and not LEAST <= abs(one) <= MOST:
+                    size = PydanticCustomError("size", f"must be 0, or from {LEAST:g} to {MOST:g} in size")
+                    details = InitErrorDetails(type=size, loc=(name,), input=one)
+                    raise ValidationError.from_exception_data(type(self).__name__, [details])
+        return self
 
 
 def parameter(
@@ -230,6 +246,8 @@ class Block:
     outputs: ClassVar[tuple[Port, ...]] = ()
     taps: ClassVar[tuple[Port, ...]] = ()
     equations: ClassVar[tuple[Equation, ...]] = ()
+    weaknesses: ClassVar[tuple[str, ...]] = ()
+    """Where the block is known to be weak, in plain sentences with figures; read before it is trusted."""
     step: ClassVar[Step]
     every_tick: ClassVar[bool] = False
     """Whether the step is called at every tick though the block runs every N, because it has to do between."""
@@ -243,6 +261,11 @@ class Block:
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:  # noqa: ARG003 (most blocks suit every device)
         """Say why the block cannot be on a bench with this device and reference model; nothing when it can."""
+        return ""
+
+    @classmethod
+    def caution(cls, params: Any, context: Context, hz: float) -> str:  # noqa: ARG003 (most blocks take it as it is)
+        """Say what the block takes the voltage for and loses by it under a tone; nothing when that is little."""
         return ""
 
     @classmethod

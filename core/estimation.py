@@ -9,10 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import SMALL, kernel, settled
-from core.device.oscillator import transition
+from core.device.oscillator import transition, within
+from core.voltage import add_moved
 
 FILTER_SIZE = 7
 """Packed numbers of a state filter."""
+DRIVEN_SIZE = FILTER_SIZE + 4
+"""Packed numbers of one that a voltage drives."""
 
 
 def triangle(n: int) -> int:
@@ -166,6 +169,19 @@ def advance_filter(p: Any, packed: int, s: Any, at: int, before: float, now: flo
     rate = s[at + 1] - slope
     s[at] = settled(p[packed] * q + p[packed + 1] * rate + rest + slope * p[packed + 6])
     s[at + 1] = settled(p[packed + 2] * q + p[packed + 3] * rate + slope)
+
+
+def driven_filter(pole: float, h: float, analogue: bool) -> list[float]:
+    """Pack a state filter of a voltage, and the effect of a volt more in the middle and at the end of an interval."""
+    more = within(1.0, 2.0 * pole, pole * pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
+    return [*state_filter(pole, h), *more]
+
+
+@kernel
+def drive_filter(p: Any, packed: int, s: Any, at: int, u: float, middle: float, end: float) -> None:
+    """Advance a state filter under a voltage: at the start, and how much more it was in the middle and at the end."""
+    advance_filter(p, packed, s, at, u, u)
+    add_moved(p, packed + FILTER_SIZE, s, at, middle, end)
 
 
 @kernel

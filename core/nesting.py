@@ -40,6 +40,8 @@ def read_toml(text: str, field: str, what: str = "TOML") -> dict[str, Any]:
                 return document
         except tomllib.TOMLDecodeError as error:
             raise InputError(f"malformed {what}: {error}", field, code="malformed") from None
+        except ValueError as error:  # a whole number of more digits than Python reads
+            raise InputError(f"malformed {what}: {str(error).partition(':')[0]}", field, code="malformed") from None
         except RecursionError:
             pass  # lists in lists, which the reader goes into one by one
     raise InputError(TOO_DEEP, field, code="too_deep")

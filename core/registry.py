@@ -63,6 +63,7 @@ class BlockCard(BaseModel):
     changes: str | None
     shows: str | None
     suggested: float | None
+    weaknesses: list[str]
     equations: list[EquationCard]
     parameters: list[ParameterCard]
     inputs: list[PortCard]
@@ -147,6 +148,7 @@ def card(entry: type[Block]) -> BlockCard:
         changes=getattr(entry, "changes", None),
         shows=getattr(entry, "shows", None),
         suggested=getattr(entry, "suggested", None),
+        weaknesses=list(entry.weaknesses),
         equations=[equation_card(equation) for equation in entry.equations],
         parameters=parameter_cards(entry.Params),
         inputs=[_port(port) for port in entry.inputs],

@@ -17,7 +17,7 @@ from scenarios.executor import LOST, open_executor, width_of
 from scenarios.key import code_version
 from scenarios.outcome import outcome
 from scenarios.schema import Scenario
-from scenarios.sweep import Sweep
+from scenarios.sweep import Point, Sweep
 
 BATCH_S = 1.0
 """A batch is worth this much computing, so that sending it costs nothing beside."""
@@ -28,6 +28,7 @@ LOOK_S = 0.2
 PATIENCE = 5
 """Losses in a row without one result before a campaign gives up."""
 
+Waiting = tuple[str, Point, int]
 Task = tuple[str, dict[str, Any], int]
 Found = list[tuple[str, dict[str, Any]]]
 
@@ -98,7 +99,7 @@ class Campaign:
         self._table, self._on_progress = table, on_progress
         self._workers, self._scheduler, self._niceness = workers, scheduler, niceness
         self._cost = BATCH_S
-        self._left: dict[str, Task] = {}
+        self._left: dict[str, Waiting] = {}
         self._is_cancelled = self._is_abandoned = False
 
     @property
@@ -122,7 +123,7 @@ class Campaign:
         Stopped
             When nothing computes any more: no worker, or no scheduler.
         """
-        tasks = {key: (key, point.document, seed) for key, point, seed in self.sweep.runs()}
+        tasks = {key: (key, point, seed) for key, point, seed in self.sweep.runs()}
         have = self._table.have(list(tasks))
         self._left = {key: task for key, task in tasks.items() if key not in have}
         self.total = len(tasks)  # two points may be the same run
@@ -170,10 +171,13 @@ class Campaign:
                     process.kill()
                 return
 
-    def _batch(self, waiting: deque[Task], width: int) -> list[Task]:
+    def _batch(self, waiting: deque[Waiting], width: int) -> list[Task]:
         """Take runs worth `BATCH_S` from the queue, fewer when every worker would not get some."""
         size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, -(-len(waiting) // width))
-        return [waiting.popleft() for _ in range(min(size, len(waiting)))]
+        chosen = [waiting.popleft() for _ in range(min(size, len(waiting)))]
+        points = {id(point): point for _, point, _ in chosen}
+        documents = {number: point.document for number, point in points.items()}
+        return [(key, documents[id(point)], seed) for key, point, seed in chosen]
 
     def _take(self, found: Found) -> None:
         """Put results into the table and learn what a run costs."""

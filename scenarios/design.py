@@ -40,7 +40,7 @@ def designed(device: dict[str, Any], environment: dict[str, Any]) -> Spec:
 def device_figures(spec: Spec) -> dict[str, float]:
     """Return the figures of the device in its environment, by the names of its metrics without ``device.``."""
     found = {name.removeprefix("device."): value for name, value in device_metrics(spec).items()}
-    volts = device_pull_in(spec.device)
+    volts = device_pull_in(spec.device, found["environment.stiffness_scale"])
     return found if volts is None else {**found, "pull_in_v": volts}
 
 

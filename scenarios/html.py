@@ -9,6 +9,7 @@ from typing import Any
 
 import tomlkit
 
+from core.format import format_short
 from scenarios.key import code_version
 
 STYLE = """
@@ -46,7 +47,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
 
 def say(value: Any) -> str:
     """Say a cell."""
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return format_short(value, "", 6) if isinstance(value, float) else str(value)
 
 
 def as_toml(document: dict[str, Any]) -> str:

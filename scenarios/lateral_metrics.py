@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -39,18 +40,21 @@ def lateral_metrics(board: Board) -> dict[str, float]:
         return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state[0]))
     if kind == "planar":
         return _planar(p, state, board.spec.device.drawing.far_finger_um)
-    volts = device_pull_in(board.spec.device)
+    volts = device_pull_in(
+        board.spec.device, board.value("effects.elasticity_scale") * board.value("effects.rotation_scale")
+    )
     return {} if volts is None else {"device.pull_in_v": volts}
 
 
-def device_pull_in(device: Device) -> float | None:
-    """Return the bias of pull-in of a device, perfectly aligned; none where no comb could pull it in.
+def device_pull_in(device: Device, stiffness_scale: float = 1.0) -> float | None:
+    r"""Return the bias of pull-in of a device, perfectly aligned; none where no comb could pull it in.
 
-    A device without a drawing has the beams of LCR-350.
+    A device without a drawing has the beams of LCR-350. It goes with the root of the stiffness against rotation,
+    of which ``stiffness_scale`` is what environment and faults make of it, over nominal.
     """
     if device.capacitance_gradient == 0.0:
         return None
-    return geometry_pull_in(device.drawing, device.capacitance_gradient)
+    return geometry_pull_in(device.drawing, device.capacitance_gradient) * math.sqrt(stiffness_scale)
 
 
 @lru_cache(maxsize=256)

@@ -31,7 +31,7 @@ def plant_costs(checkpoint: Checkpoint) -> list[PlantCost]:
 
 def _measure(name: str, title: str, checkpoint: Checkpoint) -> PlantCost:
     board = Board.restore(checkpoint)
-    board.pending = []
+    board.pending.clear()
     try:
         if board.spec.plant.block.name != name:
             board.apply(Set(values={"plant.model": name}), "cost")

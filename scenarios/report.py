@@ -8,6 +8,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from core.format import format_count, format_number, format_short, format_si
 from scenarios.html import as_toml, page, say, table
 from scenarios.outcome import Outcome
 from scenarios.svg import Series, chart
@@ -37,7 +38,7 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
     done = sum(point.runs for point in points)
     body = [
         f"<p>{escape(head.title or sweep.base.id)}: {done} of {len(sweep)} runs, "
-        f"{len(sweep.points)} points with {len(sweep.seeds)} seeds each "
+        f"{format_count(len(sweep.points), 'point')} with {format_count(len(sweep.seeds), 'seed')} each "
         f"({sweep.seeds[0]} to {sweep.seeds[-1]}).</p>"
     ]
     measured = {name for point in points for name in point.metrics}
@@ -73,7 +74,7 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
 
 def _mean(point: PointTally, name: str) -> str:
     spread = point.metrics.get(name)
-    return "" if spread is None else f"{spread.mean:.5g} ± {spread.std:.2g}"
+    return "" if spread is None else f"{format_short(spread.mean, '', 5)} ± {format_short(spread.std, '', 2)}"
 
 
 def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[str]) -> str:
@@ -108,7 +109,7 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
     found = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
     drawn = found[:MOST_CURVES]
     curves = [
-        Series(f"{label} (area {entry.roc.area:.4f})", entry.roc.false_alarm, entry.roc.detection)
+        Series(f"{label} (area {format_si(entry.roc.area, '')})", entry.roc.false_alarm, entry.roc.detection)
         for label, entry in drawn
         if entry.roc is not None
     ]
@@ -127,7 +128,7 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
     for label, entry in drawn:
         total = [max(1, sum(row)) for row in entry.confusion]
         rows = [
-            [truth, *(f"{count / all_of:.4f}" for count in row), sum(row)]
+            [truth, *(format_number(count / all_of, 4) for count in row), sum(row)]
             for truth, row, all_of in zip(entry.names, entry.confusion, total, strict=True)
         ]
         missed = f"; {entry.missed} changes were never found" if entry.missed else ""
@@ -156,7 +157,7 @@ def results_table(sweep: Sweep, outcomes: dict[str, Outcome]) -> pa.Table:
     for name in labels:
         values = [point.labels.get(name) for _, point, _ in rows]
         is_text = any(isinstance(value, str) for value in values)
-        columns[name] = [say(value) for value in values] if is_text else values
+        columns[name] = [str(value) for value in values] if is_text else values
     for name in ("seed", "digest", "ticks", "ok", "trip", "error", "elapsed_s"):
         columns[name] = [getattr(outcome, name) for _, _, outcome in rows]
     for name in metrics:

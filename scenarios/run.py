@@ -14,6 +14,7 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
+from core.board.observer import cautions
 from core.errors import InputError
 from core.signals import Signal, SignalTable
 from scenarios.metrics import device_metrics, measure
@@ -41,6 +42,7 @@ class Result:
     digest: str
     elapsed_s: float
     metrics: dict[str, float]
+    warnings: list[str]
     outputs: FloatArray
     taps: FloatArray | None = field(default=None, repr=False)
 
@@ -76,7 +78,14 @@ class Result:
     def summary(self) -> dict[str, Any]:
         """Return the object ``run --json`` prints."""
         return summarise(
-            self.scenario, self.seed, self.board.tick, self.elapsed_s, self.metrics, self.digest, self.trip
+            self.scenario,
+            self.seed,
+            self.board.tick,
+            self.elapsed_s,
+            self.metrics,
+            self.digest,
+            self.trip,
+            self.warnings,
         )
 
 
@@ -104,6 +113,7 @@ def summarise(
     metrics: dict[str, float],
     digest: str,
     trip: Trip | None,
+    warnings: list[str],
 ) -> dict[str, Any]:
     """Return the summary of a run, JSON-ready."""
     expectations = judge(scenario, metrics)
@@ -119,6 +129,7 @@ def summarise(
         "elapsed_s": elapsed_s,
         "digest": digest,
         "trip": trip.model_dump() if trip is not None else None,
+        "warnings": warnings,
         "metrics": metrics,
         "expectations": expectations,
         "ok": all(entry["ok"] for entry in expectations),
@@ -146,9 +157,14 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     return board
 
 
-def trace_bytes(board: Board, samples: int, *, taps: bool) -> int:
-    """Return the memory a run takes for what it keeps of its signals."""
-    return 8 * samples * (len(board.signals) if taps else board.signals.outputs)
+WORKER_BYTES, WORKING_COLUMNS = 400_000_000, 16
+"""Beside the trace: the process itself, a piece of the trace being written, and some columns worked on."""
+
+
+def run_bytes(board: Board, samples: int, *, taps: bool) -> int:
+    """Return the most memory the process of a run takes."""
+    columns = len(board.signals) if taps else board.signals.outputs
+    return WORKER_BYTES + 8 * samples * (columns + WORKING_COLUMNS)
 
 
 def run(
@@ -204,6 +220,8 @@ def run(
         board.digest(),
         elapsed,
         metrics,
+        # a warning that came and went is told once
+        list(dict.fromkeys(entry.text for entry in board.log if entry.kind == "warning")),
         outputs,
         kept[: board.tick] if kept is not None else None,
     )
@@ -233,4 +251,4 @@ def _run_study(scenario: Scenario, board: Board) -> Result:
     elapsed = time.perf_counter() - began
     figures = np.array([metrics[name] for name in sorted(metrics)])
     digest = hashlib.sha256(figures.tobytes()).hexdigest()
-    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, *nothing)
+    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, cautions(board.spec), *nothing)

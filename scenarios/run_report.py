@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from core.format import format_count, format_in, format_number, format_short
 from scenarios.html import as_toml, page, table
 from scenarios.run import Result
 from scenarios.svg import Mark, Series, chart, thin
@@ -41,11 +42,12 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
     if head.claim:
         body.append(f"<p><b>Claim:</b> {escape(head.claim)}. <b>Verdict:</b> {escape(head.verdict or 'none')}.</p>")
     body.append(f"<p>{escape(head.source)}</p>" if head.source else "")
-    body.append(f"<p>{who}; {summary['ticks']} ticks of {summary['dt_s'] * 1e6:g} us; digest ")
+    body.append(f"<p>{who}; {format_count(summary['ticks'], 'tick')} of {format_short(summary['dt_s'], 's')}; digest ")
     body.append(f"<code>{summary['digest']}</code></p>")
     if summary["trip"]:
         trip = summary["trip"]
-        body.append(f'<p class="miss">Tripped at {trip["time_ms"]:.4g} ms: {escape(trip["reason"])}</p>')
+        body.append(f'<p class="miss">Tripped at {format_in(trip["time_ms"], "ms", 3)}: {escape(trip["reason"])}</p>')
+    body += [f'<p class="miss">Warning: {escape(text)}</p>' for text in summary["warnings"]]
     body.append(_expectations(summary["expectations"]))
     body.append(f'<div class="side">{"".join(f"<div>{one}</div>" for one in _charts(result))}</div>')
     body += _verdicts(result)
@@ -127,6 +129,6 @@ def _verdicts(result: Result) -> list[str]:
 def _events(result: Result) -> str:
     """List what happened."""
     entries = [entry for entry in result.board.log if entry.kind != "scheduled"]
-    rows = [[f"{entry.time_ms:.6g}", entry.tick, entry.actor, entry.text] for entry in entries[:MOST_EVENTS]]
+    rows = [[format_number(entry.time_ms, 3), entry.tick, entry.actor, entry.text] for entry in entries[:MOST_EVENTS]]
     more = f"<p>The first {MOST_EVENTS} of {len(entries)}.</p>" if len(entries) > MOST_EVENTS else ""
     return f"<h2>Events</h2>{more}{table(['time, ms', 'tick', 'who', 'what'], rows)}" if rows else ""

@@ -12,6 +12,7 @@ from core.board.document import Document
 from core.board.ensemble import twin_documents
 from core.board.spec import FIELDS, parse
 from core.errors import InputError, from_validation, unknown_field
+from core.format import format_short
 from core.nesting import read_toml
 from core.table import Table
 from scenarios.stretch import Stretch
@@ -108,9 +109,9 @@ class Expectation(Table):
     def text(self) -> str:
         """Say what is expected."""
         if self.value is not None:
-            return f"{self.value:g} ± {self.tolerance:g}"
-        parts = [f">= {self.min:g}"] if self.min is not None else []
-        parts += [f"<= {self.max:g}"] if self.max is not None else []
+            return f"{format_short(self.value, '', 6)} ± {format_short(self.tolerance or 0.0, '', 6)}"
+        parts = [f">= {format_short(self.min, '', 6)}"] if self.min is not None else []
+        parts += [f"<= {format_short(self.max, '', 6)}"] if self.max is not None else []
         return " and ".join(parts)
 
 

@@ -36,7 +36,7 @@ def run_seeds(scenario: Scenario, seeds: Sequence[int]) -> dict[str, Any]:
 
 
 def together(scenario: Scenario, summaries: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Join the summaries of several seeds: means, standard deviations of a sample, expectations of the means.
+    """Join the summaries of several seeds: means, standard deviations of a sample, expectations of the means, warnings.
 
     The digest is the SHA-256 over the digests of the runs. A figure that some runs do not have is the mean over
     those that do.
@@ -53,6 +53,7 @@ def together(scenario: Scenario, summaries: Sequence[dict[str, Any]]) -> dict[st
         "digest": hashlib.sha256("".join(digests).encode()).hexdigest(),
         "digests": digests,
         "tripped_runs": sum(summary["trip"] is not None for summary in summaries),
+        "warnings": list(dict.fromkeys(text for summary in summaries for text in summary["warnings"])),
         "metrics": means,
         "metrics_std": {
             name: float(np.std(found, ddof=1)) if len(found) > 1 else 0.0 for name, found in values.items()

@@ -11,6 +11,7 @@ from html import escape
 import numpy as np
 
 from core.block import FloatArray
+from core.format import tick_labels
 
 WIDTH, HEIGHT = 460, 300
 LEFT, RIGHT, TOP, BOTTOM = 62, 12, 26, 44
@@ -100,15 +101,14 @@ def chart(
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" role="img" aria-label="{escape(title)}">',
         f'<text x="{LEFT}" y="16" class="title">{escape(title)}</text>',
     ]
-    for value in ticks(x_low, x_high):
+    columns, rows = ticks(x_low, x_high), ticks(y_low, y_high)
+    for value, label in zip(columns, tick_labels(columns), strict=True):
         x, y = place(value, y_low)
-        parts.append(f'<path d="M{x} {TOP}V{y}" class="grid"/><text x="{x}" y="{y + 15}" class="x">{value:.6g}</text>')
-    for value in ticks(y_low, y_high):
+        parts.append(f'<path d="M{x} {TOP}V{y}" class="grid"/><text x="{x}" y="{y + 15}" class="x">{label}</text>')
+    for value, label in zip(rows, tick_labels(rows), strict=True):
         x, y = place(x_low, value)
         right = WIDTH - RIGHT
-        parts.append(
-            f'<path d="M{x} {y}H{right}" class="grid"/><text x="{x - 5}" y="{y + 4}" class="y">{value:.6g}</text>'
-        )
+        parts.append(f'<path d="M{x} {y}H{right}" class="grid"/><text x="{x - 5}" y="{y + 4}" class="y">{label}</text>')
     for mark in marks:
         if x_low <= mark.x <= x_high:
             x, _ = place(mark.x, y_low)

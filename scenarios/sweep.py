@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from core.block import FloatArray
+from core.board.document import with_values as write
 from core.board.spec import MOST_SEED
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
@@ -20,10 +22,13 @@ from core.table import Table
 from scenarios.edit import with_values
 from scenarios.key import content_hash, run_key
 from scenarios.library import get
+from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 
 MAX_RUNS = 1_000_000
 MAX_POINTS = 20_000
+MAX_RANGES = 50
+"""Values that vary at once."""
 Values = dict[str, Any]
 
 
@@ -68,7 +73,7 @@ class LatinHypercube(Table):
 
     points: int = Field(ge=1, le=MAX_POINTS)
     seed: int = Field(1, ge=0)
-    ranges: dict[str, Range] = Field(min_length=1)
+    ranges: dict[str, Range] = Field(min_length=1, max_length=MAX_RANGES)
 
     def values(self) -> list[Values]:
         """Return the points: each value has one in every stratum, in an order of its own."""
@@ -124,16 +129,22 @@ class Head(Table):
     process_spread: ProcessSpread | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Point:
-    """One set of values: what it is called in tables, and the scenario with it."""
+    """One set of values: what it is called in tables, and what it writes over a scenario."""
 
     labels: dict[str, str | float]
-    document: dict[str, Any]
+    values: Values
+    base: dict[str, Any]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The scenario with its values; made anew each time, as thousands of them take much room."""
+        return write(self.base, self.values) if self.values else self.base
 
 
 class Sweep:
-    """A checked campaign.
+    """A campaign, checked but for its points.
 
     Attributes
     ----------
@@ -164,14 +175,34 @@ class Sweep:
 
     @classmethod
     def load(cls, text: str | dict[str, Any]) -> Sweep:
-        """Read a campaign from TOML or from a document.
+        """Read a campaign from TOML or from a document, and check its points.
 
         Raises
         ------
         InputError
             Naming the field, or the line of malformed TOML.
         """
-        return cls(text if isinstance(text, dict) else read_toml(text, "sweep"))
+        sweep = cls(text if isinstance(text, dict) else read_toml(text, "sweep"))
+        sweep.longest(sweep.points)
+        return sweep
+
+    @staticmethod
+    def longest(points: Sequence[Point]) -> Scenario:
+        """Check some points, which takes a millisecond each; return the longest of them.
+
+        Raises
+        ------
+        InputError
+            For the first that is no valid scenario.
+        """
+        return max(
+            (Scenario.load(point.document) for point in points), key=lambda found: found.samples or DEFAULT_SAMPLES
+        )
+
+    @cached_property
+    def contents(self) -> list[str]:
+        """The hash of every point, of which the keys of its runs are made; a tenth of a millisecond each."""
+        return [content_hash(point.document) for point in self.points]
 
     @property
     def seeds(self) -> range:
@@ -184,8 +215,7 @@ class Sweep:
 
     def runs(self) -> Iterator[tuple[str, Point, int]]:
         """Yield every run: its key, point and seed."""
-        for point in self.points:
-            content = content_hash(point.document)
+        for point, content in zip(self.points, self.contents, strict=True):
             for seed in self.seeds:
                 yield run_key(content, seed), point, seed
 
@@ -232,7 +262,7 @@ class Sweep:
         for names, written in chosen:
             labels |= names
             values |= written
-        return Point(labels, with_values(self.base, values).document)
+        return Point(labels, values, self.base.document)
 
 
 FIELDS = tuple("schema" if name == "schema_" else name for name in Head.model_fields)

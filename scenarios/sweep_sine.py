@@ -67,7 +67,7 @@ def sweep_sine(
         When the board trips, the record does not look like a resonator, or the sweep would take too long.
     """
     copy = Board.restore(board.checkpoint())
-    copy.pending = []
+    copy.pending.clear()
     device = copy.spec.device
     nominal = figures(**device.resolved)
     if device.signed_force_n_per_v == 0.0:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from core.board import program
+from core.board import fold, program
 from core.board.board import CHUNK, Board
 
 REPEATS = 7
@@ -55,7 +55,7 @@ def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:
     trip, watches = wiring.index["guard.trip"], np.zeros((0, 3))
 
     def work() -> None:
-        program.run(ticks, 1, board.dt_ms, *arrays, nothing, nothing, trip, watches)
+        program.run(ticks, 1, board.dt_ms, *arrays, nothing, nothing, fold.begin(0), trip, watches)
 
     return cpu_ns(work, ticks)
 

@@ -11,6 +11,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+PIECE_TICKS = 1 << 15
+
 
 def packing(schema: pa.Schema) -> dict[str, Any]:
     """Say how Parquet is to pack a trace.
@@ -22,11 +24,15 @@ def packing(schema: pa.Schema) -> dict[str, Any]:
 
 
 def write_parquet(path: Path, columns: dict[str, np.ndarray[Any, Any]], metadata: dict[str, Any]) -> None:
-    """Write columns of one length with metadata under ``combbench``."""
-    table = pa.table({name: pa.array(np.ascontiguousarray(values)) for name, values in columns.items()})
-    table = table.replace_schema_metadata({"combbench": json.dumps(metadata)})
+    """Write columns of one length with metadata under ``combbench``, piece by piece: a trace is never there twice."""
+    fields = [pa.field(name, pa.from_numpy_dtype(values.dtype)) for name, values in columns.items()]
+    schema = pa.schema(fields, metadata={"combbench": json.dumps(metadata)})
     temporary = path.with_name(path.name + ".part")
-    pq.write_table(table, temporary, **packing(table.schema))
+    length = max((len(values) for values in columns.values()), default=0)
+    with pq.ParquetWriter(temporary, schema, **packing(schema)) as writer:
+        for start in range(0, max(length, 1), PIECE_TICKS):
+            pieces = [np.ascontiguousarray(values[start : start + PIECE_TICKS]) for values in columns.values()]
+            writer.write_table(pa.table(pieces, schema=schema))
     os.replace(temporary, path)
 
 

@@ -34,6 +34,7 @@ from server.security.gate import OPEN_PATHS, Gate
 from server.security.headers import SecurityHeaders
 from server.security.identity import Identity, token_of
 from server.security.origin import OriginPolicy
+from server.security.public import PublicOrigin
 from server.service import Service
 from server.settings import Settings
 from server.version import VERSION
@@ -67,7 +68,8 @@ def create_app(settings: Settings) -> FastAPI:
         What to serve and how much of it.
     """
     service = Service(settings)
-    identity = Identity(settings.token.get_secret_value() if settings.token else token_of(settings.data))
+    public = PublicOrigin.parse(settings.public_origin)
+    identity = Identity(settings.token.get_secret_value() if settings.token else token_of(settings.data), public)
 
     @contextlib.asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
@@ -83,6 +85,7 @@ def create_app(settings: Settings) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
+        servers=[{"url": str(public)}] if public.origin else None,
     )
     app.state.service, app.state.identity = service, identity
     errors.install(app)
@@ -102,9 +105,10 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(
         Gate,
         identity=identity,
-        origin=OriginPolicy(settings.host, settings.allowed_hosts),
+        origin=OriginPolicy(settings.host, settings.allowed_hosts, public),
         open_paths=open_paths,
+        prefix=public.prefix,
     )
     app.add_middleware(errors.CatchAll)
-    app.add_middleware(SecurityHeaders)
+    app.add_middleware(SecurityHeaders, prefix=public.prefix)
     return app

@@ -18,6 +18,7 @@ from typer.core import TyperGroup
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.errors import InputError, one_line
+from core.format import format_in, format_short, format_si
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
 from scenarios.keeping import keep
@@ -100,10 +101,13 @@ def show_run(summary: dict[str, Any]) -> None:
     say(f"{summary['scenario']}: {summary['title']}")
     if summary["claim"]:
         say(f"  claim    {summary['claim']} ({summary['verdict']})")
-    say(f"  ticks    {summary['ticks']} of {summary['dt_s'] * 1e6:g} us in {summary['elapsed_s'] * 1e3:.1f} ms")
+    took = format_si(summary["elapsed_s"], "s", 3)
+    say(f"  ticks    {summary['ticks']} of {format_short(summary['dt_s'], 's')} in {took}")
     say(f"  digest   {summary['digest']}")
     if summary["trip"]:
-        say(f"  tripped  at {summary['trip']['time_ms']:.4g} ms: {summary['trip']['reason']}")
+        say(f"  tripped  at {format_in(summary['trip']['time_ms'], 'ms', 3)}: {summary['trip']['reason']}")
+    for text in summary["warnings"]:
+        say(f"  warning  {text}")
     for name, value in summary["metrics"].items():
         spread = summary.get("metrics_std", {}).get(name)
         say(f"  {name:<44} {value:.6g}" + (f" ± {spread:.2g}" if spread else ""))
@@ -166,6 +170,8 @@ def gallery(
                 f"{'ok  ' if summary['ok'] else 'MISS'} {summary['scenario']:<28} "
                 f"{summary['verdict'] or '':<22} {summary['claim']}"
             )
+            for text in summary["warnings"]:
+                say(f"       warning: {text}")
             for entry in summary["expectations"]:
                 measured = "-" if entry["measured"] is None else f"{entry['measured']:.5g}"
                 say(f"       {entry['metric']:<44} {entry['expected']:<18} {measured}")
@@ -223,6 +229,8 @@ def show_block(card: BlockCard) -> None:
     """Print a block for people."""
     say(f"{card.family}/{card.name}: {card.title}")
     say(f"  {card.summary}")
+    for weakness in card.weaknesses:
+        say(f"  Known weakness: {weakness}")
     for equation in card.equations:
         say(f"  {equation.label}: {equation.latex}" + (f"   [{equation.source}]" if equation.source else ""))
     for entry in card.parameters:
@@ -306,6 +314,12 @@ def doctor(as_json: JsonOption = False) -> None:
 
 def main() -> None:
     """Run the command line; an answer that cannot be written, as on a full disk, is one line too."""
+    for number in (1, 2):  # what is closed would be the number of the next file opened
+        try:
+            os.fstat(number)
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), number)
+    sys.stdout, sys.stderr = sys.stdout or Path(os.devnull).open("w"), sys.stderr or Path(os.devnull).open("w")
     try:
         try:
             app()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
@@ -13,14 +14,18 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, field_validator
 from sqlalchemy.exc import DBAPIError
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocketDisconnect
 
 from core.errors import InputError, either, field_of, one_line
 
 log = logging.getLogger(__name__)
 
 LONGEST = 300
-"""Characters of a message: one line a person reads."""
+"""Characters of a message, a field or a hint: one line a person reads."""
+METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 class ErrorBody(BaseModel):
@@ -34,8 +39,9 @@ class ErrorBody(BaseModel):
     @field_validator("message", "field", "hint")
     @classmethod
     def _in_one_line(cls, text: str) -> str:
-        """Keep what a caller wrote from breaking the line."""
-        return one_line(text)
+        """Keep what a caller wrote from breaking the line, and a list of all that is allowed from filling the page."""
+        text = one_line(text[: LONGEST + 1])
+        return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 
 class ErrorReply(BaseModel):
@@ -84,10 +90,7 @@ def body_of(error: Exception) -> ErrorBody:
     if isinstance(error, ApiError):
         return error.body
     if isinstance(error, InputError):
-        body = ErrorBody(**error.as_dict())
-        if len(body.message) > LONGEST:  # a list of all that is allowed can be very long
-            body.message = body.message[: LONGEST - 1] + "…"
-        return body
+        return ErrorBody(**error.as_dict())
     raise TypeError(f"not a refusal: {error!r}")
 
 
@@ -161,6 +164,14 @@ def install(app: FastAPI) -> None:
         body = ErrorBody(code="storage", message="the database cannot be used now; the log says why")
         return reply(503, body, {"Retry-After": "5"})
 
+    @app.exception_handler(OSError)
+    async def _(_request: Request, error: OSError) -> JSONResponse:
+        if error.errno not in FULL:
+            raise error
+        log.error("no room to write: %s", error)
+        body = ErrorBody(code="no_space", message=f"the answer cannot be made: {error.strerror}")
+        return reply(507, body)
+
     @app.exception_handler(InputError)
     async def _(_request: Request, error: InputError) -> JSONResponse:
         return reply(422, body_of(error))
@@ -175,7 +186,21 @@ def install(app: FastAPI) -> None:
         phrase = HTTPStatus(error.status_code).phrase
         code = phrase.lower().replace(" ", "_")
         message = f"{phrase.lower()}: {request.method} {request.url.path}"
-        return reply(error.status_code, ErrorBody(code=code, message=message), error.headers)
+        headers = dict(error.headers or {})
+        if error.status_code == 405:
+            headers["Allow"] = ", ".join(allowed(request))
+        return reply(error.status_code, ErrorBody(code=code, message=message), headers)
+
+
+def allowed(request: Request) -> list[str]:
+    """Return the methods with which the path of a request leads somewhere; the framework knows those of one route."""
+    routes = request.app.routes
+
+    def leads(method: str) -> bool:
+        scope = {**request.scope, "method": method}
+        return any(route.matches(scope)[0] == Match.FULL for route in routes)
+
+    return [method for method in METHODS if leads(method)]
 
 
 class CatchAll:
@@ -197,10 +222,18 @@ class CatchAll:
         async def watched(message: Message) -> None:
             nonlocal started
             started = True
-            await send(message)
+            try:
+                await send(message)
+            except (OSError, RuntimeError):
+                if scope["type"] != "websocket":
+                    raise
+                # The line is cut, or the web server has closed it because the client broke its rules.
+                raise WebSocketDisconnect(1006) from None
 
         try:
             await self._app(scope, receive, watched)
+        except WebSocketDisconnect:
+            log.info("a client of %s has gone before it was answered", scope["path"])
         except Exception:
             log.exception("unexpected error in %s %s", scope["type"], scope.get("path", ""))
             if started or scope["type"] != "http":

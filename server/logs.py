@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import json
 import logging
+import re
 import sys
+import threading
 from datetime import UTC, datetime
+from types import TracebackType
+from typing import Any
 
 from server.settings import Settings
 
+log = logging.getLogger(__name__)
+
 STANDARD = frozenset(vars(logging.makeLogRecord({})))
+
+SECRET = re.compile(r"(\btoken=)[^&\s\"']+|(://[^/\s:@]*:)[^/\s\"']+(?=@)")
+"""The token of the address to open; the password in the address of a database."""
 
 
 class JsonFormatter(logging.Formatter):
@@ -29,26 +38,43 @@ class JsonFormatter(logging.Formatter):
         return json.dumps(line, default=str)
 
 
-class WithoutToken(logging.Filter):
-    """Drops the access token from the lines of the web server."""
+class Handler(logging.StreamHandler[Any]):
+    """Writes lines with no secret in them."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Format a record; what a token or a password was is not told."""
+        return SECRET.sub(r"\1\2...", super().format(record))
+
+
+class Brief(logging.Filter):
+    """Turns errors the web server logs about ill-behaved clients into warnings of one line."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Hide everything behind ``token=``."""
-        if isinstance(record.args, tuple):
-            record.args = tuple(
-                value.partition("token=")[0] + "token=..." if isinstance(value, str) and "token=" in value else value
-                for value in record.args
-            )
+        """Put the reason into the line."""
+        error = record.exc_info[1] if record.exc_info else None
+        if record.name == "uvicorn.error" and isinstance(error, UnicodeError | OSError):
+            record.msg, record.args, record.exc_info = f"{record.getMessage().rstrip('.')}: {error}", (), None
+            record.levelno, record.levelname = logging.WARNING, "WARNING"
         return True
+
+
+def log_uncaught(kind: type[BaseException], error: BaseException | None, trace: TracebackType | None) -> None:
+    """Log what nobody has caught; Python would print it."""
+    log.critical("unexpected error", exc_info=(kind, error or kind(), trace))
 
 
 def configure(settings: Settings) -> None:
     """Send all log lines of the process to standard error."""
     as_json = settings.log_format == "json" or (settings.log_format == "auto" and not sys.stderr.isatty())
-    handler = logging.StreamHandler(sys.stderr)
+    handler = Handler(sys.stderr)
     text = logging.Formatter("%(asctime)s %(levelname)-7s %(name)s  %(message)s", "%H:%M:%S")
     handler.setFormatter(JsonFormatter() if as_json else text)
-    handler.addFilter(WithoutToken())
+    handler.addFilter(Brief())
     logging.basicConfig(handlers=[handler], level=settings.log_level, force=True)
     for noisy in ("uvicorn.access", "uvicorn.error", "websockets", "alembic", "numba"):
         logging.getLogger(noisy).setLevel(max(logging.WARNING, logging.getLevelName(settings.log_level)))
+    # What Python itself would print goes the same way.
+    logging.captureWarnings(True)
+    sys.excepthook = log_uncaught
+    threading.excepthook = lambda found: log_uncaught(found.exc_type, found.exc_value, found.exc_traceback)
+    sys.unraisablehook = lambda found: log_uncaught(found.exc_type, found.exc_value, found.exc_traceback)

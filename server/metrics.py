@@ -2,9 +2,28 @@
 
 from __future__ import annotations
 
-from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from collections.abc import Iterable
+
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Metric, generate_latest
+from prometheus_client.core import CounterMetricFamily
+from prometheus_client.registry import Collector
 
 FINE = (0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5, 1.0)
+
+
+class Sent(Collector):
+    """Frames and bytes sent on all streams, as plain integers: 200 pages count twelve thousand times a second."""
+
+    def __init__(self) -> None:
+        self.frames = self.frame_bytes = self.frames_dropped = 0
+
+    def collect(self) -> Iterable[Metric]:
+        """Return the counters."""
+        yield CounterMetricFamily("combbench_stream_frames", "Frames sent", self.frames)
+        yield CounterMetricFamily("combbench_stream_frame_bytes", "Bytes of frames sent", self.frame_bytes)
+        yield CounterMetricFamily(
+            "combbench_stream_frames_dropped", "Frames clients were too slow for", self.frames_dropped
+        )
 
 
 class Metrics:
@@ -34,11 +53,8 @@ class Metrics:
         )
         self.benches = Gauge("combbench_benches", "Live benches", ["state"], registry=registry)
         self.clients = Gauge("combbench_stream_clients", "Open streams", registry=registry)
-        self.frames = Counter("combbench_stream_frames", "Frames sent", registry=registry)
-        self.frame_bytes = Counter("combbench_stream_frame_bytes", "Bytes of frames sent", registry=registry)
-        self.frames_dropped = Counter(
-            "combbench_stream_frames_dropped", "Frames clients were too slow for", registry=registry
-        )
+        self.sent = Sent()
+        registry.register(self.sent)
         self.streams_closed = Counter(
             "combbench_streams_closed", "Streams closed by the server", ["reason"], registry=registry
         )

@@ -31,7 +31,13 @@ def install(app: FastAPI) -> None:
 
 def build(app: FastAPI) -> dict[str, Any]:
     """Build the document."""
-    schema = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
+    schema = get_openapi(
+        title=app.title,
+        version=app.version,
+        description=app.description,
+        routes=app.routes,
+        servers=app.servers or None,
+    )
     components = schema.setdefault("components", {}).setdefault("schemas", {})
     for name, kind, mode in (
         ("ClientMessage", ClientMessage, "validation"),

@@ -1,11 +1,11 @@
-"""Serves the built page; whatever is no route of the service is a path inside it."""
+"""Serves the built page; whatever is no route of the service leads to it."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from starlette.exceptions import HTTPException
-from starlette.responses import FileResponse, HTMLResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
@@ -23,7 +23,7 @@ NOT_BUILT = (
 
 
 class Page:
-    """The single-page application.
+    """The single-page application. All addresses in it are relative to its own, so there is one place to open it at.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Page:
         self._files = StaticFiles(directory=folder, check_dir=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve a file of the build, or the page itself for a path inside it."""
+        """Serve the page, or a file of the build, or lead to the page."""
         if scope["type"] == "websocket":
             await WebSocket(scope, receive, send).close(4404, "no such stream")
             return
@@ -63,4 +63,7 @@ class Page:
             raise HTTPException(404)
         if not index.is_file():
             return HTMLResponse(page(503, "The page is not built", NOT_BUILT), 503)
+        if path != "/":
+            query = scope["query_string"].decode("latin-1")
+            return RedirectResponse(f"/?{query}" if query else "/", 303)
         return FileResponse(index, headers={"Cache-Control": "no-cache"})

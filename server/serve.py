@@ -16,12 +16,15 @@ import uvicorn
 
 from core.errors import InputError
 from server import logs
+from server.connection import Connection
 from server.security.identity import fits_header
 from server.settings import Settings
+from server.store.lock import lock
+from server.store.privacy import keep_private
+from server.stream.line import Line
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
-    from starlette.requests import HTTPConnection
 
     from server.service import Service
 
@@ -47,7 +50,6 @@ class Server(uvicorn.Server):
     def __init__(self, config: uvicorn.Config, service: Service, address: str = "") -> None:
         super().__init__(config)
         self._service, self._address = service, address
-        service.cut = self.cut
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start, then say where."""
@@ -68,12 +70,6 @@ class Server(uvicorn.Server):
         """Tell the pages, then close."""
         await self._service.farewell()
         await super().shutdown(sockets)
-
-    def cut(self, connection: HTTPConnection) -> None:
-        """Cut the line of a client that takes not even a close."""
-        for protocol in list(self.server_state.connections):
-            if getattr(protocol, "client", None) == connection.scope.get("client"):
-                protocol.transport.abort()
 
 
 def check_binding(settings: Settings) -> None:
@@ -126,8 +122,8 @@ def make_server(settings: Settings, app: FastAPI, address: str = "") -> Server:
     config = uvicorn.Config(
         app,
         loop="uvloop",
-        http="httptools",
-        ws="websockets-sansio",
+        http=Connection,
+        ws=Line,
         ws_max_size=settings.message_limit_bytes,
         ws_per_message_deflate=False,
         ws_ping_interval=20.0,
@@ -155,11 +151,13 @@ def serve(settings: Settings) -> None:
     logs.configure(settings)
     listener = bind(settings)
     try:
-        settings.data.mkdir(parents=True, exist_ok=True)
+        keep_private(settings.data)
+        held = lock(settings.data, "data")
         from server.app import create_app  # loads everything; a wrong setting is told before that
 
         app = create_app(settings)
         app.state.service.database.migrate()
+        app.state.service.database.claim()
     except InputError:
         listener.close()
         raise
@@ -169,11 +167,13 @@ def serve(settings: Settings) -> None:
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else host
     port = listener.getsockname()[1]
-    address = f"http://{shown}:{port}/?token={quote(app.state.identity.token, safe='')}"
+    page = settings.public_origin or f"http://{shown}:{port}"
+    address = f"{page}/?token={quote(app.state.identity.token, safe='')}"
     server = make_server(settings, app, address)
     # Once all is stopped uvicorn raises the signal again; being told to stop is no failure.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: None)
     server.run(sockets=[listener])
+    held.close()
     if not server.started:
         raise InputError("the service did not start; the lines above say why", "serve")

@@ -7,10 +7,8 @@ import contextlib
 import importlib.util
 import logging
 import secrets
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from typing import TYPE_CHECKING
-
-from starlette.requests import HTTPConnection
 
 from core.board.history import History
 from scenarios.library import library
@@ -63,7 +61,6 @@ class Service:
         self.theatre = _theatre()
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
         self.is_ready = self.has_kernels = False
-        self.cut: Callable[[HTTPConnection], None] = lambda _connection: None
         self._loop: asyncio.AbstractEventLoop | None = None
 
     @contextlib.asynccontextmanager
@@ -99,6 +96,24 @@ class Service:
         """Describe a bench in full."""
         view3d = f"/benches/{session.id}/3d/" if self.theatre is not None else None
         return bench_of(session, self.hub.around(session), view3d)
+
+    def views(self) -> list[Bench]:
+        """Describe the benches, oldest first; one that cannot be described does not hide the others."""
+        found = []
+        for session in self.benches.all():
+            try:
+                found.append(self.view(session))
+            except Exception:
+                log.exception("bench %s cannot be described", session.id)
+        return found
+
+    async def opened(self, session: Session) -> Bench:
+        """Describe a bench just made; one that cannot be described is closed again."""
+        try:
+            return self.view(session)
+        except Exception:
+            await self.close_bench(session)
+            raise
 
     async def close_bench(self, session: Session) -> None:
         """Close a bench and everything that shows it."""

@@ -9,7 +9,7 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, SecretStr, ValidationError
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -18,6 +18,7 @@ from pydantic_settings import (
 )
 
 from core.errors import InputError
+from server.security.public import PublicOrigin
 
 CONFIG_FILE = Path("combbench.toml")
 PREFIX = "COMBBENCH_"
@@ -31,9 +32,14 @@ class Settings(BaseSettings):
     host: str = Field("127.0.0.1", description="Address to listen on; anything but loopback needs a token.")
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 picks a free one.")
     data: Path = Field(Path("data"), description="Folder for the database, recordings and run results.")
-    database_url: str = Field("", description="Database by address, such as postgresql://...; SQLite in data if unset.")
+    database_url: str = Field(
+        "", repr=False, description="Database by address, such as postgresql://...; SQLite in data if unset."
+    )
     token: SecretStr | None = Field(None, description="Access token; made and kept in the data folder if unset.")
     allowed_hosts: list[str] = Field([], description="Further host names the page may be opened under.")
+    public_origin: str = Field(
+        "", description="Address of the page behind a proxy, such as https://lab.example or https://lab.example/bench."
+    )
     metrics_open: bool = Field(False, description="Serve /metrics without a token.")
     open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
 
@@ -45,7 +51,7 @@ class Settings(BaseSettings):
     max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
     max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
     max_run_mb: int = Field(
-        2000, ge=1, description="Memory for the trace of one headless run; where taps have no room, outputs only."
+        1000, ge=1, description="Memory of the process of a headless run; where taps have no room, outputs only."
     )
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
@@ -72,6 +78,12 @@ class Settings(BaseSettings):
     scheduler: str = Field("", description="Dask scheduler for campaigns; processes of this machine if unset.")
     log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
     log_level: str = Field("INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe line logged.")
+
+    @field_validator("public_origin")
+    @classmethod
+    def _as_browsers_write_it(cls, given: str) -> str:
+        """Check the address, and write it as browsers do."""
+        return str(PublicOrigin.parse(given))
 
     @property
     def is_loopback(self) -> bool:
@@ -128,8 +140,9 @@ def load_settings(**given: Any) -> Settings:
         if first["type"] == "extra_forbidden":
             raise InputError(f"unknown setting '{name}' in {CONFIG_FILE}", field=name) from None
         source = _source(name, told, _file_values())
-        raise InputError(f"setting '{name}' from {source}: {first['msg'].lower()}", field=name) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        reason = first["msg"].removeprefix("Value error, ").lower()
+        raise InputError(f"setting '{name}' from {source}: {reason}", field=name) from None
+    except (ValueError, RecursionError) as error:  # also a whole number of more digits than Python reads
         raise InputError(f"{CONFIG_FILE} is not valid TOML: {error}") from None
     except OSError as error:
         raise InputError(f"cannot read {CONFIG_FILE}: {error.strerror}") from None
@@ -141,9 +154,23 @@ def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting
     file_values = _file_values()
     rows = []
     for name, field in Settings.model_fields.items():
-        source = _source(name, told, file_values)
-        rows.append(EffectiveSetting(name, str(getattr(settings, name)), source, field.description or ""))
+        source, value = _source(name, told, file_values), str(getattr(settings, name))
+        shown = without_password(value) if name == "database_url" else value
+        rows.append(EffectiveSetting(name, shown, source, field.description or ""))
     return rows
+
+
+def without_password(address: str) -> str:
+    """Return the address of a database as it may be shown."""
+    from sqlalchemy import make_url  # takes a while, and only who asks for the settings needs it
+    from sqlalchemy.exc import ArgumentError
+
+    try:
+        url = make_url(address)
+    except (ArgumentError, ValueError):
+        return "***" if address else ""
+    hidden = {name: "..." for name in url.query if "pass" in name.lower()}
+    return url.update_query_dict(hidden).render_as_string(hide_password=True)
 
 
 def _source(name: str, told: dict[str, Any], file_values: dict[str, Any]) -> str:
@@ -160,5 +187,5 @@ def _file_values() -> dict[str, Any]:
     """Read combbench.toml if there is one."""
     try:
         return tomllib.loads(CONFIG_FILE.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError):
+    except (OSError, ValueError, RecursionError):
         return {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +22,7 @@ from scenarios.sweep import Sweep
 from scenarios.tally import tally
 from scenarios.traces import write_json, write_text
 from server.store.database import Database, reason_of
+from server.store.lock import lock
 from server.store.results import Results
 
 TABLE, CAMPAIGN, REPORT, POINTS, RUNS_PARQUET, RUNS_CSV = (
@@ -99,8 +99,7 @@ def carry_out(
         raise InputError(f"{folder} holds the campaign {held}, not {sweep.head.id}", "--out", "choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        if not os.access(folder, os.W_OK):
-            raise PermissionError(13, "Permission denied")
+        held = lock(folder, "--out")
     except OSError as error:
         raise InputError(f"cannot write to {folder}: {error.strerror}", "--out") from None
     database = Database(database_url or place)
@@ -121,6 +120,7 @@ def carry_out(
         raise Stopped(f"{text}; {campaign.done} of {campaign.total} runs are done") from None
     finally:
         database.close()
+        held.close()
     return Ended(campaign.done, campaign.total, failed, folder)
 
 

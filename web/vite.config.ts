@@ -5,6 +5,8 @@ import { defineConfig } from "vitest/config";
 const board = process.env.COMBBENCH_URL ?? "http://127.0.0.1:8000";
 
 export default defineConfig({
+  // All addresses are relative to the page's own, so that a proxy may serve it under any path.
+  base: "./",
   plugins: [react()],
   server: {
     host: "127.0.0.1",

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import copy
-import hashlib
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from core.block import BlockParams
-from core.board import changes, program, score
+from core.board import changes, fold, program, score
 from core.board.commands import Command, LogEntry, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import Document
 from core.board.guard import REASONS
 from core.board.log import Log
 from core.board.observer import Observer
-from core.board.pending import Pending, watches
+from core.board.pending import Pending, Queue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec, parse
 from core.board.wiring import Wiring, scored, wire
@@ -28,7 +27,7 @@ CHUNK = 512
 """Most ticks of one call of ``advance``."""
 
 
-COPIED = ("faults", "pending", "trip", "wiring", "_observer")
+COPIED = ("faults", "pending", "trip", "wiring", "folds", "used", "_observer")
 SHARED = ("spec", "base", "compiled", "tick")
 """What of a board is its own in every copy, and what never changes in place."""
 
@@ -63,9 +62,10 @@ class Board:
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
         self.log = Log()
-        self.pending: list[Pending] = []
+        self.pending = Queue()
         self.trip: Trip | None = None
-        self._sha = hashlib.sha256()
+        self.folds = fold.begin(self.wiring.signals.outputs)
+        self.used: set[str] = set()
         self._observer = Observer(self.spec, self.wiring)
         self._allocate()
         self._link()
@@ -92,8 +92,13 @@ class Board:
         return float(self.wiring.w[self.wiring.index[signal]])
 
     def digest(self) -> str:
-        """Return the SHA-256 of the float64 trace of all outputs so far."""
-        return self._sha.hexdigest()
+        """Return the SHA-256 over one fold for each block, of the bits of its outputs at every tick so far.
+
+        Controllers that have not driven yet and sensors that have not been in use do not count: they only look on.
+        """
+        aside = {*self.spec.controllers, *self.spec.sensors} - self.used
+        outputs = [signal for signal in self.wiring.signals if signal.kind == "output"]
+        return fold.digest(self.folds, ["" if signal.block in aside else signal.block for signal in outputs])
 
     def scores(self) -> dict[str, score.Scores]:
         """Return the score of every diagnoser that chooses between hypotheses."""
@@ -120,26 +125,21 @@ class Board:
             idle = idle & self._idle
             if self.trip is not None:
                 break
-            upcoming = [entry.tick for entry in self.pending if entry.tick is not None]
-            stop = min([self.tick + n - done, *upcoming])
+            end, upcoming = self.tick + n - done, self.pending.next_tick
+            stop = end if upcoming is None else min(end, upcoming)
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
             for finding in self._observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
                 self._note("board", **finding)
+            if ran:
+                self.used |= {self.spec.active, self.spec.measuring}
             done += ran
             self.tick += ran
             if why != program.DONE:
-                self._meet()
+                self.pending.meet(self.value, self.tick)
             if why == program.TRIPPED:
                 self._trip()
-        self._sha.update(self._outputs[:done].data)
         return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
-
-    def _meet(self) -> None:
-        """Let every command whose condition holds after this tick take effect at the next."""
-        for entry in self.pending:
-            if entry.watched is not None and entry.watched.holds(self.value(entry.watched.signal)):
-                entry.condition, entry.tick = None, self.tick
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
         wiring = self.wiring
@@ -154,8 +154,9 @@ class Board:
             wiring.io,
             self._outputs[at:],
             self._taps[at:],
+            self.folds,
             wiring.index["guard.trip"],
-            watches(self.pending, wiring.index),
+            self.pending.watches(wiring.index),
         )
         return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
@@ -197,17 +198,11 @@ class Board:
 
     def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
         changes.check(self, command)
-        self.pending.append(Pending(command, actor, tick, condition, self.tick))
+        self.pending.add(Pending(command, actor, tick, condition, self.tick))
         return self._note(actor, "scheduled", f"waiting: {changes.describe(command)}", command=command)
 
     def _apply_due(self) -> None:
-        due = [entry for entry in self.pending if entry.tick is not None and entry.tick <= self.tick]
-        self.pending = [entry for entry in self.pending if entry not in due]
-        for entry in due:
-            if entry.condition is not None:  # from now on it is watched
-                entry.tick, entry.since = None, self.tick
-                self.pending.append(entry)
-                continue
+        for entry in self.pending.take_due(self.tick):
             try:
                 self._do(entry.command, entry.actor)
             except InputError as error:
@@ -260,7 +255,7 @@ class Board:
         """Return everything the board is at this tick edge."""
         kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
         shared = {name: getattr(self, name) for name in SHARED}
-        return Checkpoint(self.tick, type(self), {**kept, **shared, "log": self.log.copy(), "_sha": self._sha.copy()})
+        return Checkpoint(self.tick, type(self), {**kept, **shared, "log": self.log.copy()})
 
     @staticmethod
     def restore(checkpoint: Checkpoint) -> Board:
@@ -273,7 +268,7 @@ class Board:
 
     def _revive(self) -> None:
         """Make what copies do not share."""
-        self.log, self._sha = self.log.copy(), self._sha.copy()
+        self.log = self.log.copy()
         self._allocate()
         self._link()
 
@@ -288,4 +283,4 @@ class Board:
             if entry.command is not None and entry.kind not in ("scheduled", "refused")
         ]
         length = {"samples": self.tick} if self.tick else {}
-        return {**copy.deepcopy(self.base), **length, "events": done + [w.event() for w in self.pending]}
+        return {**copy.deepcopy(self.base), **length, "events": done + [w.event() for w in self.pending.as_asked]}

@@ -16,6 +16,7 @@ from core.board.spec import Section, Spec, parse
 from core.board.wiring import Instance, Wiring, engage, wire
 from core.errors import InputError, from_validation, short, unknown
 from core.faults.fault import FaultParams
+from core.format import format_short
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -77,7 +78,7 @@ def check(board: Board, command: Command) -> None:
     elif isinstance(command, Set):
         _changed(board.spec, command.values)
     elif isinstance(command, Switch):
-        registry.block("control", command.controller, "controller")
+        _changed(board.spec, {"controller.kind": registry.block("control", command.controller, "controller").name})
 
 
 def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
@@ -99,7 +100,7 @@ def inject(board: Board, command: Inject) -> tuple[Any, Any]:
     current = board.faults.get(command.fault)
     if current is not None and _same_fault(current, params):
         raise InputError(
-            f"{command.fault} is already there with severity {command.severity:g}",
+            f"{command.fault} is already there with severity {format_short(command.severity, '')}",
             "fault",
             "heal it first, or give another severity",
             "conflict",
@@ -219,10 +220,10 @@ def _check_live(spec: Spec, new: Spec) -> None:
     for field in ("sample_rate_khz", "seed"):
         if getattr(new.frame, field) != getattr(spec.frame, field):
             raise _not_live(field)
-    if new.device != spec.device:
-        raise _not_live("device")
     for key in LIVE_SECTIONS:
         _check_section(key, getattr(spec, key), getattr(new, key))
+    if new.device != spec.device:
+        raise _not_live("device")
     for key in ("controllers", "sensors"):
         before = getattr(spec, key)
         for name, section in getattr(new, key).items():
@@ -287,7 +288,7 @@ def _repack(board: Board, key: str, params: BlockParams) -> None:
 def _rewire(board: Board, spec: Spec) -> None:
     """Put another bench of the same signals on the board; what is alike keeps its state."""
     old = board.wiring
-    new: Wiring = wire(spec, board.faults)
+    new: Wiring = wire(spec, board.faults, (board.spec, old))
     assert new.signals.names == old.signals.names
     new.w[:] = old.w
     engage(spec, new.index, new.w)

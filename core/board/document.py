@@ -24,6 +24,9 @@ EXCHANGED = {"reference.kind": ("reference", "kind", ()), "plant.model": ("plant
 ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_um": "amplitude_v"}
 """An amplitude is given in volts or in micrometres; setting one drops the other."""
 
+ONE_DRIVE = {"plant.drive": ("drive", "kind"), "drive.kind": ("plant", "drive")}
+"""How the drive works is said at the plant or at the drive; setting one drops the other."""
+
 LONGEST_PATH = 60
 """Characters of a path that is told back because of its length."""
 
@@ -107,6 +110,10 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
         table[parts[-1]] = copy.deepcopy(value)
         if path in ONE_AMPLITUDE:
             table.pop(ONE_AMPLITUDE[path], None)
+        if path in ONE_DRIVE:
+            section, key = ONE_DRIVE[path]
+            if isinstance(doc.get(section), dict):
+                doc[section].pop(key, None)
         if path in EXCHANGED:
             # a new kind keeps what it shares with the old one
             section, key, own = EXCHANGED[path]

@@ -11,7 +11,7 @@ from core.block import TIME_MS, Block, BlockParams, Context, FloatArray, Port, k
 from core.noise import key, uniform
 
 LIMIT, QUANTUM, DITHER, CHIPS, KEY = range(5)
-COMMAND, MIDDLE_IN, END_IN, VOLTAGE, MIDDLE, END, CHARGE, SATURATED = range(8)
+COMMAND, MIDDLE_IN, END_IN, VOLTAGE, MIDDLE, END, SATURATED = range(7)
 
 
 @kernel
@@ -38,8 +38,6 @@ def drive_step(p: Any, s: Any, w: Any, io: Any) -> None:
     else:
         w[io[MIDDLE]] = convert(p, w[io[MIDDLE_IN]] + dither)
         w[io[END]] = convert(p, w[io[END_IN]] + dither)
-    # the middle of a sample stands for its mean; of a held drive it is the voltage itself
-    w[io[CHARGE]] += w[io[MIDDLE]]
     w[io[SATURATED]] = 1.0 if abs(u) > p[LIMIT] else 0.0
 
 
@@ -56,7 +54,6 @@ class Drive(Block):
         Port("voltage", "V", "applied voltage"),
         Port("middle", "V", "applied voltage half a sample later", hidden=True),
         Port("end", "V", "applied voltage one sample later", hidden=True),
-        Port("charge", "V", "running sum of the voltage in the middle of every sample", hidden=True),
     )
     taps = (Port("saturated", "1", "1 while more voltage is asked for than the drive has"),)
 

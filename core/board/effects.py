@@ -10,7 +10,7 @@ import numpy as np
 from core.block import Block, BlockParams, Context, FloatArray, Port
 
 STIFFNESS_IN, DAMPING_IN, FRICTION_IN, SQUEEZE_IN, OUTPUTS = range(5)
-STIFFNESS, DAMPING, FRICTION, OTHER, SQUEEZE = 1, 2, 7, 17, 22
+STIFFNESS, DAMPING, FRICTION, OTHER, SQUEEZE, ELASTICITY = 1, 2, 7, 17, 22, 23
 """Places among the outputs of the channels that start from the environment."""
 
 
@@ -34,6 +34,7 @@ def effects_step(p: Any, s: Any, w: Any, io: Any) -> None:
     for i in range(int(p[0])):
         w[io[OUTPUTS + i]] = p[1 + i]
     w[io[OUTPUTS + STIFFNESS]] = w[io[STIFFNESS_IN]]
+    w[io[OUTPUTS + ELASTICITY]] = w[io[STIFFNESS_IN]]  # temperature and age change the material of every beam
     w[io[OUTPUTS + DAMPING]] = w[io[DAMPING_IN]]
     w[io[OUTPUTS + SQUEEZE]] = w[io[SQUEEZE_IN]]
     w[io[OUTPUTS + FRICTION]] = w[io[FRICTION_IN]]
@@ -43,8 +44,9 @@ def effects_step(p: Any, s: Any, w: Any, io: Any) -> None:
 class Effects(Block):
     """The channels through which faults reach plant and measurement, set back to neutral before those of each tick.
 
-    Stiffness, damping, friction and squeeze film start from what the environment makes of the device; for a new one at
-    300 K and 1 atm only the last is not neutral, by its rarefaction.
+    Stiffness, elasticity, damping, friction and squeeze film start from what the environment makes of the device; for a
+    new one at 300 K and 1 atm only the last is not neutral, by its rarefaction. Stiffness is the whole of that along x,
+    elasticity the part of it that is the material: every other stiffness of the suspension goes with it.
     """
 
     title = "Effect channels"
@@ -78,6 +80,7 @@ class Effects(Block):
         _sum("sensor_quantum", "um", "step what is measured is rounded to, 0 for none"),
         _sum("sensor_held", "1", "not zero while the sample is lost"),
         _scale("squeeze_scale", "squeeze film over that of a continuous gas at 300 K, over the damping"),
+        _scale("elasticity_scale", "stiffness of all beams alike over nominal: cubic, sideways and in rotation too"),
     )
 
     class Params(BlockParams):

@@ -65,6 +65,10 @@ def _leaves(table: Document, path: str = "") -> Iterator[tuple[str, Any]]:
             yield f"{path}{key}", value
 
 
+NOTED = {"recognised": "recognised", "tripped": "twin_tripped", "warning": "warning"}
+"""What of the log of a twin goes into that of the board, and as what."""
+
+
 class Ensemble(Board):
     """A board with twins, advanced together: whatever is done to the first is done to all at the same tick.
 
@@ -172,11 +176,12 @@ class Ensemble(Board):
             twin.apply(parse_command({**command, "at_sample": entry.tick}), entry.actor)
 
     def _repeat(self, name: str, entries: list[LogEntry]) -> None:
-        """Note what a twin found, and why it rests."""
+        """Note what a twin found, what it warns of that the board does not, and why it rests."""
         for entry in entries:
-            if entry.kind in ("recognised", "tripped"):
-                kind = "recognised" if entry.kind == "recognised" else "twin_tripped"
-                self._note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
+            kind = NOTED.get(entry.kind)
+            if kind is None or (kind == "warning" and any(entry.text == own.text for own in self.log)):
+                continue
+            self._note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
         self._mirrored = self.log.last
 
     def checkpoint(self) -> Checkpoint:

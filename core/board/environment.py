@@ -63,8 +63,9 @@ class Environment(Block):
 
     They change the true device, never the nominal one the controllers believe in, whose figures hold for a new one at
     300 K and 1 atm; there every factor is exactly 1. A device without a drawing is given the film of the drawn
-    LCR-350. Temperature is also that of the thermomechanical noise. Humidity sets the adhesion energy, and with it the
-    friction of what touches; its effect on viscosity is below 1 %.
+    LCR-350. Temperature and age change the modulus of all beams, and with it every stiffness of the suspension.
+    Temperature is also that of the thermomechanical noise. Humidity sets the adhesion energy, and with it the friction
+    of what touches; its effect on viscosity is below 1 %.
     """
 
     title = "Environment"
@@ -92,7 +93,11 @@ class Environment(Block):
             why="no rarefaction in the text, so damping would hardly depend on pressure; its t is the film, not the "
             "structural thickness; the flow along x is shear, not squeeze film",
         ),
-        Equation("stiffness", r"\frac{k}{k_0}=1-63\cdot10^{-6}\,(T-300)", "recalled value"),
+        Equation(
+            "stiffness",
+            r"\frac{E}{E_0}=\frac{k}{k_0}=\frac{k_y}{k_{y0}}=\frac{k_\theta}{k_{\theta0}}=1-63\cdot10^{-6}\,(T-300)",
+            "recalled value",
+        ),
         Equation("pressure", r"p=p_1-v\,(p_1-p_0),\quad p_1=1\ \text{atm}", "v: share of the vacuum left"),
         Equation("adhesion", r"W=W_d(W_w/W_d)^{1/(1+e^{-(H-60)/8})}", "ends recalled, shape assumed; 1.4.4"),
         Equation(
@@ -101,7 +106,7 @@ class Environment(Block):
         Equation(
             "squeeze film", r"c_s\to c_s\,\frac{\mu}{\mu_0}\frac1{1+9.638\,(\lambda/g)^{1.159}}", "Veijola, recalled"
         ),
-        Equation("age", r"k\to k/r(t),\quad r=1-0.428\,\frac{1-e^{-t/2}}{1-e^{-2}}", "3.1.3.2; the law is assumed"),
+        Equation("age", r"E\to E/r(t),\quad r=1-0.428\,\frac{1-e^{-t/2}}{1-e^{-2}}", "3.1.3.2; the law is assumed"),
     )
 
     class Params(BlockParams):

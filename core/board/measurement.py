@@ -9,16 +9,17 @@ import numpy as np
 
 from core.block import TICK, Block, BlockParams, Context, FloatArray, Port
 from core.sense.past import ENTRY, KEPT, note
-from core.sense.tracker import APPLIED_PORT
+from core.voltage import APPLIED_PORTS
 
-CHOSEN, OFFSET, QUANTUM, HELD, APPLIED, MEASURED, PAST = range(7)
+CHOSEN, OFFSET, QUANTUM, HELD, APPLIED = range(5)
+MEASURED, PAST = APPLIED + len(APPLIED_PORTS), APPLIED + len(APPLIED_PORTS) + 1
 VARIANCE, EVERY = range(2)
 
 
 def measurement_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Pass on the displacement of the sensor in use, unless the sample was lost."""
     if w[io[HELD]] != 0.0:
-        note(w, io[PAST], 0.0, w[io[APPLIED]], 0.0)
+        note(w, io, PAST, APPLIED, 0.0, 0.0)
         return
     z = w[io[CHOSEN]]
     if w[io[OFFSET]] != 0.0:
@@ -29,7 +30,7 @@ def measurement_step(p: Any, s: Any, w: Any, io: Any) -> None:
     # a division costs more than the rest of this step, and most sensors run at every tick
     fresh = (p[EVERY] == 1.0 or int(w[TICK]) % int(p[EVERY]) == 0) and math.isfinite(z)
     variance = p[VARIANCE] + w[io[QUANTUM]] * w[io[QUANTUM]] / 12.0
-    note(w, io[PAST], z, w[io[APPLIED]], variance if fresh else 0.0)
+    note(w, io, PAST, APPLIED, z, variance if fresh else 0.0)
 
 
 class Measurement(Block):
@@ -45,7 +46,7 @@ class Measurement(Block):
         Port("offset", "um", "added to what is measured", source="effects.sensor_offset"),
         Port("quantum", "um", "step what is measured is rounded to", source="effects.sensor_quantum"),
         Port("held", "1", "not zero while the sample is lost", source="effects.sensor_held"),
-        APPLIED_PORT,
+        *APPLIED_PORTS,
     )
     outputs = (Port("displacement", "um", "measured displacement"),)
     taps = (

@@ -7,10 +7,9 @@ from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
-from scipy.linalg import expm
 
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
-from core.device.oscillator import held, transition
+from core.device.oscillator import held, parabola, transition
 from core.device.ranges import Sized
 from core.device.transfer_function import of_coefficients
 from core.errors import InputError
@@ -165,16 +164,7 @@ class Model(Block):
 
 
 def _parabola(model: Oscillator, gain: float, context: Context) -> tuple[float, float, float, float]:
-    r"""Return what displacement and velocity gain over a sample by :math:`\dot r` and by :math:`\ddot r`; 0 when held.
-
-    From the matrix exponential of the model with r and its two derivatives as further states.
-    """
+    """Return what displacement and velocity gain over a sample by the two derivatives of r; 0 when it is held."""
     if not context.analogue:
         return 0.0, 0.0, 0.0, 0.0
-    a = np.diag([1.0, 0.0, 1.0, 1.0], 1)
-    if model.mass > 0.0:
-        a[1, :3] = np.array([-model.stiffness, -model.damping, gain]) / model.mass
-    else:
-        a[0, :3] = np.array([-model.stiffness, 0.0, gain]) / model.damping
-    found = expm(a * context.dt_ms)
-    return found[0, 3], found[1, 3], found[0, 4], found[1, 4]
+    return parabola(model.mass, model.damping, model.stiffness, context.dt_ms, gain)

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from core.block import Block, FloatArray, IntArray, kernel
+from core.block import FloatArray, IntArray, kernel
 from core.board.spec import Spec
 from core.board.wiring import Wiring, scored
 from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
 from core.diagnose.regions import REGIONS
+from core.format import format_count, format_short, format_si
 
 Finding = dict[str, Any]
-MOST_LOST = 1e-3
-"""Share of the amplitude of the reference that a block may lose unsaid by taking the voltage for held."""
 
 
 @kernel
@@ -103,33 +101,13 @@ class Observer:
         return sorted(found, key=lambda finding: int(finding["tick"]))
 
     def _caution(self, spec: Spec, tick: int) -> list[Finding]:
-        r"""Warn, once for each, of what takes the voltage for held though it moves.
-
-        A staircase of means over T has :math:`(\sin x/x)^2,\;x=\omega T/2`, of the amplitude of a sine; one of the
-        values in the middle of every tick, taken for an analogue drive, has :math:`\sin x/x`.
-        """
+        """Warn, once for each, of what takes the voltage for another than it is."""
         if spec is self._cautioned:
             return []
         self._cautioned = spec
-        found: list[Finding] = []
-        _, hz = max((abs(volts), hz) for hz, volts in (*_tones(spec), (0.0, 0.0)))
-        analogue = spec.context().analogue
-        for name, section in {**spec.identifiers, **spec.diagnosers}.items():
-            if not _holds(section.block):
-                continue
-            ticks = 1 if section.block.every_tick else spec.turns(section)
-            angle = math.pi * 1e-3 * hz * ticks * spec.dt_ms
-            kept = math.sin(angle) / angle if angle > 0.0 and (ticks > 1 or analogue) else 1.0
-            what = "takes an analogue drive for held over a tick"
-            if ticks > 1:
-                kept *= kept
-                what = f"runs every {ticks} ticks and takes their voltages for held at the mean"
-            lost = 1.0 - kept
-            text = f"{name} {what}: {100.0 * lost:.2g} % of the drive at {hz:g} Hz are lost to it"
-            if lost > MOST_LOST and text not in self._cautions:
-                self._cautions.add(text)
-                found.append({"kind": "warning", "text": text, "tick": tick})
-        return found
+        new = [text for text in cautions(spec) if text not in self._cautions]
+        self._cautions.update(new)
+        return [{"kind": "warning", "text": text, "tick": tick} for text in new]
 
     def _changes(self, outputs: FloatArray, taps: FloatArray) -> dict[int, list[int]]:
         """Return the rows in which each watched signal is not what it was before."""
@@ -162,7 +140,8 @@ class Observer:
                 found.append({"kind": "truth_changed", "text": text, "tick": tick, "new": label})
             if i in found_now and delay[i] >= 0:
                 samples = int(delay[i])
-                text = f"{name} found {label} after {samples} samples ({samples * self._dt_ms:.3g} ms)"
+                time = format_si(samples * self._dt_ms, "ms", 3)
+                text = f"{name} found {label} after {format_count(samples, 'sample')} ({time})"
                 found.append({"kind": "recognised", "text": text, "tick": tick, "old": samples, "new": label})
         return found
 
@@ -181,9 +160,14 @@ class Observer:
         return f"{VERDICTS[value]}: {', '.join(left)}{aliases}"
 
 
-def _holds(block: type[Block]) -> bool:
-    """Say whether a block models the device under a voltage that it takes for held."""
-    return any(port.source == "drive.charge" for port in block.inputs)
+def cautions(spec: Spec) -> list[str]:
+    """Return what the blocks of a bench lose by what they take the voltage for, by its strongest tone."""
+    _, hz = max((abs(volts), hz) for hz, volts in (*_tones(spec), (0.0, 0.0)))
+    found = []
+    for name, section in {**spec.identifiers, **spec.diagnosers}.items():
+        text = section.block.caution(section.params, spec.context(spec.turns(section)), hz)
+        found += [f"{name} {text}"] if text else []
+    return found
 
 
 def _tones(spec: Spec) -> list[tuple[float, float]]:
@@ -197,7 +181,7 @@ def _aliases(spec: Spec, name: str, label: str) -> str:
     """Name the changes that have the same response at the tones of the drive as a hypothesis."""
     hypotheses: Any = getattr(spec.diagnosers[name].params, "hypotheses")  # noqa: B009
     found = [
-        f"{part} x {factor:.4g}"
+        f"{part} x {format_short(factor, '')}"
         for part, factor in equivalents(hypotheses, label, spec.context().device, _tones(spec)).items()
     ]
     return f" (the same here: {', '.join(found)})" if found else ""

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from bisect import bisect_right, insort
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 
@@ -14,20 +17,19 @@ from core.board.condition import Condition
 from core.board.document import Document
 
 
-@dataclass
+@dataclass(eq=False)
 class Pending:
-    """A command that waits for its moment: a tick, or a condition watched from a tick on."""
+    """A command that waits for its moment: a tick, or a condition watched from a tick on.
+
+    ``number`` grows in the order in which commands have begun to wait.
+    """
 
     command: Command
     actor: str
     tick: int | None
     condition: Condition | None = None
     since: int = 0
-
-    @property
-    def watched(self) -> Condition | None:
-        """The condition, once it is watched."""
-        return self.condition if self.tick is None else None
+    number: int = 0
 
     def event(self) -> Document:
         """Return it as an event of a scenario."""
@@ -39,8 +41,76 @@ class Pending:
         return document
 
 
-def watches(pending: Iterable[Pending], index: dict[str, int]) -> FloatArray:
-    """Return the conditions that are watched as rows for the loop."""
-    conditions = [entry.watched for entry in pending if entry.watched is not None]
-    rows = [[index[found.signal], found.sign, found.threshold] for found in conditions]
-    return np.array(rows, dtype=np.float64).reshape(-1, 3)
+class Queue:
+    """What waits, in the order of its ticks; those whose condition is watched are behind."""
+
+    def __init__(self) -> None:
+        self._entries: list[Pending] = []
+        self._asked = 0
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __iter__(self) -> Iterator[Pending]:
+        return iter(self._entries)
+
+    @property
+    def next_tick(self) -> int | None:
+        """The first tick at which a command takes effect, if one waits for a tick."""
+        return self._entries[0].tick if self._entries else None
+
+    @property
+    def as_asked(self) -> list[Pending]:
+        """The entries in the order in which they have begun to wait, in which those of one tick take effect."""
+        return _as_asked(self._entries)
+
+    def add(self, entry: Pending) -> None:
+        """Let a command wait."""
+        self._asked += 1
+        entry.number = self._asked
+        insort(self._entries, entry, key=_moment)
+
+    def take_due(self, tick: int) -> list[Pending]:
+        """Take out what is due at a tick; a condition that is to be watched from then on stays, watched."""
+        count = bisect_right(self._entries, (float(tick), math.inf), key=_moment)
+        due, self._entries = _as_asked(self._entries[:count]), self._entries[count:]
+        for entry in due:
+            if entry.condition is not None:
+                entry.tick, entry.since = None, tick
+                self.add(entry)
+        return [entry for entry in due if entry.condition is None]
+
+    def meet(self, value: Callable[[str], float], tick: int) -> None:
+        """Let every command whose condition holds take effect at this tick."""
+        for entry in self._watched():
+            if entry.condition is not None and entry.condition.holds(value(entry.condition.signal)):
+                entry.condition, entry.tick = None, tick
+        self._entries.sort(key=_moment)
+
+    def watches(self, index: dict[str, int]) -> FloatArray:
+        """Return the conditions that are watched as rows for the loop."""
+        conditions = [entry.condition for entry in self._watched() if entry.condition is not None]
+        rows = [[index[one.signal], one.sign, one.threshold] for one in conditions]
+        return np.array(rows, dtype=np.float64).reshape(-1, 3)
+
+    def at_once(self) -> None:
+        """Let all of them wait for tick 0."""
+        for entry in self._entries:
+            entry.tick = 0
+        self._entries.sort(key=_moment)
+
+    def clear(self) -> None:
+        """Let nothing wait any more."""
+        self._entries.clear()
+
+    def _watched(self) -> list[Pending]:
+        return list(takewhile(lambda entry: entry.tick is None, reversed(self._entries)))[::-1]
+
+
+def _moment(entry: Pending) -> tuple[float, float]:
+    """Return where an entry stands."""
+    return (math.inf if entry.tick is None else entry.tick), entry.number
+
+
+def _as_asked(entries: Iterable[Pending]) -> list[Pending]:
+    return sorted(entries, key=lambda entry: entry.number)

@@ -19,6 +19,7 @@ from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
 from core.block import RESERVED, TICK, TIME_MS, FloatArray, IntArray, Step, kernel
+from core.board.fold import Words, fold, fold_uncompiled
 
 ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 """Columns of the table, one row per block."""
@@ -72,15 +73,17 @@ def run(
     io: IntArray,
     outputs: FloatArray,
     taps: FloatArray,
+    folds: Words,
     trip: int,
     watches: FloatArray,
 ) -> tuple[int, int]:
     """Run up to ``n`` ticks; return how many were run and why it stopped.
 
-    Of the signals those reserved come first, then the outputs, then the taps.
+    Of the signals those reserved come first, then the outputs, then the taps. Every tick is folded into ``folds``.
     A watch is a row (signal, +1 above or -1 below, threshold).
     """
     first_tap = RESERVED + outputs.shape[1]
+    bits = w.view(np.uint64)[RESERVED:]
     p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
     w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
     for i in range(n):
@@ -102,6 +105,7 @@ def run(
             outputs[i, c] = w[RESERVED + c]
         for c in range(taps.shape[1]):
             taps[i, c] = w[first_tap + c]
+        fold(folds, bits)
         if w[trip] != 0.0:
             return i + 1, TRIPPED
         for c in range(watches.shape[0]):
@@ -122,6 +126,7 @@ def run_uncompiled(
     io: IntArray,
     outputs: FloatArray,
     taps: FloatArray,
+    folds: Words,
     trip: int,
     watches: FloatArray,
 ) -> tuple[int, int]:
@@ -136,6 +141,7 @@ def run_uncompiled(
                 step(p[row[P_OFFSET] :], s[row[S_OFFSET] :], w, io[row[IO_OFFSET] :])
         outputs[i] = w[RESERVED:first_tap]
         taps[i] = w[first_tap : first_tap + taps.shape[1]]
+        fold_uncompiled(folds, w.view(np.uint64)[RESERVED:])
         if w[trip] != 0.0:
             return i + 1, TRIPPED
         for index, sign, threshold in watches:

@@ -16,7 +16,7 @@ from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
 from core.board.model import Model
-from core.board.wiring import instances
+from core.board.wiring import OPEN_LOOP, instances
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.device.transfer_function import slowest_pole
@@ -151,17 +151,24 @@ def _parse(doc: Document) -> Spec:
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
     if "drive" in plant:
-        drive["kind"] = plant.pop("drive")
+        here, there = plant.pop("drive"), drive.get("kind")
+        if drive.setdefault("kind", here) != here:
+            text = f"plant.drive says {short(here)} and drive.kind {short(there)}"
+            raise InputError(text, "drive.kind", "leave one of them out")
     device = build_device(doc["device"])
     usual = "transfer_function" if device.transfer_function is not None else "linear"
     plant_kind = plant.pop("model", usual)
     doc["plant"].setdefault("model", usual)
+    chosen = _section("plant", plant_kind, plant, "plant", "model")
+    gap = getattr(chosen.params, "gap_um", None)
+    if gap is not None:  # one comb, one gap: of the force, of what is sensed, of what is believed
+        device = device.model_copy(update={"finger_gap_um": gap})
     spec = Spec(
         document=doc,
         frame=frame,
         device=device,
         environment=Section(Environment, _params(Environment, doc.get("environment", {}), "environment")),
-        plant=_section("plant", plant_kind, plant, "plant", "model"),
+        plant=chosen,
         reference=_chosen("reference", doc["reference"], "reference"),
         model=Section(Model, _params(Model, doc.get("model", {}), "model")),
         drive=Section(Drive, _params(Drive, drive, "drive")),
@@ -201,6 +208,9 @@ def _suited(spec: Spec) -> Spec:
         "controller.kind": spec.controllers[spec.active].block,
         "sensor.kind": spec.sensors[spec.measuring].block,
     }
+    if spec.active != OPEN_LOOP and getattr(spec.drive.params, "kind", "held") == "analogue":
+        text = f"analogue is for {OPEN_LOOP} only: what {spec.active} asks for is held over a sample"
+        raise InputError(text, "drive.kind", f"hold the drive, or let {OPEN_LOOP} drive")
     for key in ("identifiers", "diagnosers"):
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
     for field, block in fields.items():

@@ -20,6 +20,8 @@ from core.signals import Signal, SignalTable
 if TYPE_CHECKING:
     from core.board.spec import Spec
 
+OPEN_LOOP = "open_loop"
+"""The controller that passes the reference on, so that the drive may follow it between samples."""
 NOTHING = "@nothing"
 """A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
 
@@ -47,6 +49,8 @@ class Wiring:
     s: FloatArray
     w: FloatArray
     io: IntArray
+    rows: dict[str, int]
+    """The row of every instance, by its key."""
     unread: list[bool]
     """Of every row: whether it is a sensor that nobody reads."""
     tap_rows: IntArray
@@ -55,14 +59,19 @@ class Wiring:
 
     def row(self, key: str) -> int:
         """Return the table row of an instance."""
-        return next(i for i, instance in enumerate(self.instances) if instance.key == key)
+        return self.rows[key]
+
+    def packed(self, row: int) -> FloatArray:
+        """Return the packed parameters of a row, a view."""
+        return self._part(self.p, row, program.P_OFFSET)
 
     def state_of(self, key: str) -> FloatArray:
         """Return the state of an instance, a view."""
-        row = self.row(key)
-        start = self.table[row, program.S_OFFSET]
-        end = self.table[row + 1, program.S_OFFSET] if row + 1 < len(self.instances) else len(self.s)
-        return self.s[start:end]
+        return self._part(self.s, self.rows[key], program.S_OFFSET)
+
+    def _part(self, whole: FloatArray, row: int, column: int) -> FloatArray:
+        end = self.table[row + 1, column] if row + 1 < len(self.instances) else len(whole)
+        return whole[self.table[row, column] : end]
 
     def rest(self, spec: Spec) -> list[int]:
         """Return the rows that run; make those that rest as new, and their signals 0."""
@@ -135,9 +144,66 @@ def _scored(params: BlockParams) -> BlockParams:
     return Score.Params.model_construct(hypotheses=getattr(params, "hypotheses"))  # noqa: B009
 
 
-def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
-    """Lay out the arrays of a bench and connect its ports."""
+def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Spec, Wiring] | None = None) -> Wiring:
+    """Lay out the arrays of a bench and connect its ports.
+
+    Parameters
+    ----------
+    spec : Spec
+        The bench.
+    faults : dict
+        The faults that act, by name.
+    now : tuple, optional
+        A bench of the same signals and its wiring: what is alike is taken from there.
+    """
     order = instances(spec, faults or {})
+    before, like = now or (None, None)
+    if like is not None and [one.block for one in order] == [one.block for one in like.instances]:
+        signals, index, size = like.signals, like.index, len(like.w)
+    else:
+        signals, index, size = _laid_out(spec, order)
+        like = None
+    alike = like is not None and before is not None and spec.context() == before.context()
+    table = np.zeros((len(order), program.COLUMNS), dtype=np.int64)
+    p_parts, s_parts, io_parts = [], [], []
+    p_size = s_size = io_size = 0
+    for row, instance in enumerate(order):
+        if alike and like is not None and instance == like.instances[row]:
+            p, s = like.packed(row), like.state_of(instance.key)
+        else:
+            context = spec.context(instance.every)
+            p = np.ascontiguousarray(instance.block.pack(instance.params, context), dtype=np.float64)
+            s = np.ascontiguousarray(instance.block.state(instance.params, context), dtype=np.float64)
+        io = ports_of(spec, instance, index)
+        every = 1 if instance.block.every_tick else instance.every
+        table[row, 1:] = (p_size, s_size, io_size, every)
+        p_parts.append(p)
+        s_parts.append(s)
+        io_parts.append(io)
+        p_size, s_size, io_size = p_size + len(p), s_size + len(s), io_size + len(io)
+    w = np.zeros(size)
+    for port in Effects.outputs:
+        w[index[f"effects.{port.name}"]] = port.neutral
+    engage(spec, index, w)
+    read = needed(spec)
+    rows = {instance.key: row for row, instance in enumerate(order)}
+    return Wiring(
+        instances=order,
+        signals=signals,
+        index=index,
+        table=table,
+        p=np.concatenate(p_parts),
+        s=np.concatenate(s_parts),
+        w=w,
+        io=np.concatenate(io_parts),
+        unread=[i.key in spec.sensors and issubclass(i.block, Sensor) and i.key not in read for i in order],
+        rows=rows,
+        tap_rows=np.array([rows[signal.block] for signal in signals.taps], dtype=np.int64),
+    )
+
+
+def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str, int], int]:
+    """Return the traced signals, the place of every signal, and how many places there are."""
     ports: dict[str, list[tuple[Port, Instance]]] = {"output": [], "tap": [], "hidden": []}
     for instance in order:
         # what stands by is worth seeing, but not what the bench puts out
@@ -162,40 +228,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None) -> Wiring:
         index[f"{name}.engaged"] = size
         size += 1
     index[NOTHING] = size
-    size += 1
-    table = np.zeros((len(order), program.COLUMNS), dtype=np.int64)
-    p_parts, s_parts, io_parts = [], [], []
-    p_size = s_size = io_size = 0
-    for row, instance in enumerate(order):
-        context = spec.context(instance.every)
-        p = np.ascontiguousarray(instance.block.pack(instance.params, context), dtype=np.float64)
-        s = np.ascontiguousarray(instance.block.state(instance.params, context), dtype=np.float64)
-        io = ports_of(spec, instance, index)
-        every = 1 if instance.block.every_tick else instance.every
-        table[row, 1:] = (p_size, s_size, io_size, every)
-        p_parts.append(p)
-        s_parts.append(s)
-        io_parts.append(io)
-        p_size, s_size, io_size = p_size + len(p), s_size + len(s), io_size + len(io)
-    w = np.zeros(size)
-    for port in Effects.outputs:
-        w[index[f"effects.{port.name}"]] = port.neutral
-    engage(spec, index, w)
-    signals = SignalTable(shown)
-    read = needed(spec)
-    rows = {instance.key: row for row, instance in enumerate(order)}
-    return Wiring(
-        instances=order,
-        signals=signals,
-        index=index,
-        table=table,
-        p=np.concatenate(p_parts),
-        s=np.concatenate(s_parts),
-        w=w,
-        io=np.concatenate(io_parts),
-        unread=[i.key in spec.sensors and issubclass(i.block, Sensor) and i.key not in read for i in order],
-        tap_rows=np.array([rows[signal.block] for signal in signals.taps], dtype=np.int64),
-    )
+    return SignalTable(shown), index, size + 1
 
 
 def absent(instance: Instance) -> bool:
@@ -248,5 +281,5 @@ def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -
     if port.source in ("@active_middle", "@active_end"):
         # only the generator itself knows what happens between samples
         between = port.source.removeprefix("@active_")
-        return f"reference.{between}" if spec.active == "open_loop" else f"{spec.active}.voltage"
+        return f"reference.{between}" if spec.active == OPEN_LOOP else f"{spec.active}.voltage"
     return port.source or f"{instance.prefix}.{port.name}"

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from core.block import Context, Oscillator, Port, kernel, settled
-from core.device.oscillator import held
+from core.device.oscillator import held, within
+from core.voltage import APPLIED_PORTS
 
-REFERENCE, MODEL, MEASURED, APPLIED, ENGAGED, VOLTAGE = range(6)
-"""Ports of every controller: five inputs, then its own would-be voltage; one with inputs of its own counts on."""
+REFERENCE, MODEL, MEASURED, APPLIED = range(4)
+ENGAGED, VOLTAGE = APPLIED + len(APPLIED_PORTS), APPLIED + len(APPLIED_PORTS) + 1
+"""Ports of every controller: its inputs, then its own would-be voltage; one with inputs of its own counts on.
+
+``APPLIED`` is what was applied until now, whoever asked for it.
+"""
 
 INPUTS = (
     Port("reference", "V", "reference voltage", source="reference.voltage"),
     Port("model", "um", "where the shuttle should be", source="model.displacement"),
     Port("measured", "um", "measured displacement", source="sensor.displacement"),
-    Port("applied", "V", "voltage applied until now, whoever asked for it", source="drive.voltage"),
+    *APPLIED_PORTS,
     Port("engaged", "1", "1 while this controller drives", source="@engaged"),
 )
 OUTPUT = Port("voltage", "V", "voltage this controller asks for")
@@ -80,14 +86,20 @@ def coefficients(context: Context) -> tuple[tuple[float, float, float], tuple[fl
 
 
 def model_filter(context: Context) -> list[float]:
-    """Pack a copy of the model without its zero: transition by rows, then the effect of a volt held over a sample."""
+    """Pack a copy of the model without its zero: transition by rows, effect of a volt held over a sample, of one more.
+
+    That is, of a volt more in the middle of a sample and at its end than at its start.
+    """
     m1, m2, gain = coefficients(context)[1]
     h = context.dt_ms * context.device.natural_frequency
-    *phi, first, second = held(1.0, m1, m2, h) if context.device.mass > 0.0 else held(0.0, 1.0, m2, h)
-    return [*phi, gain * first, gain * second]
+    of = (1.0, m1, m2, h) if context.device.mass > 0.0 else (0.0, 1.0, m2, h)
+    *phi, first, second = held(*of)
+    more = within(*of, gain) if context.analogue else (0.0, 0.0, 0.0, 0.0)
+    return [*phi, gain * first, gain * second, *more]
 
 
-MODEL_FILTER_SIZE = 6
+MODEL_FILTER_MORE = 6
+MODEL_FILTER_SIZE = 10
 
 
 @kernel
@@ -97,6 +109,23 @@ def advance_model(p: Any, packed: int, s: Any, at: int, voltage: float) -> None:
     v = s[at + 1]
     s[at] = settled(p[packed] * x + p[packed + 1] * v + p[packed + 4] * voltage)
     s[at + 1] = settled(p[packed + 2] * x + p[packed + 3] * v + p[packed + 5] * voltage)
+
+
+def lag(pole: float, h: float, analogue: bool) -> list[float]:
+    r"""Pack :math:`\dot x=-\lambda x+u`: what stays of x over a sample, and the effects of a volt as of the model."""
+    decay = math.exp(-pole * h)
+    more = within(0.0, 1.0, pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
+    return [decay, (1.0 - decay) / pole, more[0], more[2]]
+
+
+LAG_SIZE = 4
+
+
+@kernel
+def advance_lag(p: Any, packed: int, s: Any, at: int, u: float, middle: float, end: float) -> None:
+    """Advance a lag under a voltage: at the start, and how much more it was in the middle and at the end."""
+    more = p[packed + 2] * middle + p[packed + 3] * end
+    s[at] = settled(p[packed] * s[at] + p[packed + 1] * u + more)
 
 
 @kernel

@@ -11,31 +11,36 @@ from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscill
 from core.control.controller import (
     APPLIED,
     INPUTS,
+    LAG_SIZE,
     MEASURED,
     MODEL,
     OUTPUT,
     REFERENCE,
     TRUTH,
+    advance_lag,
     coefficients,
+    lag,
     matching,
     true_plant,
     unsuited_second_order,
 )
 from core.estimation import (
-    FILTER_SIZE,
+    DRIVEN_SIZE,
     advance_filter,
     diagonal,
+    drive_filter,
+    driven_filter,
     least_squares,
     project,
     second_derivative,
-    state_filter,
     trace,
     triangle,
 )
+from core.voltage import moved
 
 N = 3
-FORGETTING, NOISE, NORMALISER, TRACE_LIMIT, LOW, HIGH, POLE, DECAY, FILL, PRINTED = range(FILTER_SIZE, FILTER_SIZE + 10)
-MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN = range(FILTER_SIZE + 10, FILTER_SIZE + 16)
+FORGETTING, NOISE, NORMALISER, TRACE_LIMIT, LOW, HIGH, POLE, LAG = range(DRIVEN_SIZE, DRIVEN_SIZE + 8)
+PRINTED, MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN = range(LAG + LAG_SIZE, LAG + LAG_SIZE + 7)
 THETA, COVARIANCE, PHI = 0, N, N + triangle(N)
 PRODUCT, INPUT_FILTER, OUTPUT_FILTER, W1, W2, LAST, STARTED, SIZE = (PHI + N + n for n in (0, 3, 5, 7, 8, 9, 10, 11))
 FIRST_TRUTH = len(INPUTS)
@@ -49,12 +54,12 @@ def indirect_mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Identify from what was applied, compute the gains, then the voltage."""
     y = w[io[MEASURED]]
     r = w[io[REFERENCE]]
-    u = w[io[APPLIED]]
+    u, middle, end = moved(w, io, APPLIED)
     last = s[LAST] if s[STARTED] != 0.0 else y
-    advance_filter(p, 0, s, INPUT_FILTER, u, u)
+    drive_filter(p, 0, s, INPUT_FILTER, u, middle, end)
     advance_filter(p, 0, s, OUTPUT_FILTER, last, y)
-    s[W1] = settled(p[DECAY] * s[W1] + p[FILL] * u)
-    s[W2] = settled(p[DECAY] * s[W2] + p[FILL] * last)
+    advance_lag(p, LAG, s, W1, u, middle, end)
+    advance_lag(p, LAG, s, W2, last, 0.0, 0.0)
     s[LAST] = y
     s[STARTED] = 1.0
 
@@ -168,10 +173,9 @@ class IndirectMrac(Block):
         floor = params.gain_floor * gain
         low, high = (floor, math.inf) if gain > 0.0 else (-math.inf, floor)
         pole = params.filter_pole
-        decay = math.exp(-pole * h)
         return np.array(
             [
-                *state_filter(pole, h),
+                *driven_filter(pole, h, context.analogue),
                 forgetting,
                 forgetting / h,
                 params.normaliser,
@@ -179,8 +183,7 @@ class IndirectMrac(Block):
                 low,
                 high,
                 pole,
-                decay,
-                (1.0 - decay) / pole,
+                *lag(pole, h, context.analogue),
                 float(params.gain_map == "printed"),
                 m1,
                 m2,

@@ -11,22 +11,27 @@ from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscill
 from core.control.controller import (
     APPLIED,
     INPUTS,
+    LAG_SIZE,
     MEASURED,
     MODEL,
+    MODEL_FILTER_MORE,
     OUTPUT,
     REFERENCE,
     TRUTH,
+    advance_lag,
     advance_model,
     coefficients,
+    lag,
     matching,
     model_filter,
     true_plant,
     unsuited_second_order,
 )
+from core.voltage import add_moved, moved
 
 H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
-MODEL_GAIN, MODEL_A1, MODEL_A2, PLANT_A1, PLANT_A2, PLANT_GAIN, SIGN, FILTER_DECAY, FILTER_GAIN = range(10, 19)
-BIAS, ASKED_FOR, MODEL_FILTER = 19, 20, 21
+MODEL_GAIN, MODEL_A1, MODEL_A2, PLANT_A1, PLANT_A2, PLANT_GAIN, SIGN, LAG = range(10, 18)
+BIAS, ASKED_FOR, MODEL_FILTER = range(LAG + LAG_SIZE, LAG + LAG_SIZE + 3)
 R, FILTERED_INPUT, FILTERED_OUTPUT, Y, CONSTANT, N = range(6)
 """The regressors; the constant takes part only if it is not 0."""
 THETA, ALPHA, W1, W2, LAST = 0, N, N + 1, N + 2, N + 3  # LAST: the regressor of the sample before
@@ -48,14 +53,18 @@ def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Measure, advance the filters, adapt, compute the voltage."""
     y = w[io[MEASURED]]
     r = w[io[REFERENCE]]
-    u = w[io[APPLIED]]
+    u, middle, end = moved(w, io, APPLIED)
     n = CONSTANT if p[BIAS] == 0.0 else N
     if s[START] != 0.0:
         for i in range(n):
             advance_model(p, MODEL_FILTER, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
-        advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u if p[ASKED_FOR] == 0.0 else s[OWN])  # G_m[u]
-        s[W1] = settled(p[FILTER_DECAY] * s[W1] + p[FILTER_GAIN] * u)  # w1' = -lam w1 + u
-        s[W2] = settled(p[FILTER_DECAY] * s[W2] + p[FILTER_GAIN] * s[LAST + Y])  # w2' = -lam w2 + y
+        if p[ASKED_FOR] == 0.0:
+            advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u)  # G_m[u]
+            add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, APPLIED_FILTER, middle, end)
+        else:
+            advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, s[OWN])
+        advance_lag(p, LAG, s, W1, u, middle, end)  # w1' = -lam w1 + u
+        advance_lag(p, LAG, s, W2, s[LAST + Y], 0.0, 0.0)  # w2' = -lam w2 + y
     s[START] = 1.0
     s[LAST], s[LAST + 1], s[LAST + 2], s[LAST + 3], s[LAST + 4] = r, s[W1], s[W2], y, p[BIAS]
 
@@ -209,7 +218,6 @@ class Mrac(Block):
         (a1, a2, gain), (m1, m2, model_gain) = coefficients(context)
         weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
         pole = params.filter_pole
-        decay = math.exp(-pole * h)
         return np.array(
             [
                 h,
@@ -229,8 +237,7 @@ class Mrac(Block):
                 a2,
                 gain,
                 math.copysign(1.0, gain * model_gain),
-                decay,
-                (1.0 - decay) / pole,
+                *lag(pole, h, context.analogue),
                 params.bias_v,
                 float(params.auxiliary == "printed"),
                 *model_filter(context),

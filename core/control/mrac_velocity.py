@@ -11,25 +11,30 @@ from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscill
 from core.control.controller import (
     APPLIED,
     INPUTS,
+    LAG_SIZE,
     MEASURED,
     MODEL,
+    MODEL_FILTER_MORE,
     MODEL_FILTER_SIZE,
     OUTPUT,
     REFERENCE,
     TRUTH,
     VELOCITY_INPUTS,
+    advance_lag,
     advance_model,
     coefficients,
+    lag,
     matching,
     model_filter,
     true_plant,
     unsuited_order,
 )
 from core.control.velocity import STATES, Source, pack_velocity, velocity, velocity_source
+from core.voltage import add_moved, moved
 
 H, RATE, SIGN, GAIN, WEIGHT_OUTPUT, LEAKAGE, BOUND, REACH, FILTERS, POLE = range(10)
-LEAD, DECAY, FILL, RATIO, FIRST_ORDER = range(10, 15)
-MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(15, 22)
+LEAD, LAG, RATIO, FIRST_ORDER = 10, 11, 11 + LAG_SIZE, 12 + LAG_SIZE
+MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(13 + LAG_SIZE, 20 + LAG_SIZE)
 MOVING = MODEL_FILTER + MODEL_FILTER_SIZE
 THETA, W1, W2, LAST, OWN, AUXILIARY, MOTION, SIZE = 0, 4, 5, 6, 10, 11, 13, 13 + STATES
 """LAST: the regressor of the sample before, y last."""
@@ -75,14 +80,15 @@ def matching_lead(
 def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Measure, advance the filters, adapt, compute the voltage."""
     r = w[io[REFERENCE]]
-    u = w[io[APPLIED]]
+    u, middle, end = moved(w, io, APPLIED)
     y = w[io[MEASURED]]
-    y += p[LEAD] * velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u) / p[RATE]
+    y += p[LEAD] * velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
     # what the plant would have done under the voltage asked for here
     advance_model(p, MODEL_FILTER, s, AUXILIARY, s[OWN] - u)
+    add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, AUXILIARY, -middle, -end)
     if p[FILTERS] != 0.0:
-        s[W1] = settled(p[DECAY] * s[W1] + p[FILL] * u)
-        s[W2] = settled(p[DECAY] * s[W2] + p[FILL] * s[LAST_Y])
+        advance_lag(p, LAG, s, W1, u, middle, end)
+        advance_lag(p, LAG, s, W2, s[LAST_Y], 0.0, 0.0)
     e = y - (w[io[MODEL]] + p[LEAD] * w[io[MODEL_VELOCITY]] / p[RATE])
     own = settled(e + p[RATIO] * (s[AUXILIARY] + p[LEAD] * s[AUXILIARY + 1]))
 
@@ -201,7 +207,6 @@ class MracVelocity(Block):
         plant, model, lead = cls.shape(params, context)
         rate, pole, first_order = context.device.natural_frequency, params.filter_pole, context.device.mass == 0.0
         h = context.dt_ms * rate
-        decay = math.exp(-pole * h)
         copy = model_filter(context)
         return np.array(
             [
@@ -216,8 +221,7 @@ class MracVelocity(Block):
                 float(not first_order if params.filters is None else params.filters),
                 pole,
                 lead,
-                decay,
-                (1.0 - decay) / pole,
+                *lag(pole, h, context.analogue),
                 plant[2] / model[2],
                 float(first_order),
                 *model,

@@ -13,6 +13,7 @@ from core.control.controller import (
     INPUTS,
     MEASURED,
     MODEL,
+    MODEL_FILTER_MORE,
     MODEL_FILTER_SIZE,
     OUTPUT,
     REFERENCE,
@@ -26,6 +27,7 @@ from core.control.controller import (
     unsuited_order,
 )
 from core.control.velocity import STATES, Source, pack_velocity, velocity, velocity_source
+from core.voltage import add_moved, moved
 
 H, RATE, SIGN, GAIN, WEIGHT_GAIN, LAYER, LEAKAGE, BOUND, FORM, ORIENTATION, SLOPE, RATIO, SECOND_ORDER = range(13)
 MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(13, 20)
@@ -44,10 +46,10 @@ LABELS = ("r", "y", "e", "rate")
 def self_sliding_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Measure, find the side of the surface, adapt, compute the voltage."""
     r = w[io[REFERENCE]]
-    u = w[io[APPLIED]]
+    u, middle, end = moved(w, io, APPLIED)
     y = w[io[MEASURED]]
     form = p[FORM]
-    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u) / p[RATE]
+    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
     e = p[ORIENTATION] * (y - w[io[MODEL]])
     eta = 0.0
     augmenting = form == AUGMENTED or form == PRINTED
@@ -55,6 +57,7 @@ def self_sliding_step(p: Any, s: Any, w: Any, io: Any) -> None:
         for i in range(3):
             advance_model(p, MODEL_FILTER, s, FILTERED + 2 * i, s[LAST + i])
         advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u)
+        add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, APPLIED_FILTER, middle, end)
         eta = -s[APPLIED_FILTER]
         size = 1.0
         for i in range(3):
@@ -66,6 +69,7 @@ def self_sliding_step(p: Any, s: Any, w: Any, io: Any) -> None:
     else:
         # the error had its own voltage been applied: nothing to take out while it drives
         advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, s[OWN] - u)
+        add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, APPLIED_FILTER, -middle, -end)
         missing = p[ORIENTATION] * p[RATIO]
         surface = settled(e + missing * s[APPLIED_FILTER])
         if form == WITH_VELOCITY:

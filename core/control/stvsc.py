@@ -27,11 +27,12 @@ from core.control.sliding import (
     slide,
 )
 from core.control.velocity import STATES, VELOCITY_SIZE, pack_velocity, velocity
-from core.estimation import FILTER_SIZE, advance_filter, state_filter
+from core.estimation import DRIVEN_SIZE, advance_filter, drive_filter, driven_filter
+from core.voltage import moved
 
 MOVING, FILTER = SLIDING_SIZE, SLIDING_SIZE + VELOCITY_SIZE
 ESTIMATOR_GAIN, OUTPUT_WEIGHT, POLE, FLOOR, ON_ESTIMATE, NORMALISE = range(
-    FILTER + FILTER_SIZE, FILTER + FILTER_SIZE + 6
+    FILTER + DRIVEN_SIZE, FILTER + DRIVEN_SIZE + 6
 )
 PEAK, MOTION, THETA, INPUT_FILTER, OUTPUT_FILTER, LAST, SIZE = (
     0,
@@ -54,8 +55,8 @@ HUGE = 1e9
 def stvsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Estimate with what was applied, then slide with the estimate."""
     y = w[io[MEASURED]]
-    u = w[io[APPLIED]]
-    advance_filter(p, FILTER, s, INPUT_FILTER, u, u)
+    u, middle, end = moved(w, io, APPLIED)
+    drive_filter(p, FILTER, s, INPUT_FILTER, u, middle, end)
     advance_filter(p, FILTER, s, OUTPUT_FILTER, s[LAST], y)
     s[LAST] = y
     pole = p[POLE]
@@ -80,7 +81,7 @@ def stvsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
     s[THETA + 1] = min(max(spring, -HUGE), HUGE)
     s[THETA + 2] = min(max(damping, -HUGE), HUGE)
 
-    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u) / p[RATE]
+    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
     w[io[OWN_VOLTAGE]] = slide(
         p, s, PEAK, w, io, TAPS, y, v, s[THETA + 2], s[THETA + 1], s[THETA], error, p[ON_ESTIMATE] != 0.0
     )
@@ -180,7 +181,7 @@ class Stvsc(Block):
             [
                 *shared,
                 *pack_velocity(params.velocity, context, shared[RATE]),
-                *state_filter(params.filter_pole, shared[TIME_STEP]),
+                *driven_filter(params.filter_pole, shared[TIME_STEP], context.analogue),
                 params.estimator_gain,
                 weight,
                 params.filter_pole,

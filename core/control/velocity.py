@@ -8,10 +8,14 @@ from typing import Any, Literal
 import numpy as np
 
 from core.block import Context, kernel, parameter, settled
-from core.device.oscillator import held
+from core.device.oscillator import held, within
+from core.voltage import add_moved
 
-KIND, DT, PHI11, PHI12, PHI21, PHI22, INPUT1, INPUT2, PUSH1, PUSH2, CORRECT1, CORRECT2, CORRECT3 = range(13)
-VELOCITY_SIZE = 13
+KIND, DT, PHI11, PHI12, PHI21, PHI22, INPUT1, INPUT2, PUSH1, PUSH2, MOVED, CORRECT1, CORRECT2, CORRECT3 = (
+    *range(11),
+    *range(14, 17),
+)
+VELOCITY_SIZE = 17
 """Packed numbers of a velocity source."""
 SOURCES = ("true", "difference", "observer")
 Source = Literal["true", "difference", "observer"]
@@ -36,7 +40,10 @@ def pack_velocity(source: Source, context: Context, rate: float) -> list[float]:
     phi11, phi12, phi21, phi22, first, second = held(device.mass, device.damping, device.stiffness, h)
     effect = (first * device.force, second * device.force)
     push = (first * device.mass, second * device.mass)
-    own = [float(SOURCES.index(source)), h, phi11, phi12, phi21, phi22, *effect, *push]
+    moved = (0.0, 0.0, 0.0, 0.0)
+    if context.analogue:
+        moved = within(device.mass, device.damping, device.stiffness, h, device.force)
+    own = [float(SOURCES.index(source)), h, phi11, phi12, phi21, phi22, *effect, *push, *moved]
     if device.mass == 0.0:
         return [0.0, *own[1:], 0.0, 0.0, 0.0]  # nothing here feeds back a velocity
     phi = np.array([[phi11, phi12, push[0]], [phi21, phi22, push[1]], [0.0, 0.0, 1.0]])
@@ -50,8 +57,11 @@ def pack_velocity(source: Source, context: Context, rate: float) -> list[float]:
 
 
 @kernel
-def velocity(p: Any, packed: int, s: Any, at: int, true: float, y: float, u: float) -> float:
-    """Return the velocity now, um/ms; ``u`` was applied over the interval that ends now."""
+def velocity(p: Any, packed: int, s: Any, at: int, true: float, y: float, u: float, middle: float, end: float) -> float:
+    """Return the velocity now, um/ms; ``u`` was applied at the start of the interval that ends now.
+
+    In its middle and at its end it was by ``middle`` and ``end`` more.
+    """
     last = s[at]
     known = s[at + 1] != 0.0
     s[at] = y
@@ -63,10 +73,11 @@ def velocity(p: Any, packed: int, s: Any, at: int, true: float, y: float, u: flo
     x = s[at + 2]
     v = s[at + 3]
     more = s[at + 4]
-    ahead = p[packed + PHI11] * x + p[packed + PHI12] * v + p[packed + INPUT1] * u + p[packed + PUSH1] * more
-    v = p[packed + PHI21] * x + p[packed + PHI22] * v + p[packed + INPUT2] * u + p[packed + PUSH2] * more
-    missing = y - ahead if known else 0.0
-    s[at + 2] = settled(ahead + p[packed + CORRECT1] * missing)
-    s[at + 3] = settled(v + p[packed + CORRECT2] * missing)
+    s[at + 2] = p[packed + PHI11] * x + p[packed + PHI12] * v + p[packed + INPUT1] * u + p[packed + PUSH1] * more
+    s[at + 3] = p[packed + PHI21] * x + p[packed + PHI22] * v + p[packed + INPUT2] * u + p[packed + PUSH2] * more
+    add_moved(p, packed + MOVED, s, at + 2, middle, end)
+    missing = y - s[at + 2] if known else 0.0
+    s[at + 2] = settled(s[at + 2] + p[packed + CORRECT1] * missing)
+    s[at + 3] = settled(s[at + 3] + p[packed + CORRECT2] * missing)
     s[at + 4] = settled(more + p[packed + CORRECT3] * missing)
     return float(s[at + 3])

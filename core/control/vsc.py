@@ -25,6 +25,7 @@ from core.control.sliding import (
     slide,
 )
 from core.control.velocity import STATES, pack_velocity, velocity
+from core.voltage import moved
 
 PEAK, MOTION = 0, 1
 OWN_VOLTAGE = len(SLIDING_INPUTS)
@@ -33,7 +34,8 @@ OWN_VOLTAGE = len(SLIDING_INPUTS)
 def vsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Slide with the nominal coefficients."""
     y = w[io[MEASURED]]
-    v = velocity(p, SLIDING_SIZE, s, MOTION, w[io[VELOCITY]], y, w[io[APPLIED]]) / p[RATE]
+    u, middle, end = moved(w, io, APPLIED)
+    v = velocity(p, SLIDING_SIZE, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
     w[io[OWN_VOLTAGE]] = slide(
         p, s, PEAK, w, io, OWN_VOLTAGE + 1, y, v, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN], 0.0, False
     )

@@ -28,6 +28,7 @@ from core.control.sliding import (
     switch,
 )
 from core.control.velocity import STATES, pack_velocity, velocity
+from core.voltage import moved
 
 NOMINAL, REFERENCE_BOUND, OUTPUT_BOUND, SECOND_ORDER, MOVING = range(SWITCHING_SIZE, SWITCHING_SIZE + 5)
 PEAK, MOTION = 0, 1
@@ -38,7 +39,8 @@ def vsmrc_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Match the model with nominal gains, and switch with bounds on what these miss."""
     y = w[io[MEASURED]]
     r = w[io[REFERENCE]]
-    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, w[io[APPLIED]]) / p[RATE]
+    u, middle, end = moved(w, io, APPLIED)
+    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
     e = w[io[MODEL]] - y
     surface = e
     if p[SECOND_ORDER] != 0.0:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from scipy.linalg import expm
+
 from core.block import kernel
 
 
@@ -90,3 +93,49 @@ def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float
     else:
         reach = 0.5 * h * h / mass
     return a, b, c, d, reach, b / mass
+
+
+def parabola(
+    mass: float, damping: float, stiffness: float, h: float, gain: float = 1.0
+) -> tuple[float, float, float, float]:
+    r"""Return what displacement and velocity gain over ``h`` by a unit of :math:`\dot f`, then of :math:`\ddot f`.
+
+    Of :math:`m\ddot x+\beta\dot x+kx=gf`, from its matrix exponential with f and its two derivatives as further
+    states.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : float
+        mg, uN ms/um, uN/um; without mass the velocity follows the displacement.
+    h : float
+        Interval, ms.
+    gain : float
+        g.
+    """
+    a = np.diag([1.0, 0.0, 1.0, 1.0], 1)
+    if mass > 0.0:
+        a[1, :3] = np.array([-stiffness, -damping, gain]) / mass
+    else:
+        a[0, :3] = np.array([-stiffness, 0.0, gain]) / damping
+    found = expm(a * h)
+    return found[0, 3], found[1, 3], found[0, 4], found[1, 4]
+
+
+def within(
+    mass: float, damping: float, stiffness: float, h: float, gain: float = 1.0
+) -> tuple[float, float, float, float]:
+    r"""Return what displacement and velocity gain by a unit of :math:`f_{1/2}-f_0`, then of :math:`f_1-f_0`.
+
+    The force is the parabola through its values at the start, in the middle and at the end of an interval, as it is to
+    the plant under an analogue drive:
+
+    .. math:: h\dot f=4(f_{1/2}-f_0)-(f_1-f_0),\qquad h^2\ddot f=4(f_1-f_0)-8(f_{1/2}-f_0)
+
+    Parameters
+    ----------
+    mass, damping, stiffness, h, gain : float
+        As of ``parabola``.
+    """
+    x1, v1, x2, v2 = parabola(mass, damping, stiffness, h, gain)
+    x1, v1, x2, v2 = x1 / h, v1 / h, 4.0 * x2 / (h * h), 4.0 * v2 / (h * h)
+    return 4.0 * x1 - 2.0 * x2, 4.0 * v1 - 2.0 * v2, x2 - x1, v2 - v1

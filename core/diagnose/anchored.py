@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, kernel, parameter, settled
-from core.diagnose.arx import COUNT, LANES, OWN, PROBABILITY, WIDTH, ArxBank, ArxParams, judge, regress
+from core.diagnose.arx import COUNT, LANES, OWN, PROBABILITY, WIDTH, ArxBank, ArxParams, gathers, judge, regress
 from core.diagnose.weights import floored, weigh
 
 FORGETTING, ANCHOR, FLOOR, LOG_FLOOR = range(4)
@@ -50,6 +50,8 @@ def solve(s: Any, d: int, x: int) -> None:
 
 def anchored_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Let every bank say what it expects, weigh, and learn from the sample."""
+    if gathers(p, s, w, io):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * n
     z = regress(p, s, w, io, H)
@@ -90,6 +92,11 @@ class Anchored(ArxBank):
     """
 
     title = "Anchored self-tuning banks"
+    weaknesses = (
+        "Under one sine below 1 kHz noise decides more than the device: over the seven steps of 5.2.4, at 20 kHz and "
+        "10 nm, it is right for 98 % of the samples at 2 kHz, 72 % at 1 kHz, 70 % at 500 Hz and 22 % at 200 Hz.",
+        "With 50 nm of noise it is right for 57 % at 2 kHz and 18 % at 1 kHz; IMM is right for 92 % there.",
+    )
     equations = (
         Equation("anchored estimate", r"\hat\theta_k=(A+\rho I)^{-1}(b+\rho\theta_k)", "a reading of 5.3.3"),
         Equation("residual", r"r_k=z_i-h_i^T\hat\theta_k", "5.3.3.10"),

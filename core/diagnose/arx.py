@@ -1,6 +1,8 @@
 r"""Difference equations of the hypotheses: what every self-tuning bank shares.
 
 .. math:: z_i=b_0u_{i-1}+b_1u_{i-2}-a_1z_{i-1}-a_2z_{i-2}=h_i^T\theta
+
+The two voltages are means over their intervals, weighed as the nominal device does (`core.voltage`).
 """
 
 from __future__ import annotations
@@ -10,18 +12,24 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from core.block import Block, Context, Oscillator, Port, kernel, parameter, settled
-from core.device.oscillator import transition
+from core import voltage
+from core.block import TICK, Block, Context, Oscillator, Port, kernel, parameter, settled
 from core.diagnose.hypothesis import BankParams, assumed_noise, lacking
 from core.diagnose.kalman import gaussian, shuttle_memory
 
-COUNT, EVERY, FILTER1, FILTER2, MEMORY, LEAST_DRIVE, LANES = range(7)
+COUNT, EVERY, FILTER1, FILTER2, MEMORY, LEAST_DRIVE, INTERVAL = range(7)
+LANES = INTERVAL + voltage.INTERVAL_SIZE
 """Packed parameters of every bank; the lanes of the hypotheses follow, then a bank's own."""
 THETA, VARIANCE, HALF_LOG, WIDTH = 0, 4, 5, 6
 """Lanes of the parameters: the four coefficients, the variance of the equation error, half its logarithm."""
-LAST_CHARGE, LEVEL, U1, U2, Z1, Z2, OWN = range(7)
-"""State of every bank: charge, mean square of the voltage, and two samples of it and of the measurement, filtered."""
-MEASURED, MIDDLE, CHARGE, PROBABILITY, RESIDUAL_TAP, NIS_TAP = range(6)
+LEVEL, U1, U2, LATER1, LATER2, Z1, Z2, GATHERED = range(8)
+"""State of every bank: mean square of the voltage, two samples of it, of what of it acts later, and of the measurement,
+filtered; then the interval."""
+OWN = GATHERED + voltage.STATES
+MEASURED, APPLIED = range(2)
+PROBABILITY, RESIDUAL_TAP, NIS_TAP = range(
+    APPLIED + len(voltage.APPLIED_PORTS), APPLIED + len(voltage.APPLIED_PORTS) + 3
+)
 """Ports of every bank."""
 SIZE = 4
 """Number of coefficients."""
@@ -29,9 +37,14 @@ SIZE = 4
 
 def coefficients(device: Oscillator, dt_ms: float) -> tuple[float, float, float, float]:
     """Return b0, b1, a1, a2 of a device under a held voltage."""
-    f11, f12, f21, f22 = transition(device.mass, device.damping, device.stiffness, dt_ms)
-    g1, g2 = (1.0 - f11) * device.static_gain, -f21 * device.static_gain
-    return g1, f12 * g2 - f22 * g1, -(f11 + f22), f11 * f22 - f12 * f21
+    return voltage.difference_equation(device, device.static_gain, dt_ms)
+
+
+@kernel
+def gathers(p: Any, s: Any, w: Any, io: Any) -> bool:
+    """Take in the voltage of a tick; say whether a bank that runs every N of them is between two of its turns."""
+    voltage.follow(p, INTERVAL, s, GATHERED, w[io[APPLIED]], w[io[APPLIED + 1]], w[io[APPLIED + 2]])
+    return bool(p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0)
 
 
 @kernel
@@ -42,21 +55,25 @@ def regress(p: Any, s: Any, w: Any, io: Any, h: int) -> float:
     the sample before was.
     """
     z = w[io[MEASURED]]
-    u = w[io[MIDDLE]] if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
-    s[LAST_CHARGE] = w[io[CHARGE]]
+    u, later = voltage.weighed(p, INTERVAL, s, GATHERED)
     s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * u * u)
     a1 = p[FILTER1]
     a2 = p[FILTER2]
     if not math.isfinite(z):
         z = (1.0 + a1) * s[Z1] + a2 * s[Z2]
     u = settled(u - a1 * s[U1] - a2 * s[U2])
+    if a1 != 0.0 or a2 != 0.0:
+        later = later - a1 * s[LATER1] - a2 * s[LATER2]
+    later = settled(later)
     z = settled(z - a1 * s[Z1] - a2 * s[Z2])
     s[h] = u
-    s[h + 1] = s[U1]
+    s[h + 1] = s[LATER1]
     s[h + 2] = -s[Z1]
     s[h + 3] = -s[Z2]
     s[U2] = s[U1]
     s[U1] = u
+    s[LATER2] = s[LATER1]
+    s[LATER1] = later
     s[Z2] = s[Z1]
     s[Z1] = z
     return float(z)
@@ -114,8 +131,7 @@ class ArxBank(Block):
 
     inputs: ClassVar[tuple[Port, ...]] = (
         Port("measured", "um", "measured displacement", source="sensor.displacement"),
-        Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
-        Port("charge", "V", "running sum of the voltage in the middle of every sample", source="drive.charge"),
+        *voltage.APPLIED_PORTS,
     )
     outputs: ClassVar[tuple[Port, ...]] = (
         Port("probability", "1", "probability of the hypothesis", each="hypotheses"),
@@ -124,6 +140,8 @@ class ArxBank(Block):
         Port("residual", "um", "what the difference equation does not explain", each="hypotheses"),
         Port("nis", "1", "the same squared over its variance", each="hypotheses"),
     )
+
+    every_tick: ClassVar[bool] = True
 
     sample_by_sample: ClassVar[bool] = True
     """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
@@ -167,5 +185,11 @@ class ArxBank(Block):
             *(nominal[2:] if filtered else (0.0, 0.0)),
             shuttle_memory(context),
             params.least_drive_v**2,
+            *voltage.pack_interval(context),
         ]
         return [*map(float, head), *lanes.ravel().tolist()]
+
+    @classmethod
+    def caution(cls, params: Any, context: Context, hz: float) -> str:
+        """Tell of the hypothesis whose response to a tone is missed most."""
+        return voltage.caution(context, {item.name: item.oscillator(context.device) for item in params.hypotheses}, hz)

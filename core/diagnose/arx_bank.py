@@ -16,6 +16,7 @@ from core.diagnose.arx import (
     WIDTH,
     ArxBank,
     ArxParams,
+    gathers,
     judge,
     regress,
     said,
@@ -28,6 +29,8 @@ H, LOG = OWN, OWN + 4
 
 def arx_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Weigh every hypothesis by the error of its difference equation."""
+    if gathers(p, s, w, io):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * n
     z = regress(p, s, w, io, H)
@@ -47,6 +50,11 @@ class FixedBank(ArxBank):
     """
 
     title = "Bank of difference equations"
+    weaknesses = (
+        "Under one sine below 1 kHz noise decides more than the device: over the seven steps of 5.2.4, at 20 kHz and "
+        "10 nm, it is right for over 99 % of the samples at 2 kHz, 89 % at 1 kHz, 74 % at 500 Hz and 33 % at 200 Hz.",
+        "With 50 nm of noise it is right for 97 % at 2 kHz and 29 % at 1 kHz; IMM is right for 92 % there.",
+    )
     equations = (Equation("residual", r"r_k=z_i-h_i^T\theta_k", "5.3.3.10, theta identified beforehand"),)
 
     class Params(ArxParams):

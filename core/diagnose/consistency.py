@@ -17,7 +17,6 @@ from core.diagnose.filters import (
     OWN,
     PROBABILITY,
     WIDTH,
-    applied_voltage,
     coasts,
     driven,
     filters_step,
@@ -35,11 +34,10 @@ VERDICTS = ("normal", "detected", "isolated", "ambiguous", "unknown fault")
 
 def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, test every hypothesis, conclude."""
-    if coasts(p, s, w, io, LANE):
-        return
     n = int(p[COUNT])
+    if coasts(p, s, w, io, LANE, 0, n):
+        return
     own = LANES + WIDTH * LANE
-    u = applied_voltage(p, s, w, io)
     state = OWN + DEPTH * LANE
     at = state + SLIDING
     capacity = int(p[own + CAPACITY])
@@ -49,7 +47,7 @@ def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
     sine = math.sin(turn)
     along, across = window.leaning(p, own + LEAN, cosine, sine)
     span = p[own + LEAN + window.SPAN]
-    filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
+    filters_step(p, s, w, io, n, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     candidates = 0
     last = -1

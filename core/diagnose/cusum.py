@@ -16,7 +16,6 @@ from core.diagnose.filters import (
     OWN,
     PROBABILITY,
     WIDTH,
-    applied_voltage,
     coasts,
     filters_step,
     informed,
@@ -34,13 +33,12 @@ RESIDUAL_TAP, NIS_TAP, SUM_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
 
 def cusum_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, add up, compare with the threshold."""
-    if coasts(p, s, w, io, LANE):
-        return
     n = int(p[COUNT])
+    if coasts(p, s, w, io, LANE, 0, n):
+        return
     threshold = p[LANES + WIDTH * LANE + THRESHOLD]
-    u = applied_voltage(p, s, w, io)
     evidence = informed(p, s, w, io)
-    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
+    if filters_step(p, s, w, io, n, RESIDUAL_TAP):
         take_logarithms(s, n)
     healthy = 0.0
     most = 0.0

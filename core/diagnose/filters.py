@@ -8,68 +8,92 @@ from typing import Any
 from core.block import TICK, inlined, kernel, settled
 from core.diagnose.lanes import LANE
 
-COUNT, SENSOR, STEADY, PRINTED, EVERY, AT_START, MEMORY, LEAST_DRIVE, LANES = range(9)
+COUNT, SENSOR, STEADY, PRINTED, EVERY, TAKEN, MEMORY, LEAST_DRIVE, LANES = range(9)
 """Packed parameters of every bank; the lanes of the models follow, then a bank's own."""
 PHI11, PHI12, PHI21, PHI22, NOISE11, NOISE12, NOISE22, GAIN1, GAIN2, PSI, INVERSE_PSI = range(11)
-MOVE11, MOVE12, MOVE21, MOVE22, PUSH1, PUSH2, WIDTH = range(11, 18)
-"""Lanes of the parameters: over the interval of the bank, then transition and effect of a volt over one tick."""
-STARTED, LAST_CHARGE, LEVEL, OWN = range(4)
+MOVE11, MOVE12, MOVE21, MOVE22, PUSH1, PUSH2, MIDDLE1, MIDDLE2, END1, END2, WIDTH = range(11, 22)
+"""Lanes of the parameters: over the interval of the bank, then a device over one tick (`core.voltage`)."""
+STARTED, SUM, LEVEL, OWN = range(4)
 """State of every bank; the lanes of the filters follow, then a bank's own."""
-X1, X2, P11, P12, P22, RESIDUAL, NIS, COVARIANCE, INVERSE, HALF_LOG, DEPTH = range(11)
+X1, X2, P11, P12, P22, RESIDUAL, NIS, COVARIANCE, INVERSE, HALF_LOG, PUSHED1, PUSHED2, DEPTH = range(13)
 """Lanes of the state; half the logarithm of the residual covariance is kept while it stays."""
-MEASURED, APPLIED, MIDDLE, CHARGE, PROBABILITY = range(5)
+MEASURED, APPLIED, MIDDLE, END, PROBABILITY = range(5)
 """Ports of every bank."""
+TAKE_MIDDLE, TAKE_START, TAKE_PARABOLA = range(3)
+"""The voltages a filter may assume over a tick."""
 LEAST = 1e-12
 """Least residual covariance, as a share of R."""
 
 
 @inlined
-def voltage(p: Any, w: Any, io: Any) -> float:
-    """Return the voltage of the tick that ends now, from its middle or its start."""
-    return w[io[APPLIED]] if p[AT_START] != 0.0 else w[io[MIDDLE]]  # type: ignore[no-any-return]
+def push(p: Any, s: Any, w: Any, io: Any, lane: int, low: int, high: int) -> float:
+    """Write what the voltage of the tick that ends now does to the models from ``low`` to ``high``, and return it.
 
-
-@kernel
-def applied_voltage(p: Any, s: Any, w: Any, io: Any) -> float:
-    """Return the voltage of the tick that ends now, and keep its mean square over the shuttle's own memory.
-
-    Of a bank that runs every N ticks it is the square of their mean that counts.
+    An analogue drive moves within the tick: on the parabola through its start, middle and end, as the plant has it.
     """
-    u = voltage(p, w, io)
-    mean = u if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
-    s[LAST_CHARGE] = w[io[CHARGE]]
-    s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * mean * mean)
+    u = w[io[MIDDLE]] if p[TAKEN] == 0.0 else w[io[APPLIED]]
+    for i in range(low, high):
+        s[OWN + PUSHED1 * lane + i] = p[LANES + PUSH1 * lane + i] * u
+        s[OWN + PUSHED2 * lane + i] = p[LANES + PUSH2 * lane + i] * u
+    if p[TAKEN] == 2.0:
+        middle = w[io[MIDDLE]] - u
+        end = w[io[END]] - u
+        for i in range(low, high):
+            a = LANES + i
+            s[OWN + PUSHED1 * lane + i] += p[a + MIDDLE1 * lane] * middle + p[a + END1 * lane] * end
+            s[OWN + PUSHED2 * lane + i] += p[a + MIDDLE2 * lane] * middle + p[a + END2 * lane] * end
+        u = w[io[MIDDLE]]
     return float(u)
 
 
+@kernel
+def gauge(p: Any, s: Any, u: float) -> None:
+    """Keep the mean square of the voltage over the shuttle's own memory.
+
+    Of a bank that runs every N ticks it is the square of their mean that counts.
+    """
+    mean = u if p[EVERY] == 1.0 else (s[SUM] + u) / p[EVERY]
+    s[SUM] = 0.0
+    s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * mean * mean)
+
+
 @inlined
-def predicted(p: Any, a: int, lane: int, x1: float, x2: float, u: float) -> tuple[float, float]:
-    """Return where a state is a tick later."""
+def predicted(p: Any, s: Any, i: int, lane: int) -> tuple[float, float]:
+    """Return where the state of a model is a tick later."""
+    a = LANES + i
+    b = OWN + i
+    x1 = s[b + X1 * lane]
+    x2 = s[b + X2 * lane]
     return (
-        p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + p[a + PUSH1 * lane] * u,
-        p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + p[a + PUSH2 * lane] * u,
+        p[a + MOVE11 * lane] * x1 + p[a + MOVE12 * lane] * x2 + s[b + PUSHED1 * lane],
+        p[a + MOVE21 * lane] * x1 + p[a + MOVE22 * lane] * x2 + s[b + PUSHED2 * lane],
     )
 
 
 @kernel
-def drift(p: Any, s: Any, u: float, lane: int) -> None:
-    """Let the states of all models follow the voltage of a tick, uncorrected."""
-    for i in range(int(p[COUNT])):
+def drift(p: Any, s: Any, lane: int, low: int, high: int) -> None:
+    """Let the states of models follow the voltage of a tick, uncorrected."""
+    for i in range(low, high):
         b = OWN + i
-        x1, x2 = predicted(p, LANES + i, lane, s[b + X1 * lane], s[b + X2 * lane], u)
+        x1, x2 = predicted(p, s, i, lane)
         s[b + X1 * lane] = settled(x1)
         s[b + X2 * lane] = settled(x2)
 
 
 @inlined
-def coasts(p: Any, s: Any, w: Any, io: Any, lane: int) -> bool:
-    """Say whether a bank that runs every N ticks is between two of its turns; then its states follow the voltage.
+def coasts(p: Any, s: Any, w: Any, io: Any, lane: int, low: int, high: int) -> bool:
+    """Take in the voltage of a tick; say whether a bank that runs every N of them is between two of its turns.
 
-    The voltage changes at every tick: were it taken for held at its mean, a bank would be sure of the wrong model.
+    Then its states follow the voltage, which changes at every tick: were it taken for held at its mean, a bank would be
+    sure of the wrong model. The models that run are those from ``low`` to ``high``.
     """
+    u = push(p, s, w, io, lane, low, high)
     between: bool = p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0
     if between:
-        drift(p, s, voltage(p, w, io), lane)
+        s[SUM] += u
+        drift(p, s, lane, low, high)
+    else:
+        gauge(p, s, u)
     return between
 
 
@@ -86,14 +110,14 @@ def informed(p: Any, s: Any, w: Any, io: Any) -> bool:
 
 
 @inlined
-def filter_step(p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool) -> int:
+def filter_step(p: Any, s: Any, i: int, lane: int, z: float, first: bool, seen: bool) -> int:
     r"""Predict one filter, unless this is its first sample; correct it, if there is a measurement.
 
-    .. math:: x^-=\Phi x+\Gamma u,\quad P^-=\Phi P\Phi^T+W
+    .. math:: x^-=\Phi x+g,\quad P^-=\Phi P\Phi^T+W
 
     .. math:: r=z-Hx^-,\quad\psi=HP^-H^T+R,\quad K=P^-H^T/\psi,\quad x=x^-+Kr,\quad P=(I-KH)P^-
 
-    with W what the pseudo-noise of the ticks since the last sample has become by now.
+    with g what the voltage does and W what the pseudo-noise of the ticks since the last sample has become by now.
 
     What is decided is the same for all filters, so it chooses between values and not between ways: a loop of this
     stays one of vectors. Returns 1 if the residual covariance has changed, so that its logarithm is no longer right.
@@ -122,7 +146,7 @@ def filter_step(p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bo
     innovation = 1.0 / total if printed else inverse
     k1 = c11 * innovation
     k2 = c12 * innovation
-    correct_state(p, s, i, lane, u, z, first, seen, k1, k2, inverse)
+    correct_state(p, s, i, lane, z, first, seen, k1, k2, inverse)
     s[b + P11 * lane] = c11 - k1 * c11 if seen else c11
     s[b + P12 * lane] = c12 - k1 * c12 if seen else c12
     s[b + P22 * lane] = c22 - k2 * c12 if seen else c22
@@ -133,13 +157,13 @@ def filter_step(p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bo
 
 @inlined
 def correct_state(
-    p: Any, s: Any, i: int, lane: int, u: float, z: float, first: bool, seen: bool, k1: float, k2: float, inverse: float
+    p: Any, s: Any, i: int, lane: int, z: float, first: bool, seen: bool, k1: float, k2: float, inverse: float
 ) -> None:
     """Predict the state of one filter and correct it by a known gain."""
     b = OWN + i
     before1 = s[b + X1 * lane]
     before2 = s[b + X2 * lane]
-    x1, x2 = predicted(p, LANES + i, lane, before1, before2, u)
+    x1, x2 = predicted(p, s, i, lane)
     x1 = before1 if first else x1
     x2 = before2 if first else x2
     residual = settled(z - x1) if seen else 0.0
@@ -151,7 +175,7 @@ def correct_state(
 
 
 @inlined
-def filters_step(p: Any, s: Any, w: Any, io: Any, n: int, u: float, residual_tap: int) -> bool:
+def filters_step(p: Any, s: Any, w: Any, io: Any, n: int, residual_tap: int) -> bool:
     """Predict and correct all filters; show their residuals at a tap, and the squares over psi at the next.
 
     Returns whether a residual covariance has changed, so that its logarithm is no longer right.
@@ -163,13 +187,13 @@ def filters_step(p: Any, s: Any, w: Any, io: Any, n: int, u: float, residual_tap
     changed = 0
     if p[STEADY] == 0.0:
         for i in range(n):
-            changed += filter_step(p, s, i, LANE, u, z, first, seen)
+            changed += filter_step(p, s, i, LANE, z, first, seen)
     else:
         for i in range(n):
             a = LANES + i
             psi = p[a + PSI * LANE]
             correct_state(
-                p, s, i, LANE, u, z, first, seen, p[a + GAIN1 * LANE], p[a + GAIN2 * LANE], p[a + INVERSE_PSI * LANE]
+                p, s, i, LANE, z, first, seen, p[a + GAIN1 * LANE], p[a + GAIN2 * LANE], p[a + INVERSE_PSI * LANE]
             )
             changed += 1 if psi != s[OWN + COVARIANCE * LANE + i] else 0
             s[OWN + COVARIANCE * LANE + i] = psi

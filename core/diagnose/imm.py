@@ -24,7 +24,6 @@ from core.diagnose.filters import (
     WIDTH,
     X1,
     X2,
-    applied_voltage,
     coasts,
     filters_step,
     informed,
@@ -85,14 +84,13 @@ def mix(s: Any, n: int, other: float) -> None:
 
 def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Mix, predict and correct, weigh."""
-    if coasts(p, s, w, io, LANE):
-        return
     n = int(p[COUNT])
-    u = applied_voltage(p, s, w, io)
+    if coasts(p, s, w, io, LANE, 0, n):
+        return
     evidence = informed(p, s, w, io)
     if evidence and s[STARTED] != 0.0:
         mix(s, n, p[LANES + WIDTH * LANE + OTHER])
-    filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
+    filters_step(p, s, w, io, n, RESIDUAL_TAP)
     if evidence:
         least = math.inf
         for i in range(n):

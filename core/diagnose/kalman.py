@@ -9,10 +9,26 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from core.block import Block, BlockParams, Context, FloatArray, Oscillator, Port, parameter
-from core.device.oscillator import transition
-from core.diagnose.filters import DEPTH, GAIN1, INVERSE_PSI, LEAST, MOVE11, NOISE22, OWN, P11, P22, PSI, WIDTH
+from core.diagnose.filters import (
+    DEPTH,
+    GAIN1,
+    INVERSE_PSI,
+    LEAST,
+    MOVE11,
+    NOISE22,
+    OWN,
+    P11,
+    P22,
+    PSI,
+    TAKE_MIDDLE,
+    TAKE_PARABOLA,
+    TAKE_START,
+    WIDTH,
+)
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
 from core.diagnose.lanes import lanes
+from core.format import format_short
+from core.voltage import APPLIED_PORTS, MOST_LOST, PUSH1, PUSH2, pack_tick
 
 
 class FilterParams(BlockParams):
@@ -25,8 +41,10 @@ class FilterParams(BlockParams):
         None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
     )
     assumed_noise_scale: float = parameter(1.0, "factor on both assumed variances", gt=0, le=1e4)
-    voltage: Literal["middle", "start"] = parameter(
-        "middle", "voltage taken for an interval; of a held drive the same, of an analogue one the start is wrong"
+    voltage: Literal["parabola", "middle", "start"] = parameter(
+        "parabola",
+        "voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; "
+        "of a held drive all the same",
     )
     least_drive_v: float = parameter(
         1e-3, "drive (rms over the shuttle's own memory) below which residuals are no evidence", "V", ge=0, le=100
@@ -46,9 +64,7 @@ class KalmanBank(Block):
     Params: ClassVar[type[BlockParams]] = KalmanParams
     inputs: ClassVar[tuple[Port, ...]] = (
         Port("measured", "um", "measured displacement", source="sensor.displacement"),
-        Port("applied", "V", "voltage applied at the start of the sample that ends now", source="drive.voltage"),
-        Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
-        Port("charge", "V", "running sum of the voltage in the middle of every sample", source="drive.charge"),
+        *APPLIED_PORTS,
     )
     outputs: ClassVar[tuple[Port, ...]] = (
         Port("probability", "1", "probability of the hypothesis", each="hypotheses"),
@@ -98,11 +114,11 @@ class KalmanBank(Block):
         printed = getattr(params, "residual_covariance", "") == "printed"
         for i, hypothesis in enumerate(hypotheses):
             device = hypothesis.oscillator(context.device)
-            tick = transition(device.mass, device.damping, device.stiffness, context.dt_ms / context.every)
-            push = ((1.0 - tick[0]) * device.static_gain, -tick[2] * device.static_gain)
-            phi, noise = over_ticks(np.reshape(tick, (2, 2)), np.outer(push, push) * q, context.every)
+            tick = pack_tick(device, device.force, context.dt_ms / context.every, context.analogue)
+            push = tick[PUSH1], tick[PUSH2]
+            phi, noise = over_ticks(np.reshape(tick[:PUSH1], (2, 2)), np.outer(push, push) * q, context.every)
             table[: NOISE22 + 1, i] = (*phi.flat, noise[0, 0], noise[0, 1], noise[1, 1])
-            table[MOVE11:, i] = (*tick, *push)
+            table[MOVE11:, i] = tick
             if steady:
                 table[GAIN1 : PSI + 1, i] = steady_gain(phi, noise, r, printed)
                 table[INVERSE_PSI, i] = 1.0 / table[PSI, i]
@@ -112,7 +128,7 @@ class KalmanBank(Block):
             steady,
             printed,
             context.every,
-            params.voltage == "start",
+            _taken(params, context),
             shuttle_memory(context),
             params.least_drive_v**2,
         ]
@@ -127,6 +143,25 @@ class KalmanBank(Block):
         for row, value in enumerate(more, DEPTH):
             table[row] = value
         return [0.0] * OWN + [float(value) for value in table.ravel()]
+
+    @classmethod
+    def caution(cls, params: Any, context: Context, hz: float) -> str:
+        r"""Tell of an analogue drive taken for held: :math:`1-\sin x/x` of a tone, from the start late by x as well."""
+        x = math.pi * 1e-3 * hz * context.dt_ms / context.every
+        if not context.analogue or params.voltage == "parabola" or x <= 0.0:
+            return ""
+        late = x if params.voltage == "start" else 0.0
+        lost = abs(1.0 - math.sin(x) / x * complex(math.cos(late), -math.sin(late)))
+        text = f"takes the {params.voltage} of a tick of an analogue drive for held"
+        share, drive = format_short(100.0 * lost, "%", 2), format_short(hz, "Hz")
+        return f"{text}: {share} of the drive at {drive} are lost to it" if lost > MOST_LOST else ""
+
+
+def _taken(params: Any, context: Context) -> int:
+    """Return what is taken for the voltage of a tick."""
+    if params.voltage == "start":
+        return TAKE_START
+    return TAKE_PARABOLA if context.analogue and params.voltage == "parabola" else TAKE_MIDDLE
 
 
 def gaussian(residual: float, covariance: float) -> float:

@@ -16,7 +16,6 @@ from core.diagnose.filters import (
     OWN,
     PROBABILITY,
     WIDTH,
-    applied_voltage,
     coasts,
     filters_step,
     informed,
@@ -32,11 +31,10 @@ RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 1, PROBABILITY + 4)
 
 def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
-    if coasts(p, s, w, io, LANE):
-        return
     n = int(p[COUNT])
+    if coasts(p, s, w, io, LANE, 0, n):
+        return
     own = LANES + WIDTH * LANE
-    u = applied_voltage(p, s, w, io)
     evidence = informed(p, s, w, io)
     at = OWN + SLIDING * LANE
     capacity = int(p[own + CAPACITY])
@@ -47,7 +45,7 @@ def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
     along, across = window.leaning(p, own + LEAN, cosine, sine)
     span = p[own + LEAN + window.SPAN]
     half = 0.5 / p[own + WINDOW]
-    filters_step(p, s, w, io, n, u, RESIDUAL_TAP)
+    filters_step(p, s, w, io, n, RESIDUAL_TAP)
     window.push(s, at, n, capacity, place, cosine, sine)
     best = -math.inf
     for i in range(n):

@@ -18,7 +18,6 @@ from core.diagnose.filters import (
     OWN,
     PROBABILITY,
     WIDTH,
-    applied_voltage,
     coasts,
     filters_step,
     informed,
@@ -63,13 +62,12 @@ def multiply(s: Any, n: int, w: Any, probability: int, floor: float, evidence: b
 
 def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict and correct every filter, then weigh the hypotheses."""
-    if coasts(p, s, w, io, LANE):
-        return
     n = int(p[COUNT])
+    if coasts(p, s, w, io, LANE, 0, n):
+        return
     own = LANES + WIDTH * LANE
-    u = applied_voltage(p, s, w, io)
     evidence = informed(p, s, w, io)
-    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
+    if filters_step(p, s, w, io, n, RESIDUAL_TAP):
         take_logarithms(s, n)
     at = io[PROBABILITY]
     if p[own + LINEAR] == 0.0:

@@ -21,7 +21,6 @@ from core.diagnose.filters import (
     RESIDUAL,
     STARTED,
     WIDTH,
-    applied_voltage,
     coasts,
     driven,
     filter_step,
@@ -42,21 +41,20 @@ def moving_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Run the filter in the centre and its two neighbours; go where the evidence is."""
     n = int(p[COUNT])
     lane = max(n, LANE)
-    if coasts(p, s, w, io, lane):
+    centre = int(s[OWN + CENTRE * lane])
+    if coasts(p, s, w, io, lane, centre - 1, centre + 2):
         return
     own = LANES + WIDTH * lane
     z = w[io[MEASURED]]
-    u = applied_voltage(p, s, w, io)
     first = s[STARTED] == 0.0
     s[STARTED] = 1.0
     seen = math.isfinite(z)
     evidence = seen and driven(p, s)
-    centre = int(s[OWN + CENTRE * lane])
     low = centre - 1
     best = -math.inf
     for j in range(3):
         i = low + j
-        if filter_step(p, s, i, lane, u, z, first, seen) != 0:
+        if filter_step(p, s, i, lane, z, first, seen) != 0:
             s[OWN + HALF_LOG * lane + i] = 0.5 * math.log(s[OWN + COVARIANCE * lane + i])
         nis = s[OWN + NIS * lane + i]
         w[io[RESIDUAL_TAP] + j] = s[OWN + RESIDUAL * lane + i]

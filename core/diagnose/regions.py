@@ -7,34 +7,48 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
-from core.device.oscillator import transition
+from core.block import TICK, Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
 from core.diagnose import window
 from core.diagnose.hypothesis import lacking
+from core.voltage import (
+    APPLIED_PORTS,
+    END1,
+    END2,
+    MIDDLE1,
+    MIDDLE2,
+    PHI11,
+    PHI12,
+    PHI21,
+    PHI22,
+    TICK_SIZE,
+    moved,
+    pack_tick,
+)
 
-PHI11, PHI12, PHI21, PHI22, STATIC, EVERY, WINDOW, DEGRADED_AT, UNACCEPTABLE_AT, DANGER_AT, DANGER_UM = range(11)
-STARTED, LAST_CHARGE, X, V, ERROR, POWER, SAMPLES = range(7)
-MEASURED, MIDDLE, CHARGE, REGION, LOSS = range(5)
+STATIC, EVERY, WINDOW, DEGRADED_AT, UNACCEPTABLE_AT, DANGER_AT, DANGER_UM = range(TICK_SIZE, TICK_SIZE + 7)
+STARTED, X, V, ERROR, POWER, SAMPLES = range(6)
+MEASURED, APPLIED, REGION, LOSS = 0, 1, 1 + len(APPLIED_PORTS), 2 + len(APPLIED_PORTS)
 REQUIRED, DEGRADED, UNACCEPTABLE, DANGER = range(4)
 REGIONS = ("required performance", "degraded performance", "unacceptable performance", "danger")
 
 
 def regions_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance the healthy device, compare over a period, say where that is."""
+    """Advance the healthy device over a tick, compare over a period, say where that is."""
     y = w[io[MEASURED]]
-    u = w[io[MIDDLE]] if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[LAST_CHARGE]) / p[EVERY]
-    s[LAST_CHARGE] = w[io[CHARGE]]
     if s[STARTED] != 0.0:
+        u, middle, end = moved(w, io, APPLIED)
         rest = p[STATIC] * u
         x = s[X] - rest
         v = s[V]
-        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest)
-        s[V] = settled(p[PHI21] * x + p[PHI22] * v)
+        more_x = p[MIDDLE1] * middle + p[END1] * end
+        more_v = p[MIDDLE2] * middle + p[END2] * end
+        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest + more_x)
+        s[V] = settled(p[PHI21] * x + p[PHI22] * v + more_v)
     else:
         s[STARTED] = 1.0
         w[io[REGION]] = 0.0
         w[io[LOSS]] = 0.0
-    if not math.isfinite(y):
+    if not math.isfinite(y) or (p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0):
         return
     error = y - s[X]
     s[ERROR] += error * error
@@ -64,11 +78,11 @@ class Regions(Block):
     figures; the limits are this bench's own. Beyond the largest safe displacement there is danger at once.
     """
 
+    every_tick = True
     title = "Performance regions"
     inputs = (
         Port("measured", "um", "measured displacement", source="sensor.displacement"),
-        Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
-        Port("charge", "V", "running sum of the voltage in the middle of every sample", source="drive.charge"),
+        *APPLIED_PORTS,
     )
     outputs = (
         Port("region", "1", "0 required, 1 degraded, 2 unacceptable, 3 danger"),
@@ -99,15 +113,15 @@ class Regions(Block):
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         device = context.device
-        phi = transition(device.mass, device.damping, device.stiffness, context.dt_ms)
+        tick = pack_tick(device, device.force, context.dt_ms / context.every, context.analogue)
         period = 1e3 / (window.tone_hz(params, context) * context.dt_ms)
         limits = [params.degraded_above, params.unacceptable_above, params.danger_above, params.danger_um]
         samples = float(params.window or max(2, round(period)))
-        return np.array([*phi, device.static_gain, context.every, samples, *limits])
+        return np.array([*tick, device.static_gain, context.every, samples, *limits])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
         """At rest, nothing compared."""
-        return np.zeros(7)
+        return np.zeros(6)
 
     step = regions_step

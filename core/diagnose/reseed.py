@@ -15,7 +15,6 @@ from core.diagnose.filters import (
     OWN,
     PROBABILITY,
     WIDTH,
-    applied_voltage,
     coasts,
     filters_step,
     hand_over,
@@ -45,13 +44,12 @@ def reseed(s: Any, n: int, w: Any, probability: int, sure: float, hopeless: floa
 
 def reseed_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct, weigh; now and then seed anew."""
-    if coasts(p, s, w, io, LANE):
-        return
     n = int(p[COUNT])
+    if coasts(p, s, w, io, LANE, 0, n):
+        return
     own = LANES + WIDTH * LANE
-    u = applied_voltage(p, s, w, io)
     evidence = informed(p, s, w, io)
-    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
+    if filters_step(p, s, w, io, n, RESIDUAL_TAP):
         take_logarithms(s, n)
     best = judge(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, n, evidence)
     at = io[PROBABILITY]

@@ -20,6 +20,7 @@ from core.diagnose.arx import (
     ArxBank,
     ArxParams,
     driven,
+    gathers,
     regress,
     said,
 )
@@ -77,6 +78,8 @@ def adapted(p: Any, own: int, s: Any, innovation: float, gain: float) -> float:
 
 def self_tuning_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Estimate, adapt the forgetting, weigh every hypothesis by its cost over the same memory."""
+    if gathers(p, s, w, io):
+        return
     n = int(p[COUNT])
     own = LANES + WIDTH * n
     z = regress(p, s, w, io, H)
@@ -130,6 +133,12 @@ class SelfTuning(ArxBank):
 
     sample_by_sample = False
     title = "Self-tuning estimator"
+    weaknesses = (
+        "Under one sine below 1 kHz noise decides more than the device: over the seven steps of 5.2.4, at 20 kHz and "
+        "10 nm, it is right for 99 % of the samples at 2 kHz, 91 % at 1 kHz, 67 % at 500 Hz and 41 % at 200 Hz.",
+        "With 50 nm of noise it is right for 96 % at 2 kHz and 39 % at 1 kHz, where it takes the healthy device for "
+        "another three times in four; IMM is right for 92 % there.",
+    )
     taps = (
         *ArxBank.taps,
         Port("estimate", "1", "estimated coefficients", labels=("b0", "b1", "a1", "a2")),

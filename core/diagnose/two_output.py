@@ -22,7 +22,6 @@ from core.diagnose.filters import (
     WIDTH,
     X1,
     X2,
-    applied_voltage,
     coasts,
     driven,
     filters_step,
@@ -54,16 +53,15 @@ def correct_velocity(p: Any, s: Any, i: int, residual: float, psi: float) -> Non
 
 def two_output_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, correct by one output and then by the other, weigh."""
-    if coasts(p, s, w, io, LANE):
-        return
     n = int(p[COUNT])
+    if coasts(p, s, w, io, LANE, 0, n):
+        return
     own = LANES + WIDTH * LANE
     zv = w[io[VELOCITY]]
-    u = applied_voltage(p, s, w, io)
     seen = math.isfinite(w[io[MEASURED]])
     seen_too = math.isfinite(zv)
     drive = driven(p, s)
-    if filters_step(p, s, w, io, n, u, RESIDUAL_TAP):
+    if filters_step(p, s, w, io, n, RESIDUAL_TAP):
         take_logarithms(s, n)
     best = -math.inf
     for i in range(n):

@@ -6,34 +6,40 @@ from typing import Any
 
 from core.block import TICK, Equation, Port, parameter
 from core.device.environment import ageing_ratio
-from core.faults.fault import Fault, FaultParams, channel, severity_at
+from core.faults.fault import Fault, FaultParams, channels, severity_at
 
-EFFECT, AGE, WEEKS = range(3)
+STIFFNESS, ELASTICITY, AGE, WEEKS = range(4)
 
 
 def ageing_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Stiffen the suspension by what age takes of the displacement."""
+    """Stiffen every beam by what age takes of the displacement."""
     weeks = severity_at(p, w[TICK])
     w[io[WEEKS]] = weeks
     if weeks != 0.0:
         age = w[io[AGE]]
-        w[io[EFFECT]] *= ageing_ratio(age) / ageing_ratio(age + weeks)
+        stiffer = ageing_ratio(age) / ageing_ratio(age + weeks)
+        w[io[STIFFNESS]] *= stiffer
+        w[io[ELASTICITY]] *= stiffer
 
 
 class Ageing(Fault):
     r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less displacement at rest after four (3.1.3.2).
 
     A ramp lets the weeks pass within the run; a device that is older already goes on from its age. Only the end is the
-    text's; the exponential and its time constant of two weeks are assumed, and so is that wear and stiction act as a
-    stiffness.
+    text's; the exponential and its time constant of two weeks are assumed. So is that age changes the material of all
+    beams alike, as a modulus :math:`E\to E/r(t)`: the text measured along x alone. Stiffness sideways, in rotation and
+    cubic go with it, and pull-in by the bias with :math:`1/\sqrt r`.
     """
 
     title = "Ageing"
     shows = "beams"
-    changes = "displacement the suspension allows, taken as stiffness; 1.748 times as stiff after four weeks"
+    changes = (
+        "displacement the suspension allows, taken as the modulus of all beams; 1.748 times as stiff after four weeks, "
+        "sideways and in rotation too in the planar plant"
+    )
     suggested = 4.0
     inputs = (
-        *channel("stiffness_scale"),
+        *channels("stiffness_scale", "elasticity_scale"),
         Port("age", "week", "age without the fault", source="environment.age"),
     )
     outputs = (Port("severity", "week", "age"),)

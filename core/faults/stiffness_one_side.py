@@ -14,11 +14,17 @@ from core.faults.structure import STRUCTURE, Bending, effects, packed, structure
 
 
 class StiffnessOneSide(Fault):
-    r"""Stiffness of the beams of one side, :math:`k\to k(1+s/2)`, and a rotation with the travel."""
+    r"""Young's modulus of beams and truss of the side at +y: :math:`k\to k(1+s/2)`, and a rotation with the travel.
+
+    Its stiffness sideways and in rotation is that of the frame of beams with one side stiffer.
+    """
 
     title = "Beam stiffness, one side"
     shows = "beams"
-    changes = "stiffness of the suspension, by half the severity, in every plant; the rotation in the planar plant only"
+    changes = (
+        "stiffness of the suspension, by half the severity, in every plant; stiffness sideways and in rotation, and a "
+        "rotation with the travel, in the planar plant only"
+    )
     suggested = 0.1
     inputs = STRUCTURE
     outputs = (Port("severity", "1", "added stiffness of one side, share of nominal"),)

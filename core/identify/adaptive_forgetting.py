@@ -21,6 +21,7 @@ from core.identify.discrete import (
     Discrete,
     DiscreteParams,
     N,
+    gathers,
     nominal,
     observe,
     report,
@@ -75,6 +76,8 @@ def follow(p: Any, s: Any, e: float) -> None:
 
 def adaptive_forgetting_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, compare, choose how much to forget, update estimate and covariance."""
+    if gathers(p, s, w, io):
+        return
     use, e = observe(p, s, w, io)
     if use:
         follow(p, s, e)

@@ -3,15 +3,17 @@ r"""Identifiers of the sampled plant, :math:`z_{i+1}=h_i^T\theta,\;\theta=[b_0,b
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from core import voltage
 from core.block import Context, FloatArray, Oscillator, Port, kernel, parameter
 from core.device.oscillator import held
 from core.estimation import diagonal, trace, triangle
 from core.identify.identifier import (
-    CHARGE,
+    APPLIED,
     DAMPING_SCALE,
     DRIVE_GAIN,
     ENABLED,
@@ -26,18 +28,20 @@ from core.identify.identifier import (
     TRUTH,
     Identifier,
     IdentifierParams,
+    between_turns,
     excite,
     room,
     show_truth,
-    voltage,
     worst,
 )
 
 N = 4
 MASS, DAMPING, STIFFNESS, FORCE, DT, INITIAL, LIMIT, NOISE = range(OWN_PARAMETER, OWN_PARAMETER + 8)
-OWN_P = NOISE + triangle(N)
-START, LAST_Y, OLDER_Y, LAST_U, OLDER_U, LAST_CHARGE, WAS_ENABLED = range(7)
-THETA, PHI, PRODUCT, COVARIANCE, TRUE, SCALES, GRAM = 7, 11, 15, 19, 29, 33, 37
+INTERVAL = NOISE + triangle(N)
+OWN_P = INTERVAL + voltage.INTERVAL_SIZE
+START, LAST_Y, OLDER_Y, LAST_U, LATER_U, OLDER_U, WAS_ENABLED = range(7)
+THETA, PHI, PRODUCT, COVARIANCE, TRUE, SCALES, GATHERED = 7, 11, 15, 19, 29, 33, 37
+GRAM = GATHERED + voltage.STATES
 OWN_S = GRAM + room(N)
 ESTIMATE_PORT, ERROR_PORT, TRUTH_PORT, COEFFICIENT, COEFFICIENT_TRUE, RESIDUAL, EXCITATION_PORT = range(
     OWN_PORT, OWN_PORT + 7
@@ -79,7 +83,8 @@ class Discrete(Identifier):
         known = [device.mass, device.damping, device.stiffness, device.force, context.dt_ms]
         noise = diagonal(N, context.sensor_noise_um**2)
         noise[0] = noise[2] = 0.0  # the two voltages
-        return [*cls.shared(params, context), *known, params.initial_covariance, params.covariance_limit, *noise]
+        limits = [params.initial_covariance, params.covariance_limit]
+        return [*cls.shared(params, context), *known, *limits, *noise, *voltage.pack_interval(context)]
 
     @classmethod
     def begin(cls, params: Any, context: Context) -> FloatArray:
@@ -90,6 +95,13 @@ class Discrete(Identifier):
         if params.start == "nominal":
             start[THETA : THETA + N] = nominal(context.device, context.dt_ms)
         return start
+
+    @classmethod
+    def caution(cls, params: Any, context: Context, hz: float) -> str:
+        """Tell what of the response to a tone is missed once a part of the device is another by a tenth."""
+        own = context.device
+        tenth = {part: replace(own, **{part: 1.1 * getattr(own, part)}) for part in ("mass", "stiffness", "damping")}
+        return voltage.caution(context, {f"1.1 times the {part}": device for part, device in tenth.items()}, hz)
 
 
 def nominal(device: Oscillator, dt_ms: float) -> tuple[float, float, float, float]:
@@ -108,6 +120,13 @@ def sampled(
 
 
 @kernel
+def gathers(p: Any, s: Any, w: Any, io: Any) -> bool:
+    """Take in the voltage of a tick; say whether it is between two turns."""
+    voltage.follow(p, INTERVAL, s, GATHERED, w[io[APPLIED]], w[io[APPLIED + 1]], w[io[APPLIED + 2]])
+    return between_turns(p, w)
+
+
+@kernel
 def observe(p: Any, s: Any, w: Any, io: Any) -> tuple[bool, float]:
     """Form the regressor, and return whether there was a sample and its difference from the prediction."""
     y = w[io[MEASURED]]
@@ -115,11 +134,9 @@ def observe(p: Any, s: Any, w: Any, io: Any) -> tuple[bool, float]:
     if not seen:
         y = s[LAST_Y]
     first = s[START] < 3.0
-    if s[START] == 0.0:
-        s[LAST_CHARGE] = w[io[CHARGE]]
     s[START] = min(s[START] + 1.0, 3.0)
-    s[OLDER_U] = s[LAST_U]
-    s[LAST_U] = voltage(p, s, LAST_CHARGE, w, io)
+    s[OLDER_U] = s[LATER_U]
+    s[LAST_U], s[LATER_U] = voltage.weighed(p, INTERVAL, s, GATHERED)
     s[PHI], s[PHI + 1], s[PHI + 2], s[PHI + 3] = s[LAST_U], s[OLDER_U], -s[LAST_Y], -s[OLDER_Y]
     s[OLDER_Y] = s[LAST_Y]
     s[LAST_Y] = y

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from core.block import Context, Equation, FloatArray, Port
-from core.identify.filtered import GRAM, NOISE, PHI, Filtered, FilterParams, observe
+from core.identify.filtered import GRAM, NOISE, PHI, Filtered, FilterParams, gathers, observe
 from core.identify.identifier import EXCITATION, OWN_PORT, excite
 
 FIRST = OWN_PORT
@@ -15,6 +15,8 @@ FIRST = OWN_PORT
 
 def excitation_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Filter, and judge the regressor window by window."""
+    if gathers(p, s, w, io):
+        return
     observe(p, s, w, io)
     excite(p, NOISE, s, GRAM, PHI, 3, w, io, FIRST)
 

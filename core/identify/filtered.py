@@ -9,9 +9,18 @@ import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
 from core.block import Context, FloatArray, Port, kernel, parameter
-from core.estimation import FILTER_SIZE, advance_filter, second_derivative, state_filter, triangle
+from core.estimation import (
+    DRIVEN_SIZE,
+    FILTER_SIZE,
+    advance_filter,
+    drive_filter,
+    driven_filter,
+    second_derivative,
+    state_filter,
+    triangle,
+)
 from core.identify.identifier import (
-    CHARGE,
+    APPLIED,
     DAMPING_SCALE,
     DRIVE_GAIN,
     ERROR,
@@ -26,23 +35,21 @@ from core.identify.identifier import (
     ExcitationParams,
     Identifier,
     IdentifierParams,
+    between_turns,
     coefficients,
     excite,
     room,
     show_truth,
-    voltage,
     worst,
 )
+from core.voltage import moved
 
-HELD, FILTER, NOMINAL, RANGE = (
-    OWN_PARAMETER,
-    OWN_PARAMETER + 1,
-    OWN_PARAMETER + 1 + FILTER_SIZE,
-    OWN_PARAMETER + 4 + FILTER_SIZE,
+HELD, FILTER, VOLTAGE_FILTER, NOMINAL, RANGE = (
+    OWN_PARAMETER + n for n in (0, 1, 1 + FILTER_SIZE, 1 + FILTER_SIZE + DRIVEN_SIZE, 4 + FILTER_SIZE + DRIVEN_SIZE)
 )
 NOISE = RANGE + 1
 OWN_P = NOISE + triangle(3)
-START, LAST_Y, LAST_CHARGE, U_FILTER, Y_FILTER, PHI, THETA = 0, 1, 2, 3, 5, 7, 10
+START, LAST_Y, U_FILTER, Y_FILTER, PHI, THETA = 0, 1, 2, 4, 6, 9
 GRAM = THETA + 3
 OWN_S = GRAM + room(3)
 ESTIMATE_PORT, ERROR_PORT, TRUTH_PORT, COEFFICIENT, COEFFICIENT_TRUE, RESIDUAL, EXCITATION_PORT = range(
@@ -95,6 +102,7 @@ class Filtered(Identifier):
             *cls.shared(params, context),
             held,
             *filters,
+            *driven_filter(params.filter_pole, h / context.every, context.analogue),
             *coefficients(context.device),
             getattr(params, "range_ratio", 0.0),
             *noise_gram(params.filter_pole, h, held, context.sensor_noise_um),
@@ -133,8 +141,17 @@ def noise_gram(pole: float, h: float, held: float, noise_um: float) -> list[floa
 
 
 @kernel
+def gathers(p: Any, s: Any, w: Any, io: Any) -> bool:
+    """Let the filter of the voltage follow a tick; say whether it is between two turns."""
+    if s[START] != 0.0:
+        u, middle, end = moved(w, io, APPLIED)
+        drive_filter(p, VOLTAGE_FILTER, s, U_FILTER, u, middle, end)
+    return between_turns(p, w)
+
+
+@kernel
 def observe(p: Any, s: Any, w: Any, io: Any) -> tuple[bool, float]:
-    r"""Advance the filters, and return whether there was a sample and :math:`z-\theta^T\varphi` (3.3.2.6-7)."""
+    r"""Filter the displacement, and return whether there was a sample and :math:`z-\theta^T\varphi` (3.3.2.6-7)."""
     y = w[io[MEASURED]]
     seen = math.isfinite(y)
     if not seen:
@@ -142,10 +159,7 @@ def observe(p: Any, s: Any, w: Any, io: Any) -> tuple[bool, float]:
     if s[START] == 0.0:
         s[START] = 1.0
         s[LAST_Y] = y
-        s[LAST_CHARGE] = w[io[CHARGE]]
         return False, 0.0
-    u = voltage(p, s, LAST_CHARGE, w, io)
-    advance_filter(p, FILTER, s, U_FILTER, u, u)
     advance_filter(p, FILTER, s, Y_FILTER, s[LAST_Y], s[LAST_Y] if p[HELD] != 0.0 else y)
     s[LAST_Y] = y
     s[PHI], s[PHI + 1], s[PHI + 2] = s[U_FILTER], -s[Y_FILTER + 1], -s[Y_FILTER]

@@ -15,6 +15,7 @@ from core.identify.filtered import (
     Filtered,
     FilteredParams,
     bounds,
+    gathers,
     observe,
     report,
 )
@@ -25,6 +26,8 @@ GAIN, OUTPUT_WEIGHT, NORMALISE = range(OWN_P, OWN_P + 3)
 
 def gradient_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Filter, compare, move down the gradient."""
+    if gathers(p, s, w, io):
+        return
     seen, e = observe(p, s, w, io)
     if seen and p[ENABLED] != 0.0:
         den = 1.0

@@ -10,14 +10,15 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from core.block import Block, BlockParams, Context, Oscillator, Port, kernel, parameter
+from core.block import TICK, Block, BlockParams, Context, Oscillator, Port, kernel, parameter
 from core.theory.persistency import gather, smallest_eigenvalue
+from core.voltage import APPLIED_PORTS
 
-MEASURED, MIDDLE, CHARGE, MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DRIVE_GAIN, OWN_PORT = range(8)
+MEASURED, APPLIED = range(2)
+MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DRIVE_GAIN, OWN_PORT = (APPLIED + len(APPLIED_PORTS) + n for n in range(5))
 INPUTS = (
     Port("measured", "um", "measured displacement", source="sensor.displacement"),
-    Port("middle", "V", "voltage applied in the middle of the sample that ends now", source="drive.middle"),
-    Port("charge", "V", "running sum of the same", source="drive.charge"),
+    *APPLIED_PORTS,
     Port("mass_scale", "1", "true mass over nominal", source="effects.mass_scale"),
     Port("stiffness_scale", "1", "true stiffness over nominal", source="effects.stiffness_scale"),
     Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
@@ -61,6 +62,7 @@ class Identifier(Block):
     """Base of every identifier."""
 
     inputs: ClassVar[tuple[Port, ...]] = INPUTS
+    every_tick: ClassVar[bool] = True
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
@@ -88,11 +90,9 @@ def coefficients(device: Oscillator) -> tuple[float, float, float]:
 
 
 @kernel
-def voltage(p: Any, s: Any, last_charge: int, w: Any, io: Any) -> float:
-    """Return the mean voltage of the ticks since the last call."""
-    u = w[io[MIDDLE]] if p[EVERY] == 1.0 else (w[io[CHARGE]] - s[last_charge]) / p[EVERY]
-    s[last_charge] = w[io[CHARGE]]
-    return float(u)
+def between_turns(p: Any, w: Any) -> bool:
+    """Say whether an identifier that runs every N ticks only takes in the voltage of this one."""
+    return bool(p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0)
 
 
 @kernel

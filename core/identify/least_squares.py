@@ -20,6 +20,7 @@ from core.identify.filtered import (
     Filtered,
     FilteredParams,
     bounds,
+    gathers,
     observe,
     report,
 )
@@ -32,6 +33,8 @@ TRACE = OWN_TAP
 
 def least_squares_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Filter, compare, update estimate and covariance."""
+    if gathers(p, s, w, io):
+        return
     seen, e = observe(p, s, w, io)
     if p[ENABLED] != 0.0:
         if s[WAS_ENABLED] == 0.0:

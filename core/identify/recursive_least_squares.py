@@ -18,6 +18,7 @@ from core.identify.discrete import (
     Discrete,
     DiscreteParams,
     N,
+    gathers,
     observe,
     report,
     restart,
@@ -28,6 +29,8 @@ FORGETTING, DEAD_ZONE, RESET_BELOW = range(OWN_P, OWN_P + 3)
 
 def recursive_least_squares_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, compare, update estimate and covariance."""
+    if gathers(p, s, w, io):
+        return
     use, e = observe(p, s, w, io)
     if use and abs(e) >= p[DEAD_ZONE]:
         least_squares(s, THETA, COVARIANCE, PHI, PRODUCT, N, e, p[FORGETTING], p[FORGETTING], p[LIMIT])

@@ -43,8 +43,9 @@ from core.plant.suspension import K1, K3, KT, KY, T1, T3, XT, XY, Y2, elastic_fo
     TURN_IN,
     TURN_CUBIC_IN,
     SQUEEZE_IN,
+    ELASTICITY_IN,
     FIRST_OUTPUT,
-) = range(FIRST_OWN_INPUT, FIRST_OWN_INPUT + 11)
+) = range(FIRST_OWN_INPUT, FIRST_OWN_INPUT + 12)
 """Input ports of the plant in the plane, behind those of every plant."""
 
 PER_MASS, BETA, C_SIDE, C_TURN, C_SQUEEZE, F_X, F_Y, TOUCHED_MS = range(9, 17)
@@ -56,11 +57,12 @@ def prepare(p: Any, s: Any, w: Any, io: Any) -> None:
     """Put the suspension, the mass and the dampings as they are now into the state."""
     travel = w[io[SIDE_REACH_SCALE]] * p[SIDE_REACH]
     turning = w[io[TURN_REACH_SCALE]] * p[TURN_REACH]
+    elasticity = w[io[ELASTICITY_IN]]
     s[K1] = p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
-    s[K3] = p[CUBIC] + w[io[CUBIC_IN]]
-    s[KY] = p[SIDE_STIFFNESS] * w[io[SIDE_SCALE]]
+    s[K3] = elasticity * (p[CUBIC] + w[io[CUBIC_IN]])
+    s[KY] = elasticity * (p[SIDE_STIFFNESS] * w[io[SIDE_SCALE]])
     s[XY] = 1.0 / (travel * travel)
-    s[KT] = p[TURN_STIFFNESS] * w[io[TURN_SCALE]]
+    s[KT] = elasticity * (p[TURN_STIFFNESS] * w[io[TURN_SCALE]])
     s[XT] = 1.0 / (turning * turning)
     s[Y2] = p[SIDEWAYS] + w[io[SIDEWAYS_IN]]
     s[T1] = p[TURN] + w[io[TURN_IN]]

@@ -29,9 +29,6 @@ LEAST_US = 0.01
 class ContactParams(ShuttleParams):
     """What happens where the shuttle touches."""
 
-    gap_um: float | None = parameter(
-        None, "gap between fingers as etched; that of the device unless given", "um", gt=0.2, le=100
-    )
     contact_clearance_um: float = parameter(0.15, "gap that is left where fingers touch", "um", gt=0, le=0.2)
     contact_stiffness_n_m: float = parameter(5e3, "stiffness of touching fingers", "N/m", ge=0, le=1e4)
     contact_damping_ns_m: float = parameter(1.5e-5, "damping of touching fingers", "N s/m", ge=0, le=1e-4)
@@ -40,21 +37,13 @@ class ContactParams(ShuttleParams):
     stop_stiffness_n_m: float = parameter(50.0, "stiffness of a stop", "N/m", ge=0, le=5e3)
     stop_damping_ns_m: float = parameter(2e-5, "damping of a stop", "N s/m", ge=0, le=1e-4)
 
-    def gap(self, context: Context) -> float:
-        """Return the gap in use, um."""
-        return drawn(context).gap_um if self.gap_um is None else self.gap_um
-
-    def gradient(self, context: Context) -> float:
-        """Return dC/dx of one comb, F/m, which goes with one over the gap: fingers and thickness stay."""
-        return context.capacitance_gradient * (drawn(context).gap_um / self.gap(context))
-
     def stop_step_us(self, step_us: float, mass: float) -> float:
         """Return the longest step asked for, or the longest that follows the end stops."""
         return resolved_us(step_us, self.stop_stiffness_n_m, self.stop_damping_ns_m * 1e3, mass)
 
     def packed(self, context: Context) -> list[float]:
         """Pack gap, contact and stops; the force law holds up to nine tenths of the gap."""
-        gap = self.gap(context)
+        gap = drawn(context).gap_um
         return [
             gap,
             0.9 * gap,

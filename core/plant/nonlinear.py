@@ -12,6 +12,7 @@ from core.plant.shuttle import (
     ACCELERATION,
     DISPLACEMENT,
     DT,
+    ELASTICITY_PORT,
     FIRST_OWN_INPUT,
     FRICTION,
     OWN,
@@ -34,8 +35,7 @@ from core.plant.shuttle import (
 )
 
 CUBIC, SMOOTHED, SLIP, STOP, STOP_STIFFNESS, STOP_DAMPING, SUBSTEPS, FINE, NEAR, SLOW = range(OWN, OWN + 10)
-CUBIC_IN = FIRST_OWN_INPUT
-FIRST_OUTPUT = FIRST_OWN_INPUT + 1
+CUBIC_IN, ELASTICITY_IN, FIRST_OUTPUT = range(FIRST_OWN_INPUT, FIRST_OWN_INPUT + 3)
 X_OUT, V_OUT, SHORT_OUT = FIRST_OUTPUT + DISPLACEMENT, FIRST_OUTPUT + VELOCITY, FIRST_OUTPUT + SHORT
 RESOLVED = 0.2
 """Longest step at a stop or in smoothed friction, in units of one over the fastest rate there.
@@ -64,7 +64,7 @@ def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
         w[io[V_OUT]] = p[V0]
         return
     m, b, k = coefficients(p, w, io)
-    cubic = p[CUBIC] + w[io[CUBIC_IN]]
+    cubic = w[io[ELASTICITY_IN]] * (p[CUBIC] + w[io[CUBIC_IN]])
     tick = w[TICK] - 1.0
     u0, rise, bend = comb_voltage_parabola(w, io)
     noise = drive_noise(p, tick)
@@ -125,7 +125,11 @@ class Nonlinear(Shuttle):
     """
 
     title = "Nonlinear plant"
-    inputs = (*Shuttle.inputs, Port("cubic", "uN/um^3", "added cubic stiffness", source="effects.cubic"))
+    inputs = (
+        *Shuttle.inputs,
+        Port("cubic", "uN/um^3", "added cubic stiffness", source="effects.cubic"),
+        ELASTICITY_PORT,
+    )
     equations = (
         Equation(
             "motion",

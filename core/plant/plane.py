@@ -94,8 +94,8 @@ class PlaneParams(ContactParams):
     def packed(self, context: Context) -> list[float]:
         """Pack what the plant in the plane has beyond what all plants share: uN um is 1e12 N m, and so on."""
         known = asdict(lateral(drawn(context)))
+        gap = known.pop("gap_um")
         own = {name: known[name] if getattr(self, name) is None else getattr(self, name) for name in known}
-        gap = own["gap_um"]
         mass = context.device.mass
         step = self.stop_step_us(self.step_us, mass)
         coarse = math.ceil(context.dt_ms * 1e3 / step - 1e-9)
@@ -108,7 +108,7 @@ class PlaneParams(ContactParams):
         noisy = 1.0 if self.thermal_noise else 0.0
         return [
             *super().packed(context),
-            0.5 * self.gradient(context) * UN_PER_N * gap * gap,
+            0.5 * context.capacitance_gradient * UN_PER_N * gap * gap,
             gap * gap,
             1.0 / gap,
             stator,

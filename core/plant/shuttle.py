@@ -45,17 +45,30 @@ from core.units import UN_PER_N, thermal_force_un
 
 DISPLACEMENT, VELOCITY, LATERAL, SHIFT, SHIFT_VELOCITY, ROTATION, ROTATION_VELOCITY, CONTACT, SHORT = range(9)
 """Outputs and taps of every plant, counted from the first output."""
+ELASTICITY_PORT = Port(
+    "elasticity_scale", "1", "stiffness of all beams alike over nominal", source="effects.elasticity_scale"
+)
+"""Input of a plant with more elasticity than that along x."""
 RIGHT, LEFT = 1, 2
 """Bits of ``SHORT``: the comb at +x, whose stator carries the first voltage, and the one at -x."""
 
 
 class ShuttleParams(BlockParams):
-    """Starting point and noise of the shuttle."""
+    """Starting point and noise of the shuttle, and the gap of its combs."""
 
     initial_displacement_um: float = parameter(0.0, "displacement at the start", "um", ge=-20, le=20, live=False)
     initial_velocity_um_ms: float = parameter(0.0, "velocity at the start", "um/ms", live=False)
     drive_noise_v: float = parameter(0.0, "white noise on the drive voltage, rms per sample", "V", ge=0)
     thermal_noise: bool = parameter(True, "thermomechanical force noise of the damping")
+    gap_um: float | None = parameter(
+        None,
+        "gap between fingers as etched, instead of the device's; force, capacitance and pull-in go with it",
+        "um",
+        gt=0.2,
+        le=100,
+        equation="1.3.2",
+        live=False,
+    )
 
 
 class Shuttle(Block):

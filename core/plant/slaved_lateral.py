@@ -43,7 +43,6 @@ from core.plant.shuttle import (
     joined,
     thermal_force,
 )
-from core.units import UN_PER_N
 
 SPRING, KAPPA, OVERLAP, SUBSTEPS = range(PLANT, PLANT + 4)
 FIRST_OUTPUT = FIRST_OWN_INPUT
@@ -180,8 +179,6 @@ class SlavedLateral(Shuttle):
             # fingers feel the shuttle through the lever of their motion
             felt = mass / (params.ratio * params.ratio)
             step = resolved_us(step, params.contact_stiffness_n_m, params.contact_damping_ns_m * 1e3, felt)
-        shared = cls.shared(params, context)
-        shared[COMB] = params.gradient(context) * UN_PER_N
         own = [
             *params.packed(context),
             params.stiffness_n_m,
@@ -189,7 +186,7 @@ class SlavedLateral(Shuttle):
             params.effective_overlap_um,
             float(math.ceil(context.dt_ms * 1e3 / step - 1e-9)),
         ]
-        return np.array(shared + own, dtype=np.float64)
+        return np.array(cls.shared(params, context) + own, dtype=np.float64)
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

@@ -8,6 +8,7 @@ from typing import Any, Self
 from pydantic import model_validator
 
 from core.block import Context, Equation, kernel, parameter
+from core.device.ranges import Sized
 from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing, sine_of
 
 
@@ -30,8 +31,8 @@ class Chirp(Waveform):
     class Params(ReferenceParams):
         """Parameters of a sweep."""
 
-        start_hz: float = parameter(500.0, "frequency at the start", "Hz", ge=0, le=1e6)
-        stop_hz: float = parameter(5000.0, "frequency at the end", "Hz", ge=0, le=1e6)
+        start_hz: Sized = parameter(500.0, "frequency at the start", "Hz", ge=0, le=1e6)
+        stop_hz: Sized = parameter(5000.0, "frequency at the end", "Hz", ge=0, le=1e6)
         duration_ms: float = parameter(50.0, "length of a sweep", "ms", gt=0)
 
         @model_validator(mode="after")

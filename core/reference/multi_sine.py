@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import BlockParams, Context, Equation, kernel, parameter
+from core.device.ranges import Sized
 from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing, sine_of
 
 
 class Tone(BlockParams):
     """One tone of the sum."""
 
-    frequency_hz: float = parameter(1000.0, "frequency", "Hz", ge=0, le=1e6)
+    frequency_hz: Sized = parameter(1000.0, "frequency", "Hz", ge=0, le=1e6)
     amplitude: float = parameter(1.0, "share of the amplitude")
     phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
 

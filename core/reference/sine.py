@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import Context, Equation, kernel, parameter
+from core.device.ranges import Sized
 from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing, sine_of
 
 
@@ -23,7 +24,7 @@ class Sine(Waveform):
     class Params(ReferenceParams):
         """Parameters of one tone."""
 
-        frequency_hz: float = parameter(1000.0, "frequency", "Hz", ge=0, le=1e6)
+        frequency_hz: Sized = parameter(1000.0, "frequency", "Hz", ge=0, le=1e6)
         phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
 
     @classmethod

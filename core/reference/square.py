@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from core.block import Context, Equation, kernel, parameter
+from core.device.ranges import Sized
 from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
 
 
@@ -25,7 +26,7 @@ class Square(Waveform):
     class Params(ReferenceParams):
         """Parameters of a square wave."""
 
-        frequency_hz: float = parameter(200.0, "frequency", "Hz", ge=0, le=1e6)
+        frequency_hz: Sized = parameter(200.0, "frequency", "Hz", ge=0, le=1e6)
         duty: float = parameter(0.5, "share of the period that is high", gt=0, le=1)
 
     @classmethod

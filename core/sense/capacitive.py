@@ -94,7 +94,11 @@ class Capacitive(Sensor):
             None, "overlap of the fingers at rest; that of the device unless given", "um", gt=0, le=1000
         )
         gap_um: float | None = parameter(
-            None, "gap between the fingers; that of the device unless given", "um", gt=0, le=100
+            None,
+            "gap between the fingers, with which the capacitance goes as one over it; that of the device unless given",
+            "um",
+            gt=0,
+            le=100,
         )
         comb_start_um: float | None = parameter(
             None, "where the overlap begins, from the centre; as drawn unless given", "um", ge=0, le=1e4
@@ -109,9 +113,20 @@ class Capacitive(Sensor):
         return float(params.noise_af_rthz * 1e-3 * math.sqrt(500.0 / context.dt_ms))
 
     @classmethod
+    def _gap_um(cls, params: Any, context: Context) -> float:
+        """Return the gap between the fingers it senses with."""
+        return drawn(context).gap_um if params.gap_um is None else float(params.gap_um)
+
+    @classmethod
+    def _gradient(cls, params: Any, context: Context) -> float:
+        r"""Return :math:`\partial C_s/\partial x` of one comb, fF/um: that of the device, by one over the gap."""
+        nominal = context.capacitance_gradient * FF_PER_F / UM_PER_M
+        return nominal * (drawn(context).gap_um / cls._gap_um(params, context))
+
+    @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of the difference as displacement."""
-        gradient = context.capacitance_gradient * FF_PER_F / UM_PER_M
+        gradient = cls._gradient(params, context)
         return cls.noise_ff(params, context) / (2.0 * gradient) if gradient else 0.0
 
     @classmethod
@@ -120,9 +135,9 @@ class Capacitive(Sensor):
         comb = drawn(context)
         return np.array(
             [
-                context.capacitance_gradient * FF_PER_F / UM_PER_M,
+                cls._gradient(params, context),
                 comb.overlap_um if params.overlap_um is None else params.overlap_um,
-                comb.gap_um if params.gap_um is None else params.gap_um,
+                cls._gap_um(params, context),
                 comb.stator_tip_um if params.comb_start_um is None else params.comb_start_um,
                 cls.noise_ff(params, context) / math.sqrt(2.0),
                 key(context.seed, "sensor.capacitive.positive"),

@@ -14,7 +14,7 @@ from core.sense import tracker
 from core.sense.grating import OFFSET, WAVE, series
 from core.sense.tracker import FILTER, P11, V, X, correct
 
-NOISE, FORGET, PENALTY, DROP, NEAR, SAME_X, SAME_V, EVERY, MODEL = range(9)
+NOISE, FORGET, PENALTY, DROP, NEAR, SAME_X, SAME_V, MODEL = range(8)
 GRATING = MODEL + tracker.MODEL
 """Layout of the packed parameters: those of the hypotheses, the model of the shuttle, the grating."""
 MOST = 10

@@ -45,6 +45,11 @@ class Ideal(Block):
         return math.hypot(params.noise_um, params.quantum_um / math.sqrt(12.0))
 
     @classmethod
+    def ambiguity_um(cls, params: Any, context: Context) -> float:
+        """Return that it tells all displacements apart."""
+        return 0.0
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         return np.array([params.noise_um, key(context.seed, "sensor"), params.quantum_um, params.range_um])

@@ -127,18 +127,28 @@ class PeakValley(Sensor):
         follow: float = parameter(0.1, "share by which the levels follow each extreme", ge=0, le=1)
 
     @classmethod
+    def _light(cls, params: Any, context: Context) -> ThroughWafer.Params | Doppler.Params:
+        """Return the grating and the beam of the signal it reads, as calibrated."""
+        if params.light == "doppler":
+            return calibrated(context, "doppler", Doppler.Params)
+        return calibrated(context, "through_wafer", ThroughWafer.Params)
+
+    @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the error of the linear interpolation."""
-        pitch = calibrated(context, "through_wafer", ThroughWafer.Params).pitch_um
+        pitch = cls.ambiguity_um(params, context)
         return 0.5 * pitch * math.sqrt(1.0 / 12.0 + 1.0 / 8.0 - 2.0 / math.pi**2)
+
+    @classmethod
+    def ambiguity_um(cls, params: Any, context: Context) -> float:
+        """Return the pitch of the grating it looks at."""
+        return cls._light(params, context).pitch_um
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step, with the grating as calibrated."""
         own = [params.light == "doppler", params.hysteresis, params.tolerance, params.follow]
-        kinds: dict[str, Any] = {"through_wafer": ThroughWafer.Params, "doppler": Doppler.Params}
-        known = calibrated(context, params.light, kinds[params.light])
-        return np.array([*own, *known.packed(context)])
+        return np.array([*own, *cls._light(params, context).packed(context)])
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:

@@ -102,6 +102,11 @@ class Quadrature(Sensor):
         return pair.phase_noise_um / abs(separation(params.spacing_um, pair.pitch_um)[1])
 
     @classmethod
+    def ambiguity_um(cls, params: Any, context: Context) -> float:
+        """Return the pitch of the grating it looks at."""
+        return calibrated(context, "dual_beam", DualBeam.Params).pitch_um
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step, with the grating as calibrated."""
         pair = calibrated(context, "dual_beam", DualBeam.Params)

@@ -21,21 +21,27 @@ from core.sense.sensor import (
     calibrated,
     slips,
 )
-from core.sense.tracker import APPLIED_PORT, MOTION, Tracker, TrackerParams, X, correct, predict
+from core.sense.tracker import FILTER, MOTION, Tracker, TrackerParams, X, correct, gather, predict
+from core.voltage import APPLIED_PORTS, BEGUN
+from core.voltage import STATES as VOLTAGE_STATES
 
 PITCH, OFFSET, NOISE, MODEL = range(4)
-LAST, TURN, APPLIED, TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(8)
-STARTED, OWN = range(2)
-"""State: whether it has run, then the filter."""
+LAST, TURN, APPLIED = range(3)
+TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(APPLIED + len(APPLIED_PORTS), APPLIED + len(APPLIED_PORTS) + 5)
+STARTED, OWN, DRIVE = 0, 1, 1 + FILTER
+"""State: whether it has run, the filter, the voltage."""
 
 
 def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
     """Predict, unwrap the phase about the prediction, correct."""
+    if gather(p, MODEL, s, DRIVE, w, io, APPLIED):
+        return
     if s[STARTED] == 0.0:
         s[STARTED] = 1.0
         s[OWN + X] = begin_at(w[io[LAST]])
     else:
-        predict(p, MODEL, s, OWN, w[io[APPLIED]])
+        predict(p, MODEL, s, OWN, DRIVE)
+    s[DRIVE + BEGUN] = 0.0
     x = s[OWN + X]
     ahead = (x - p[OFFSET]) / p[PITCH] - w[io[TURN]]
     residual = p[PITCH] * (math.floor(ahead + 0.5) - ahead) if math.isfinite(ahead) else 0.0
@@ -57,7 +63,7 @@ class QuadratureKalman(Tracker):
     inputs = (
         LAST_PORT,
         Port("turn", "1", "phase of the pair, in turns", source="quadrature.turn"),
-        APPLIED_PORT,
+        *APPLIED_PORTS,
         TRUE_PORT,
     )
     outputs = (RECOVERED_PORT,)
@@ -82,6 +88,11 @@ class QuadratureKalman(Tracker):
         return Quadrature.noise_um(calibrated(context, "quadrature", Quadrature.Params), context)
 
     @classmethod
+    def ambiguity_um(cls, params: Any, context: Context) -> float:
+        """Return the pitch of the grating it looks at."""
+        return calibrated(context, "dual_beam", DualBeam.Params).pitch_um
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> FloatArray:
         """Pack the parameters for the step."""
         pair = calibrated(context, "dual_beam", DualBeam.Params)
@@ -91,7 +102,7 @@ class QuadratureKalman(Tracker):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it has run, the filter."""
-        return np.array([0.0, *tracker.start(params, context)])
+        """Whether it has run, the filter, no voltage yet."""
+        return np.array([0.0, *tracker.start(params, context), *[0.0] * VOLTAGE_STATES])
 
     step = quadrature_kalman_step

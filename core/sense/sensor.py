@@ -1,4 +1,4 @@
-"""What every sensor shares: the noise others should assume of it, and what a calibration would tell."""
+"""What every sensor shares: the noise others should assume of it, its ambiguity, and what a calibration would tell."""
 
 from __future__ import annotations
 
@@ -36,12 +36,17 @@ def slips(error: float, pitch: float) -> float:
 
 
 class Sensor(Block):
-    """A sensor; ``noise_um`` is the white displacement noise that filters fed by it should assume."""
+    """A sensor; it says what noise filters fed by it should assume, and which displacements it cannot tell apart."""
 
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the standard deviation of the equivalent white noise of one sample."""
         return float(getattr(params, "noise_um", 0.0))
+
+    @classmethod
+    def ambiguity_um(cls, params: Any, context: Context) -> float:
+        """Return the period of what it sees: displacements that far apart look alike. 0 for an absolute sensor."""
+        return 0.0
 
 
 def calibrated(context: Context, name: str, kind: type[P]) -> P:

@@ -2,25 +2,27 @@ r"""Kalman filter of a shuttle that is known but for a slow force: displacement,
 
 .. math:: x_{i+1}=\Phi x_i+\Gamma u_i+\Gamma_f f_i,\qquad f_{i+1}=f_i+n_i
 
-The device and the voltage are known; what the model lacks is left to :math:`f`, a random walk.
+The device and the voltage are known; what the model lacks is left to :math:`f`, a random walk. A voltage that moves
+adds to :math:`\Gamma u_i` what it is more than at the start of the sample (`core.voltage`).
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
-from core.block import Context, Equation, Oscillator, Port, kernel, parameter, settled
+from core import voltage
+from core.block import TICK, Context, Equation, Oscillator, kernel, parameter, settled
 from core.device.oscillator import transition
 from core.sense.sensor import Sensor, SensorParams
 
-PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, FORCE1, FORCE2, WALK, MODEL = range(10)
-"""Layout of a packed model, and its length."""
+PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, FORCE1, FORCE2, WALK, EVERY, TICK_MODEL = range(11)
+MODEL = TICK_MODEL + voltage.TICK_SIZE
+"""Layout of a packed model over a sample, the model over a tick behind it, and its length."""
 X, V, F, P11, P12, P13, P22, P23, P33, FILTER = range(10)
 """Layout of a filter's state, and its length."""
 
-
-APPLIED_PORT = Port("applied", "V", "voltage applied over the sample that ends now", source="drive.voltage")
 MOTION = Equation("motion", r"\ddot x=\frac{F_e-\beta\dot x-kx}{m}+f,\quad \dot f=n")
 
 
@@ -38,6 +40,8 @@ class TrackerParams(SensorParams):
 class Tracker(Sensor):
     """A sensor with a model of the shuttle."""
 
+    every_tick = True
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse what the model of mass and spring cannot be."""
@@ -54,7 +58,17 @@ def pack_model(params: TrackerParams, context: Context) -> list[float]:
     own = params.model_error * square * params.stroke_um
     walk = params.force_rate_per_ms * own * own * context.dt_ms
     held = (1.0 - phi[0], -phi[2])
-    return [*phi, held[0] * volt, held[1] * volt, held[0] / square, held[1] / square, walk]
+    tick = replace(device, stiffness=stiffness)
+    return [
+        *phi,
+        held[0] * volt,
+        held[1] * volt,
+        held[0] / square,
+        held[1] / square,
+        walk,
+        context.every,
+        *voltage.pack_tick(tick, device.force, context.dt_ms / context.every, context.analogue),
+    ]
 
 
 def start(params: TrackerParams, context: Context) -> list[float]:
@@ -66,8 +80,15 @@ def start(params: TrackerParams, context: Context) -> list[float]:
 
 
 @kernel
-def predict(p: Any, at: int, s: Any, b: int, u: float) -> None:
-    """Advance the filter at ``b`` of the state by one sample under the voltage that was held."""
+def gather(p: Any, at: int, s: Any, drive: int, w: Any, io: Any, applied: int) -> bool:
+    """Take in the voltage of a tick; say whether a sensor that runs every N of them is between two of its turns."""
+    voltage.follow(p, at + TICK_MODEL, s, drive, w[io[applied]], w[io[applied + 1]], w[io[applied + 2]])
+    return bool(p[at + EVERY] != 1.0 and w[TICK] % p[at + EVERY] != 0.0)
+
+
+@kernel
+def predict(p: Any, at: int, s: Any, b: int, drive: int) -> None:
+    """Advance the filter at ``b`` of the state by one sample, under the voltage gathered at ``drive``."""
     f11 = p[at + PHI11]
     f12 = p[at + PHI12]
     f21 = p[at + PHI21]
@@ -77,8 +98,9 @@ def predict(p: Any, at: int, s: Any, b: int, u: float) -> None:
     x = s[b + X]
     v = s[b + V]
     f = s[b + F]
-    s[b + X] = settled(f11 * x + f12 * v + g1 * f + p[at + GAMMA1] * u)
-    s[b + V] = settled(f21 * x + f22 * v + g2 * f + p[at + GAMMA2] * u)
+    u = s[drive + voltage.START]
+    s[b + X] = settled(f11 * x + f12 * v + g1 * f + p[at + GAMMA1] * u + s[drive + voltage.GAINED1])
+    s[b + V] = settled(f21 * x + f22 * v + g2 * f + p[at + GAMMA2] * u + s[drive + voltage.GAINED2])
     c11 = s[b + P11]
     c12 = s[b + P12]
     c13 = s[b + P13]

@@ -75,7 +75,7 @@ def _record(board: Board, seed: int, samples: int, columns: list[int], *, health
     """Run the bench, without its events if it is to stay healthy, and return some signals."""
     fresh = again(board, seed)
     if healthy:
-        fresh.pending = []
+        fresh.pending.clear()
     outputs = fresh.signals.outputs
     found = np.empty((samples, len(columns)))
     while fresh.tick < samples:

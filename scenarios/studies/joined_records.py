@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.block import TICK, TIME_MS, BlockParams, FloatArray, parameter
-from core.board import program
+from core.board import fold, program
 from core.errors import InputError
 from scenarios.studies.monte_carlo import again
 from scenarios.studies.study import Study
@@ -15,7 +15,7 @@ from scenarios.studies.study import Study
 if TYPE_CHECKING:
     from core.board.board import Board
 
-RECORDED = ("sensor.displacement", "drive.voltage", "drive.middle", "drive.charge")
+RECORDED = ("sensor.displacement", "drive.voltage", "drive.middle", "drive.end")
 """What a diagnoser is given."""
 HELD = 20
 """Samples in a row that count as a conclusion."""
@@ -61,10 +61,9 @@ class JoinedRecords(Study):
 def _record(board: Board, samples: int, *, faulty: bool) -> dict[str, FloatArray]:
     """Run the bench with all its events from the first sample on, or without any."""
     fresh = again(board, board.spec.seed)
-    for entry in fresh.pending:
-        entry.tick = 0
+    fresh.pending.at_once()
     if not faulty:
-        fresh.pending = []
+        fresh.pending.clear()
     found: dict[str, list[float]] = {name: [] for name in RECORDED}
     while fresh.tick < samples and fresh.advance(1).count:
         for name in RECORDED:
@@ -88,7 +87,7 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
         # the voltage of a sample is the one applied at the sample before
         wiring.w[places["sensor.displacement"]] = record["sensor.displacement"][tick]
         arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io)
-        program.run(1, tick, dt, *arrays, nothing, nothing, trip, watches)
+        program.run(1, tick, dt, *arrays, nothing, nothing, fold.begin(0), trip, watches)
         for signal in RECORDED[1:]:
             wiring.w[places[signal]] = record[signal][tick]
         found[tick] = wiring.w[wanted]

@@ -55,7 +55,7 @@ class MonteCarlo(Study):
 def again(board: Board, seed: int) -> Board:
     """Return the same bench under another seed, at its first tick, the same events waiting."""
     fresh = type(board)({**board.base, "seed": seed})
-    for entry in board.pending:
+    for entry in board.pending.as_asked:
         fresh.apply(entry.command, entry.actor)
     return fresh
 

@@ -56,7 +56,7 @@ class EventList(BaseModel):
 
 
 class Digest(BaseModel):
-    """SHA-256 over the float64 trace of all outputs up to a tick."""
+    """What tells runs apart: SHA-256 over a fold of the outputs of each block at every tick."""
 
     tick: int
     digest: str
@@ -82,13 +82,13 @@ async def create_bench(body: NewBench, service: ServiceDep, response: Response) 
         body.scenario, body.set, body.seed, body.paused, body.time_scale, own_scale=not given
     )
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return service.view(session)
+    return await service.opened(session)
 
 
 @router.get("")
 async def list_benches(service: ServiceDep) -> BenchList:
     """List the live benches."""
-    return BenchList(benches=[service.view(session) for session in service.benches.all()])
+    return BenchList(benches=service.views())
 
 
 @router.get("/{bench_id}")
@@ -146,7 +146,7 @@ async def fork_bench(body: ForkFrom, session: SessionDep, service: ServiceDep, r
     """Make a second bench that goes on from this moment or a snapshot, bit for bit."""
     twin = await service.benches.fork(session, body.snapshot)
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
-    return service.view(twin)
+    return await service.opened(twin)
 
 
 @router.post("/{bench_id}/variant", status_code=201, dependencies=[RateLimited])
@@ -154,4 +154,4 @@ async def vary_bench(body: Variant, session: SessionDep, service: ServiceDep, re
     """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed."""
     made = await service.benches.variant(session, body.set)
     response.headers["Location"] = f"/api/v1/benches/{made.id}"
-    return service.view(made)
+    return await service.opened(made)

@@ -9,7 +9,7 @@ from typing import Any
 
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from core.nesting import DEEPEST, TOO_DEEP, depth
 
@@ -18,6 +18,18 @@ class Body(BaseModel):
     """Base of every request body."""
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _whole_numbers(cls, values: Any) -> Any:
+        """Take 3.0 for 3 where a whole number is wanted: to JSON Schema they are the same."""
+        if not isinstance(values, dict):
+            return values
+        whole = {name for name, field in cls.model_fields.items() if field.annotation in (int, int | None)}
+        return {
+            name: int(value) if name in whole and isinstance(value, float) and value.is_integer() else value
+            for name, value in values.items()
+        }
 
 
 def strict_json(text: str | bytes) -> Any:

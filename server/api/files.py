@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import io
+import os
 import re
 import tempfile
 from collections.abc import Iterator
@@ -32,7 +34,10 @@ def file_name(name: str, kind: str) -> str:
 
 async def table_response(service: Service, table: pa.Table, name: str, kind: Format) -> StreamingResponse:
     """Send a table in the format asked for."""
-    file = tempfile.TemporaryFile(prefix="combbench-")
+    try:
+        file = tempfile.TemporaryFile(prefix="combbench-")
+    except FileNotFoundError as error:  # says Python of folders without any room
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)) from error
     try:
         async with service.file_turn:
             await asyncio.to_thread(write, table, file, kind)

@@ -87,7 +87,7 @@ async def replay_recording(recording_id: str, body: Replay, service: ServiceDep,
     recording, path = await service.recordings.finished(recording_id)
     session = await service.benches.replay(recording, path, body.speed, body.paused)
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return service.view(session)
+    return await service.opened(session)
 
 
 @router.post("/recordings/{recording_id}/compare")

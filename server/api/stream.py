@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import re
 from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
@@ -17,8 +18,9 @@ from server.bench.events import Event
 from server.errors import ApiError, ErrorBody, body_of, clear_line
 from server.security.limits import Bucket
 from server.service import Service
-from server.stream.client import Client
+from server.stream.client import CLOSE_FAILED, Client
 from server.stream.hub import CLOSE_FULL, CLOSE_NO_BENCH
+from server.stream.line import Line
 from server.stream.panel import Panel
 from server.stream.wire import (
     CLIENT_MESSAGE,
@@ -39,9 +41,10 @@ from server.stream.wire import (
 router = APIRouter(tags=["stream"])
 log = logging.getLogger(__name__)
 
-CLOSE_VERSION, CLOSE_FLOOD, CLOSE_FAILED = 4001, 1008, 1011
-LAST_WORDS_S = 0.2
-"""For what waits to be sent before a close; a line that is stuck takes none of it."""
+CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
+
+ACK = re.compile(rb'\{"type": ?"ack", ?"frame": ?(\d{1,10})\}')
+"""As pages write it; written otherwise it is read like any other message."""
 
 FLOOD_RATE, FLOOD_BURST = 500.0, 2000
 """Messages of any kind; sixty frames a second need sixty acknowledgements."""
@@ -67,37 +70,35 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         await socket.close(*(refusal or (CLOSE_NO_BENCH, "")))
         return
     await socket.accept(subprotocol=SUBPROTOCOL)
-    bench = service.view(session)
-    hub = service.hub
-    client = Client(socket, session, service.metrics, hub.describe, hub.cuts(session), bench.last_event)
-    service.hub.add(client)
+    bench, hub, line = service.view(session), service.hub, Line.of(socket)
+    room = hub.room(session)
+    client = Client(line, session, service.metrics.sent, room.news, room.cuts, bench.last_event)
+    conversation = Conversation(client, service)
+    hub.add(client)
+    line.hear, line.drained = conversation.hear, client.flush
     client.post(Hello(server=service.id, bench=bench, last_event=bench.last_event))
-    sender, listener = client.run(), Conversation(client, service).run()
-    tasks = [asyncio.create_task(part) for part in (sender, listener, client.closed.wait())]
+    tasks = [asyncio.create_task(part) for part in (conversation.run(socket), client.closed.wait())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        if client.closing is not None:
-            await asyncio.wait(tasks[:1], timeout=LAST_WORDS_S)
     finally:
-        service.hub.remove(client)
+        hub.remove(client)
         for task in tasks:
             task.cancel()
         for found in await asyncio.gather(*tasks, return_exceptions=True):
-            # to send to one who has gone is no failure
-            if isinstance(found, Exception) and not isinstance(found, WebSocketDisconnect):
+            if isinstance(found, Exception):
                 log.error("a stream of bench %s broke off", bench_id, exc_info=found)
                 client.close(CLOSE_FAILED, "the server failed on this stream; its log says why")
-        await _close(socket, client, service)
+        await _close(socket, client)
 
 
-async def _close(socket: WebSocket, client: Client, service: Service) -> None:
+async def _close(socket: WebSocket, client: Client) -> None:
     """Close with the reason; cut the line of one who does not even take that."""
     code, reason = client.closing or (1000, "")
     try:
         async with asyncio.timeout(1.0):
             await socket.close(code, reason)
     except TimeoutError:
-        service.cut(socket)
+        client.line.cut()
     except (RuntimeError, WebSocketDisconnect):
         pass  # the other side has gone first
 
@@ -120,19 +121,33 @@ class Conversation:
         self._commands = Bucket(settings.command_rate_per_s, settings.command_burst)
         self._subscribed: dict[int, int] = {}
 
-    async def run(self) -> None:
+    def hear(self, text: bytes) -> bool:
+        """Take an acknowledgement as it comes: there are as many of them as frames, and nothing waits for them."""
+        found = ACK.fullmatch(text)
+        if found is None or int(found[1]) >= 2**32:
+            return False
+        if self._is_heard():
+            self._client.acknowledge(int(found[1]))
+        return True
+
+    async def run(self, socket: WebSocket) -> None:
         """Listen until the other side goes, or talks too much."""
         while True:
-            message = await self._client.socket.receive()
-            if message["type"] == "websocket.disconnect":
+            message = await socket.receive()
+            if message["type"] == "websocket.disconnect" or not self._is_heard():
                 return
-            if not self._messages.take():
-                self._service.metrics.streams_closed.labels("flooding").inc()
-                self._client.close(CLOSE_FLOOD, "too many messages")
-                return
-            await self._hear(message.get("text"))
+            await self._read(message.get("text"))
 
-    async def _hear(self, text: str | None) -> None:
+    def _is_heard(self) -> bool:
+        """Count a message; close the stream of somebody who talks too much."""
+        if self._messages.take():
+            return True
+        if self._client.closing is None:
+            self._service.metrics.streams_closed.labels("flooding").inc()
+            self._client.close(CLOSE_FLOOD, "too many messages")
+        return False
+
+    async def _read(self, text: str | None) -> None:
         """Parse one message and do what it says, or say in one line why not."""
         document: Any = None
         try:
@@ -168,8 +183,9 @@ class Conversation:
             panel = client.panels.get(message.panel)
             if panel is None:
                 raise InputError(f"panel {message.panel} is not subscribed", "panel")
-            panel.rearm(client.session.history.end_tick)
-            self._show()
+            panel.view.rearm(client.session.history.end_tick)
+            client.cuts.refresh()
+            client.offer(frame=True)
         elif isinstance(message, Resume):
             client.resume(message.after)
 
@@ -204,15 +220,9 @@ class Conversation:
         if points > MAX_POINTS:
             raise InputError(f"all panels together have {points} points; at most {MAX_POINTS}", "width")
         revision = self._subscribed[message.panel] = self._subscribed.get(message.panel, 0) + 1
-        client.panels[message.panel] = Panel(
-            message, indices, trigger, revision, session.dt_ms, session.history.end_tick
-        )
-        self._show()
-
-    def _show(self) -> None:
-        """Show a panel that has changed, on a paused bench as well."""
-        self._service.hub.cuts(self._client.session).refresh()
-        self._client.offer_frame()
+        client.cuts.refresh()
+        client.panels[message.panel] = Panel(client.cuts.view(message, indices, trigger), revision)
+        client.offer(frame=True)
 
     def _refuse(self, document: Any, error: ErrorBody) -> None:
         """Answer a command by its id, anything else by an error."""

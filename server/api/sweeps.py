@@ -8,14 +8,14 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
-from scenarios.report import campaign_report, results_table
+from core.nesting import read_toml
 from scenarios.script import campaign_script
-from scenarios.sweep import Sweep
-from scenarios.tally import PointTally, tally
+from scenarios.tally import PointTally
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, table_response
 from server.errors import ApiError
+from server.runs import apart
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
 
@@ -49,9 +49,7 @@ class SweepPoints(BaseModel):
 )
 async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -> SweepRun:
     """Start a campaign, or go on with one that was stopped; asked twice, the same one answers."""
-    document = (
-        body.sweep if isinstance(body.sweep, dict) else (await asyncio.to_thread(Sweep.load, body.sweep)).document
-    )
+    document = body.sweep if isinstance(body.sweep, dict) else await asyncio.to_thread(read_toml, body.sweep, "sweep")
     await service.keeping.room()
     found, is_new = await service.sweeps.start(document)
     response.status_code = 202 if is_new else 200
@@ -77,10 +75,12 @@ async def cancel_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
     return await service.sweeps.cancel(sweep_id)
 
 
-@router.get("/{sweep_id}/points")
-async def get_sweep_points(sweep_id: str, service: ServiceDep) -> SweepPoints:
+@router.get("/{sweep_id}/points", response_model=SweepPoints)
+async def get_sweep_points(sweep_id: str, service: ServiceDep) -> Response:
     """Return figures, confusion, delays and receiver operating characteristics, of what is done so far."""
-    return SweepPoints(sweep=await service.sweeps.get(sweep_id), points=await service.sweeps.points(sweep_id))
+    points = await service.sweeps.read(sweep_id, apart.points)
+    sweep = (await service.sweeps.get(sweep_id)).model_dump_json().encode()
+    return Response(b'{"sweep":%b,"points":%b}' % (sweep, points), media_type="application/json")
 
 
 @router.get(
@@ -92,19 +92,17 @@ async def get_sweep_runs(
     sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"
 ) -> Response:
     """Download one row for each run that is done: point, seed, digest and every figure."""
-    sweep, outcomes = await service.sweeps.outcomes(sweep_id)
-    table = await asyncio.to_thread(results_table, sweep, outcomes)
+    table = await service.sweeps.read(sweep_id, apart.table)
     if not table.num_rows:
         raise ApiError(409, "conflict", "no run of this campaign is done yet")
-    return await table_response(service, table, f"{sweep.head.id}-runs", kind)
+    return await table_response(service, table, f"{(await service.sweeps.get(sweep_id)).name}-runs", kind)
 
 
 @router.get("/{sweep_id}/report", response_class=Response, responses={200: {"content": {HTML: {}}}})
 async def get_sweep_report(sweep_id: str, service: ServiceDep) -> Response:
     """Download the report, one HTML file that needs nothing else."""
-    sweep, outcomes = await service.sweeps.outcomes(sweep_id)
-    text = await asyncio.to_thread(lambda: campaign_report(sweep, tally(sweep, outcomes)))
-    return report_response(text, sweep.head.id)
+    text = await service.sweeps.read(sweep_id, apart.report)
+    return report_response(text, (await service.sweeps.get(sweep_id)).name)
 
 
 @router.get("/{sweep_id}/script", response_class=Response, responses={200: {"content": {PYTHON: {}}}})

@@ -15,7 +15,7 @@ from server.api.files import table_response
 from server.bench.session import Session
 from server.errors import ApiError
 from server.store.traces import MEDIA_TYPES, Format, schema_of, table_of
-from server.stream.panel import Span
+from server.stream.view import Span
 from server.stream.wire import MAX_COLUMNS
 from server.version import VERSION
 

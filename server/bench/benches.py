@@ -25,7 +25,7 @@ from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Se
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.portrait import design_of
-from server.bench.recorder import CLOSED, Recorder
+from server.bench.recorder import CLOSED, WANTED, Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
 from server.bench.tape import REFUSAL, Tape
@@ -283,7 +283,7 @@ class Benches:
         close = self._recordings.closer(recording.id)
 
         def ended(first: int, ticks: int, reason: str) -> None:
-            close(first, ticks, reason)
+            close(first, ticks, reason, reason not in WANTED)
             with contextlib.suppress(RuntimeError):  # the engine may have stopped
                 self._engine.submit(session.recordings.forget, recording.id)
 

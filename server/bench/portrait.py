@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from core.board.changes import describe
@@ -49,7 +50,7 @@ def status_of(session: Session) -> BenchStatus:
                 tick=entry.tick,
                 when=entry.command.when,
             )
-            for entry in board.pending[:MAX_PENDING]
+            for entry in islice(board.pending, MAX_PENDING)
         ],
         trip=board.trip,
         scores=board.scores(),

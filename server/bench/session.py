@@ -17,6 +17,7 @@ from core.board.history import History
 from core.board.rows import Rows
 from core.device.geometry import Geometry
 from core.errors import InputError
+from core.format import format_short
 from core.signals import Signal
 from scenarios.schema import Scenario
 from server.bench.commands import Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
@@ -259,9 +260,9 @@ class Session:
         return signals
 
     @property
-    def geometry(self) -> Geometry | None:
-        """The drawing of the device, if it has one."""
-        return self.board.spec.device.geometry
+    def geometry(self) -> Geometry:
+        """The drawing of the device with its own gap; that of the reference device if it has none."""
+        return self.board.spec.device.drawing
 
     @property
     def drive_period_ticks(self) -> float | None:
@@ -294,7 +295,7 @@ class Session:
             self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
             text = "time runs as fast as possible"
             if command.value is not None:
-                text = f"time scale set to {command.value * 1e3:g} ms/s"
+                text = f"time scale set to {format_short(command.value, 's/s')}"
             return self.note(actor, "time_scale", text, document, old, command.value)
         if isinstance(command, Pause):
             self._running = False
@@ -334,7 +335,8 @@ class Session:
 
     def _has_due(self) -> bool:
         """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
-        return any(entry.tick is not None and entry.tick <= self.board.tick for entry in self.board.pending)
+        due = self.board.pending.next_tick
+        return due is not None and due <= self.board.tick
 
     def _finish(self) -> None:
         """Pause at the end of the scenario; starting again goes beyond it."""

@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from core.board.board import Board
+from core.board.pending import Queue
 from core.board.rows import Rows
 from core.errors import InputError
 from server.store.recording import first_tick
@@ -43,7 +44,7 @@ class Tape:
         self._edges = self.first + np.concatenate([[0], np.cumsum(sizes)])
         self._group: tuple[int, NDArray[np.float32]] | None = None
         self.trip = None
-        self.pending: list[Any] = []
+        self.pending = Queue()
         self.faults: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:

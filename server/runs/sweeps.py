@@ -9,23 +9,23 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+from collections.abc import Callable
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import select, update
 from sqlalchemy.exc import DBAPIError
+from sqlalchemy.orm import defer
 
 from core.errors import InputError
 from scenarios.campaign import Campaign, Stopped
 from scenarios.key import code_version, content_hash, run_key
-from scenarios.outcome import Outcome
-from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from scenarios.sweep import Sweep
-from scenarios.tally import PointTally, tally
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
+from server.runs.apart import FEW_POINTS, FEW_RUNS, Apart, contents, examine
 from server.runs.length import check_length
 from server.runs.worker import NICE
 from server.settings import Settings
@@ -36,6 +36,7 @@ from server.store.results import Results
 log = logging.getLogger(__name__)
 
 ACTIVE = ("queued", "running")
+T = TypeVar("T")
 
 
 class SweepRun(BaseModel):
@@ -48,7 +49,7 @@ class SweepRun(BaseModel):
     name: str
     title: str
     version: str
-    runs: int
+    runs: int = Field(description="Different runs; until all points have been checked, at most")
     done: int = 0
     created: datetime
     finished: datetime | None
@@ -72,12 +73,16 @@ class Sweeps:
         self._database, self._settings, self._metrics = database, settings, metrics
         self._results = Results(database)
         self._turn = asyncio.Semaphore(1)
+        self._expanding, self._reading = Apart(FEW_POINTS), Apart(FEW_RUNS)
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._campaigns: dict[str, Campaign] = {}
         self._is_closing = False
 
-    async def start(self, source: str | dict[str, Any]) -> tuple[SweepRun, bool]:
+    async def start(self, document: dict[str, Any]) -> tuple[SweepRun, bool]:
         """Queue a campaign, or return the same one that is there; true when it is new.
+
+        Of one with many points only some are checked now, and the others while it waits: if one of them is wrong, the
+        campaign has failed.
 
         Raises
         ------
@@ -87,14 +92,14 @@ class Sweeps:
         settings = self._settings
         if settings.run_workers == 0 and not settings.scheduler:
             raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
-        sweep = await asyncio.to_thread(Sweep.load, source)
+        sweep = await asyncio.to_thread(Sweep, document)
         if len(sweep) > settings.max_sweep_runs:
             text = f"this campaign has {len(sweep)} runs, the limit is {settings.max_sweep_runs} (max_sweep_runs)"
             raise ApiError(422, "too_long", text, "sweep")
-        longest = max(sweep.points, key=lambda point: point.document.get("samples") or DEFAULT_SAMPLES)
-        scenario = await asyncio.to_thread(Scenario.load, longest.document)
-        await asyncio.to_thread(check_length, scenario, 1, settings, "a run of this campaign", "sweep")
-        sweep_id = run_key(content_hash({"sweep": sweep.document}))[:32]
+        some = sweep.points[:FEW_POINTS]
+        await self._check(await asyncio.to_thread(sweep.longest, some))
+        is_checked = len(some) == len(sweep.points)
+        sweep_id = run_key(content_hash({"sweep": document}))[:32]
         known = await self._row(sweep_id)
         if known is not None and known.state in (*ACTIVE, "done"):
             return await self.get(sweep_id), False
@@ -107,19 +112,27 @@ class Sweeps:
             "state": "queued",
             "name": sweep.head.id,
             "title": sweep.head.title,
-            "document": json.loads(json.dumps(sweep.document, default=str)),
+            "document": json.loads(json.dumps(document, default=str)),
             "version": code_version(),
-            "runs": len({key for key, _, _ in sweep.runs()}),
+            "runs": len(set(sweep.contents)) * len(sweep.seeds) if is_checked else len(sweep),
             "finished": None,
             "error": None,
         }
         await self._database.run(lambda session: session.merge(SweepRow(**values)))
-        self._tasks[sweep_id] = asyncio.create_task(self._carry_out(sweep_id, sweep))
+        self._queue(sweep_id, document, len(sweep.points), is_checked)
         return await self.get(sweep_id), True
+
+    async def _check(self, longest: Scenario) -> None:
+        """Refuse a campaign whose longest run is too long."""
+        await asyncio.to_thread(check_length, longest, 1, self._settings, "a run of this campaign", "sweep")
+
+    def _queue(self, sweep_id: str, document: dict[str, Any], points: int, is_checked: bool) -> None:
+        """Carry a campaign out in its turn."""
+        self._tasks[sweep_id] = asyncio.create_task(self._carry_out(sweep_id, document, points, is_checked))
 
     async def all(self, limit: int = 200) -> list[SweepRun]:
         """List campaigns, newest first."""
-        query = select(SweepRow).order_by(SweepRow.created.desc()).limit(limit)
+        query = select(SweepRow).options(defer(SweepRow.document)).order_by(SweepRow.created.desc()).limit(limit)
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         return [self._live(SweepRun.model_validate(row)) for row in rows]
 
@@ -145,15 +158,13 @@ class Sweeps:
         """Return a campaign as it was asked for."""
         return (await self._known(sweep_id)).document
 
-    async def outcomes(self, sweep_id: str) -> tuple[Sweep, dict[str, Outcome]]:
-        """Return a campaign with the results that are there."""
+    async def read(self, sweep_id: str, reader: Callable[[dict[str, Any], str], T]) -> T:
+        """Return what one of the readers of `server.runs.apart` makes of the results that are there."""
         row = await self._known(sweep_id)
-        return await asyncio.to_thread(self._read, row.document, row.version)
-
-    async def points(self, sweep_id: str) -> list[PointTally]:
-        """Return the results of a campaign, added up point by point."""
-        sweep, outcomes = await self.outcomes(sweep_id)
-        return await asyncio.to_thread(tally, sweep, outcomes)
+        if row.version != code_version():
+            text = f"its runs are of version {row.version} of the code, this is {code_version()}"
+            raise ApiError(409, "conflict", text)
+        return await self._reading.call(row.runs, reader, row.document, self._database.url)
 
     async def recover(self) -> None:
         """Go on with what the end of the server interrupted."""
@@ -162,11 +173,11 @@ class Sweeps:
             try:
                 if row.version != code_version():
                     raise InputError("was begun by another version of the code; start it again", "sweep")
-                sweep = await asyncio.to_thread(Sweep.load, row.document)
+                points = len((await asyncio.to_thread(Sweep, row.document)).points)
             except InputError as error:
                 await self._end(row.id, "aborted", body_of(error).model_dump())
                 continue
-            self._tasks[row.id] = asyncio.create_task(self._carry_out(row.id, sweep))
+            self._queue(row.id, row.document, points, points <= FEW_POINTS or row.state == "running")
             log.info("campaign %s goes on", row.id)
 
     async def close(self) -> None:
@@ -178,15 +189,23 @@ class Sweeps:
                 campaign.abandon()
             else:
                 task.cancel()
+        self._expanding.close()
+        self._reading.close()
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
 
-    async def _carry_out(self, sweep_id: str, sweep: Sweep) -> None:
-        """Wait for the turn, then for the end."""
+    async def _carry_out(self, sweep_id: str, document: dict[str, Any], points: int, is_checked: bool) -> None:
+        """Check what has not been, wait for the turn, then for the end."""
         state, error = "done", None
         campaign: Campaign | None = None
         try:
+            if not is_checked:
+                runs, longest = await self._expanding.call(points, examine, document)
+                await self._check(await asyncio.to_thread(Scenario.load, longest))
+                await self._update(sweep_id, runs=runs)
             async with self._turn:
                 await self._update(sweep_id, state="running")
+                sweep = await asyncio.to_thread(Sweep, document)
+                sweep.contents = await self._expanding.call(points, contents, document)
                 settings = self._settings
                 campaign = Campaign(
                     sweep,
@@ -200,6 +219,8 @@ class Sweeps:
                     state = "cancelled"
         except asyncio.CancelledError:
             state = "cancelled"
+        except (InputError, ApiError) as refusal:
+            state, error = "failed", body_of(refusal).model_dump()
         except Stopped as stopped:
             state, error = "aborted", {"code": "aborted", "message": str(stopped)}
         except DBAPIError as failure:
@@ -218,13 +239,6 @@ class Sweeps:
     async def _end(self, sweep_id: str, state: str, error: dict[str, Any] | None, **values: Any) -> None:
         self._metrics.runs.labels(state).inc()
         await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC), **values)
-
-    def _read(self, document: dict[str, Any], version: str) -> tuple[Sweep, dict[str, Outcome]]:
-        if version != code_version():
-            raise ApiError(409, "conflict", f"its runs are of version {version} of the code, this is {code_version()}")
-        sweep = Sweep.load(document)
-        keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
-        return sweep, {key: Outcome.model_validate(found) for key, found in self._results.outcomes(keys)}
 
     def _live(self, found: SweepRun) -> SweepRun:
         """Add how far it is."""

@@ -57,7 +57,7 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     folder : str
         Where the results go, each under a temporary name first.
     most_bytes : int
-        Memory for the trace; taps that would not fit are left out.
+        Memory of the process; taps that would not fit are left out.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
         When a file ``cancel`` has appeared in the folder.
     """
     from scenarios.keeping import keep
-    from scenarios.run import DEFAULT_SAMPLES, Result, build, run, trace_bytes
+    from scenarios.run import DEFAULT_SAMPLES, Result, build, run, run_bytes
     from scenarios.schema import Scenario
     from scenarios.seeds import together
 
@@ -80,7 +80,7 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     summaries: list[dict[str, Any]] = []
     samples = scenario.samples or DEFAULT_SAMPLES
     watch = Watch(place, samples * len(seeds))
-    has_room = trace_bytes(build(scenario), samples, taps=True) <= most_bytes
+    has_room = run_bytes(build(scenario), samples, taps=True) <= most_bytes
     kept: Result | None = None
     for number, seed in enumerate(seeds):
         watch.at(number * samples)(0)

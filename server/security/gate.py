@@ -11,7 +11,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from server.errors import ErrorBody, reply
-from server.security.identity import COOKIE, Identity
+from server.security.identity import Identity
 from server.security.origin import OriginPolicy
 
 OPEN_PATHS = frozenset({"/health/live", "/health/ready"})
@@ -38,10 +38,15 @@ class Gate:
         Knows our own names.
     open_paths : frozenset of str
         Paths that need no token.
+    prefix : str
+        The prefix a proxy takes off every path.
     """
 
-    def __init__(self, app: ASGIApp, identity: Identity, origin: OriginPolicy, open_paths: frozenset[str]) -> None:
-        self._app, self._identity, self._origin, self._open = app, identity, origin, open_paths
+    def __init__(
+        self, app: ASGIApp, identity: Identity, origin: OriginPolicy, open_paths: frozenset[str], prefix: str = ""
+    ) -> None:
+        self._app, self._identity, self._origin = app, identity, origin
+        self._open, self._prefix = open_paths, prefix
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Check, then pass on or refuse."""
@@ -53,31 +58,29 @@ class Gate:
         if refusal:
             await self._refuse(scope, receive, send, 403, CLOSE_ORIGIN, "forbidden_origin", refusal)
             return
-        if scope["path"] in self._open or self._identity.knows(connection):
-            await self._app(scope, receive, send)
-            return
         if scope["type"] == "http" and scope["method"] == "GET":
             token = connection.query_params.get("token", "")
             if token and self._identity.is_token(token):
                 await self._welcome(Request(scope))(scope, receive, send)
                 return
+        if scope["path"] in self._open or self._identity.knows(connection):
+            await self._app(scope, receive, send)
+            return
         await self._refuse(scope, receive, send, 401, CLOSE_AUTH, "unauthorised", "an access token is needed")
 
     def _welcome(self, request: Request) -> Response:
         """Exchange the token in the address for a cookie, and take it out of the address."""
         rest = [(name, value) for name, value in request.query_params.multi_items() if name != "token"]
         # Leading slashes are folded: "//evil.example" would be an address of another host.
-        target = "/" + request.url.path.lstrip("/\\") + ("?" + urlencode(rest) if rest else "")
+        path = request.url.path.lstrip("/\\")
+        target = f"/{path}" + ("?" + urlencode(rest) if rest else "")
         response: Response = RedirectResponse(target, 303)
         if request.headers.get("sec-fetch-site") == "cross-site":
             # After a link on another site a strict cookie is not sent with the redirect; it is with a
             # navigation that our own page starts.
-            refresh = f'<meta http-equiv="refresh" content="0;url={html.escape(target)}">'
+            refresh = f'<meta http-equiv="refresh" content="0;url={html.escape(self._prefix + target)}">'
             response = HTMLResponse(refresh)
-        secure = request.url.scheme == "https"
-        response.set_cookie(
-            COOKIE, self._identity.cookie, max_age=30 * 86400, httponly=True, samesite="strict", secure=secure
-        )
+        self._identity.give_cookie(response)
         response.headers["Cache-Control"] = "no-store"
         return response
 

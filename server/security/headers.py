@@ -41,10 +41,12 @@ class SecurityHeaders:
     ----------
     app : ASGIApp
         What to wrap.
+    prefix : str
+        The prefix a proxy takes off every path; redirects put it on again.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
+    def __init__(self, app: ASGIApp, prefix: str = "") -> None:
+        self._app, self._prefix = app, prefix
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the call on, adding headers to the start of an HTTP response."""
@@ -58,6 +60,8 @@ class SecurityHeaders:
                 headers.setdefault(POLICY, APP_POLICY)
                 for name, value in FIXED.items():
                     headers.setdefault(name, value)
+                if headers.get("location", "").startswith("/"):
+                    headers["location"] = self._prefix + headers["location"]
                 if scope["path"].startswith("/api/"):
                     headers.setdefault("Cache-Control", "no-store")
             await send(message)

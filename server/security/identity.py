@@ -10,25 +10,50 @@ import tempfile
 from pathlib import Path
 
 from starlette.requests import HTTPConnection
+from starlette.responses import Response
 
-COOKIE = "combbench"
+from server.security.public import DIRECT, PublicOrigin
+
 TOKEN_FILE = "token"
+COOKIE_S = 30 * 86400
 
 
 class Identity:
     """Checks callers against the access token.
 
-    The cookie carries a digest of the token, never the token; both are compared in constant time.
+    The cookie carries a digest of the token, never the token; both are compared in constant time. Browsers send a
+    cookie to every port of a host, so its name tells tokens apart: two benches on one host do not log each other out.
 
     Parameters
     ----------
     token : str
         The access token.
+    public : PublicOrigin
+        Where the page is behind a proxy.
     """
 
-    def __init__(self, token: str) -> None:
-        self._token = token.encode()
-        self.cookie = hmac.new(self._token, b"combbench session", hashlib.sha256).hexdigest()
+    def __init__(self, token: str, public: PublicOrigin = DIRECT) -> None:
+        self._token, self._public = token.encode(), public
+        self.cookie = self._digest(b"combbench session")
+        # A browser takes a cookie of these names by TLS alone, and __Host- for this host and its root alone.
+        prefix = ("__Secure-" if public.prefix else "__Host-") if public.is_secure else ""
+        self.cookie_name = f"{prefix}combbench-{self._digest(b'combbench cookie')[:8]}"
+
+    def _digest(self, purpose: bytes) -> str:
+        """Return what only who has the token can compute."""
+        return hmac.new(self._token, purpose, hashlib.sha256).hexdigest()
+
+    def give_cookie(self, response: Response) -> None:
+        """Let who gets this response come in again."""
+        response.set_cookie(
+            self.cookie_name,
+            self.cookie,
+            max_age=COOKIE_S,
+            path=f"{self._public.prefix}/",
+            secure=self._public.is_secure,
+            httponly=True,
+            samesite="strict",
+        )
 
     @property
     def token(self) -> str:
@@ -46,7 +71,7 @@ class Identity:
 
     def has_cookie(self, connection: HTTPConnection) -> bool:
         """Whether the caller sent our cookie."""
-        given = connection.cookies.get(COOKIE, "")
+        given = connection.cookies.get(self.cookie_name, "")
         return hmac.compare_digest(given.encode(), self.cookie.encode())
 
     def knows(self, connection: HTTPConnection) -> bool:

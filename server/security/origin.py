@@ -10,6 +10,8 @@ from urllib.parse import urlsplit
 
 from starlette.requests import HTTPConnection
 
+from server.security.public import DIRECT, PublicOrigin
+
 LOOPBACK_NAMES = frozenset({"127.0.0.1", "localhost", "[::1]"})
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -22,13 +24,16 @@ class OriginPolicy:
     host : str
         The address the service listens on.
     allowed_hosts : list of str
-        Further names people open the page under, e.g. behind a proxy.
+        Further names people open the page under.
+    public : PublicOrigin
+        Where the page is behind a proxy; it is then the only origin there is.
     """
 
-    def __init__(self, host: str, allowed_hosts: list[str]) -> None:
+    def __init__(self, host: str, allowed_hosts: list[str], public: PublicOrigin = DIRECT) -> None:
         bound = f"[{host}]" if ":" in host else host
         own = set() if bound in ("0.0.0.0", "[::]") else {bound.lower()}
-        self._names = LOOPBACK_NAMES | own | {name.lower() for name in allowed_hosts}
+        self._names = LOOPBACK_NAMES | own | {name.lower() for name in [*allowed_hosts, public.host] if name}
+        self._origin = public.origin
 
     def refusal(self, connection: HTTPConnection, has_bearer: bool) -> str | None:
         """Say why a request is refused, or nothing.
@@ -50,8 +55,8 @@ class OriginPolicy:
             if changes and not has_bearer:
                 return "a request without an Origin header needs a bearer token"
             return None
-        scheme = {"ws": "http", "wss": "https"}.get(connection.url.scheme, connection.url.scheme)
-        if len(origins) > 1 or origins[0] != f"{scheme}://{host}":
+        # The service itself speaks plain HTTP; what a proxy makes of it is told by the settings, never by a header.
+        if origins != [self._origin or f"http://{host}"]:
             return f"the Origin '{origins[0][:80]}' is not the origin of this server"
         return None
 

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from sqlalchemy import Engine, create_engine, event, inspect, make_url, text
+from sqlalchemy import Connection, Engine, create_engine, event, inspect, make_url, text
 from sqlalchemy.exc import ArgumentError, DBAPIError
 from sqlalchemy.orm import Session, sessionmaker
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from alembic.config import Config
 
 MIGRATIONS = Path(__file__).parent / "migrations"
+CLAIM = int.from_bytes(b"combben", "big")
+"""Number of the advisory lock of a server; others of the same database have other numbers."""
 T = TypeVar("T")
 
 
@@ -40,6 +42,7 @@ class Database:
         self._engine = make_engine(self.url)
         self._sessions = sessionmaker(self._engine, expire_on_commit=False)
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="combbench-db")
+        self._claim: Connection | None = None
 
     def migrate(self) -> None:
         """Bring the tables to this version; the tools for it are loaded only when there is something to do.
@@ -54,6 +57,25 @@ class Database:
                 self._upgrade()
         except DBAPIError as error:
             raise InputError(f"the database cannot be used: {reason_of(error)}", "database_url") from None
+
+    def claim(self) -> None:
+        """Keep a PostgreSQL database for this process until `close`; the lock of the data folder does it for SQLite.
+
+        Raises
+        ------
+        InputError
+            When another server has it.
+        """
+        if self.url.startswith("sqlite"):
+            return
+        connection = self._engine.connect()
+        if connection.execute(text("SELECT pg_try_advisory_lock(:key)"), {"key": CLAIM}).scalar():
+            self._claim = connection
+        else:
+            connection.close()
+            raise InputError(
+                "the database is in use by another server", "database_url", "stop that one, or name another database"
+            )
 
     def _upgrade(self) -> None:
         from alembic import command
@@ -106,6 +128,8 @@ class Database:
     def close(self) -> None:
         """Finish what is under way and close the file."""
         self._thread.shutdown(wait=True)
+        if self._claim is not None:
+            self._claim.close()
         self._engine.dispose()
 
 
@@ -124,7 +148,7 @@ def full_url(address: str) -> str:
     """
     try:
         url = make_url(address)
-    except ArgumentError:
+    except (ArgumentError, ValueError):
         raise InputError("is no address of a database", "database_url", "postgresql://user@host/name") from None
     if url.drivername in ("postgresql", "postgres"):
         url = url.set(drivername="postgresql+psycopg")

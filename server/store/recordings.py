@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import pyarrow as pa
 from pydantic import BaseModel, ConfigDict
@@ -27,6 +27,8 @@ from server.version import VERSION
 log = logging.getLogger(__name__)
 
 OPEN = ("armed", "recording")
+State = Literal["armed", "recording", "done", "cut_short", "failed", "aborted"]
+"""Waits, grows, has ended as meant, has ended early and is whole up to there, has nothing, the server stopped."""
 
 
 class Recording(BaseModel):
@@ -38,7 +40,7 @@ class Recording(BaseModel):
     bench_id: str
     name: str
     title: str
-    state: str
+    state: State
     dt_ms: float
     start_tick: int
     ticks: int
@@ -130,11 +132,11 @@ class Recordings:
         await self._database.run(lambda session: session.execute(statement))
         return await self.get(recording_id)
 
-    def closer(self, recording_id: str) -> Callable[[int, int, str], None]:
-        """Return the function that closes the row; called on the recorder's thread."""
+    def closer(self, recording_id: str) -> Callable[[int, int, str, bool], None]:
+        """Return the function that closes the row, cut short or not; called on the recorder's thread."""
 
-        def close(first: int, ticks: int, reason: str) -> None:
-            state = "done" if ticks else "failed"
+        def close(first: int, ticks: int, reason: str, is_cut: bool) -> None:
+            state = "failed" if not ticks else "cut_short" if is_cut else "done"
             self._close(recording_id, {"state": state, "start_tick": first, "ticks": ticks, "reason": reason})
 
         return close
@@ -159,7 +161,7 @@ class Recordings:
         for recording_id, values in list(self._unclosed.items()):
             if not values["ticks"]:
                 values["ticks"] = await asyncio.to_thread(rescue, self.path(recording_id))
-                values["state"] = "done" if values["ticks"] else values["state"]
+                values["state"] = "cut_short" if values["ticks"] else values["state"]
             await asyncio.to_thread(self._close, recording_id, values)
 
     async def all(self, bench_id: str | None = None) -> list[Recording]:

@@ -1,25 +1,30 @@
 """One open stream: what is sent, in which order, and never more than the client takes.
 
-Nothing is queued per client. Events are read from the bench's log behind a cursor, a frame is cut from the
-history at the moment it can be sent, so a slow client costs one frame slot and sees the newest picture.
+Hardly anything is queued per client. Events are read from the bench's log behind a cursor, a picture is the one of the
+moment it can be sent, so a slow client costs one frame slot and sees the newest picture.
 """
 
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections import deque
-from collections.abc import Callable
 
 from pydantic import BaseModel
-from starlette.websockets import WebSocket
 
 from server.bench.session import Session
-from server.metrics import Metrics
+from server.metrics import Sent
 from server.stream.codec import encode
 from server.stream.cuts import SharedCuts
+from server.stream.line import Line, binary_head, text_message
+from server.stream.news import News
 from server.stream.panel import Panel
-from server.stream.wire import EventMessage, Notice, Reply
+from server.stream.wire import Notice, Reply
+
+log = logging.getLogger(__name__)
+
+CLOSE_SLOW, CLOSE_FAILED = 4408, 1011
 
 WINDOW = 2
 """Frames sent and not acknowledged yet, at most."""
@@ -27,181 +32,158 @@ WINDOW = 2
 STALL_S = 5.0
 """A client that takes nothing for this long is let go."""
 
-EVENTS_AT_ONCE = 100
+MOST_WAITING = 500
+"""Answers that wait for a client which asks and does not read."""
 
 
 class Client:
-    """The sending half of a stream.
+    """The sending half of a stream; all of it on the event loop.
 
     Parameters
     ----------
-    socket : WebSocket
+    line : Line
         Accepted.
     session : Session
         The bench it watches.
-    metrics : Metrics
+    sent : Sent
         Where frames are counted.
-    describe : callable
-        Returns the status message of a bench: session, whether with its parameters, frames dropped.
+    news : News
+        The bench in words.
     cuts : SharedCuts
-        The history, as all pages of the bench see it.
+        The bench in pictures.
     last_event : int
         Number of the last event it is taken to know.
     """
 
-    def __init__(
-        self,
-        socket: WebSocket,
-        session: Session,
-        metrics: Metrics,
-        describe: Callable[[Session, bool, int], str],
-        cuts: SharedCuts,
-        last_event: int,
-    ) -> None:
-        self.socket, self.session, self._metrics, self._describe = socket, session, metrics, describe
-        self._cuts = cuts
+    def __init__(self, line: Line, session: Session, sent: Sent, news: News, cuts: SharedCuts, last_event: int) -> None:
+        self.line, self.session, self.cuts = line, session, cuts
+        self._sent, self._news = sent, news
         self.name = "page"
         self.panels: dict[int, Panel] = {}
         self.dropped = 0
         self.closing: tuple[int, str] | None = None
         self.closed = asyncio.Event()
-        self._wake = asyncio.Event()
         self._cursor = last_event
-        self._outbox: deque[BaseModel] = deque()
-        self._frame = 0
-        self._acked = 0
-        self._wants_frame = self._wants_status = False
-        self._taken_at = time.monotonic()
-        self._sending = self._owes_frame = False
+        self._edition = 0
+        self._outbox: deque[bytes] = deque()
+        self._wants_events = self._wants_status = self._wants_frame = False
+        self._frame = self._acked = 0
+        self._taken_at = self._moved_at = time.monotonic()
+        self._passed_on = 0
         self._told_slow_at = -1e9
-        self._told_at = -1
 
-    # What others tell it; all on the event loop.
-
-    def offer_frame(self) -> None:
-        """Say that there may be a new picture."""
-        if self._frame - self._acked >= WINDOW or self._sending:
-            self._owes_frame = True
-            if self.panels:
+    def offer(self, *, events: bool = False, status: bool = False, frame: bool = False) -> None:
+        """Say what there may be that is new."""
+        self._wants_events |= events
+        self._wants_status |= status
+        if frame:
+            self._wants_frame = True
+            if self.panels and not self._has_room:
                 self._drop()
-            return
-        self._wants_frame, self._owes_frame = True, False
-        self._wake.set()
-
-    def offer_status(self) -> None:
-        """Say that the status is due."""
-        self._wants_status = True
-        self._wake.set()
-
-    def offer_events(self) -> None:
-        """Say that there may be new events."""
-        self._wake.set()
+        self.flush()
 
     def post(self, message: BaseModel) -> None:
-        """Send a reply, an error or a notice; the limits on what a client may ask bound their number."""
-        self._outbox.append(message)
-        self._wake.set()
+        """Send a reply, an error or a notice at once, or as soon as the line takes it."""
+        if self.closing is not None:
+            return
+        self._outbox.append(text_message(message.model_dump_json(exclude_none=isinstance(message, Reply))))
+        self.flush()
+        if len(self._outbox) > MOST_WAITING:
+            self.close(CLOSE_SLOW, "answers were asked for and not read")
 
     def acknowledge(self, frame: int) -> None:
         """Note that the client has taken every frame up to this one."""
         self._acked = max(self._acked, min(frame, self._frame))
         self._taken_at = time.monotonic()
-        self._catch_up()
+        if self._wants_frame:
+            self.flush()
 
     def resume(self, after: int) -> None:
         """Send the events after this one (again)."""
         self._cursor = min(after, self.session.events.last)
-        self._wake.set()
+        self.offer(events=True)
 
     def stalled(self, now: float) -> bool:
-        """Whether it has taken nothing for too long although there was something to take."""
-        waiting = self._sending or (self._frame > self._acked)
-        return waiting and now - self._taken_at > STALL_S
+        """Whether it has taken nothing for too long although there was something to take.
+
+        A client may acknowledge frames it never read, so bytes must also leave for it.
+        """
+        if self.line.waiting == 0 or self.line.passed_on > self._passed_on:
+            self._passed_on, self._moved_at = self.line.passed_on, now
+        unread = now - self._moved_at > STALL_S
+        return unread or (self._frame > self._acked and now - self._taken_at > STALL_S)
 
     def close(self, code: int, reason: str) -> None:
-        """Close the stream, behind what can still be sent at once."""
+        """Close the stream, behind what was sent."""
         self.closing = self.closing or (code, reason)
         self.closed.set()
-        self._wake.set()
 
-    def _catch_up(self) -> None:
-        """Offer the frame that is owed: nothing else would, as a bench that stands still has no next round."""
-        if self._owes_frame and not self.session.is_running:
-            self._cuts.refresh()
-            self.offer_frame()
-
-    # What it does.
-
-    async def run(self) -> None:
-        """Send what is due whenever something is, until the stream is closed."""
-        while self.closing is None:
-            await self._wake.wait()
-            self._wake.clear()
-            while self._outbox:
-                await self._send_message(self._outbox.popleft())
-            await self._send_events()
-            if self._wants_status:
-                self._wants_status = False
-                await self._send_status()
-            if self._wants_frame:
-                self._wants_frame = False
-                await self._send_frame()
-            self._catch_up()
-
-    async def _send_status(self) -> None:
-        """Send the status; the scenario as it is now only if something happened since."""
-        changed = self.session.events.last != self._told_at
-        self._told_at = self.session.events.last
-        await self._send(self._describe(self.session, changed, self.dropped))
-
-    async def _send_message(self, message: BaseModel) -> None:
-        exclude_none = isinstance(message, Reply)
-        await self._send(message.model_dump_json(exclude_none=exclude_none))
-
-    async def _send_events(self) -> None:
-        """Send every event behind the cursor; if the log has forgotten some, say how many."""
-        while self._cursor < self.session.events.last:
-            lost, events = self.session.events.after(self._cursor, EVENTS_AT_ONCE)
-            if lost:
-                text = f"{lost} events are older than this bench keeps"
-                await self._send(Notice(code="events_lost", message=text).model_dump_json())
-            for event in events:
-                await self._send(EventMessage(event=event).model_dump_json())
-                self._cursor = event.seq
-
-    async def _send_frame(self) -> None:
-        """Cut the pictures that changed and send them as one frame."""
-        cuts = self._cuts
-        pictures = [picture for panel in self.panels.values() if (picture := panel.picture(cuts))]
-        if not pictures:
+    def flush(self) -> None:
+        """Send what is due, as far as the line takes it; the rest goes when it has drained."""
+        if self.closing is not None:
             return
+        try:
+            while self.closing is None and self.line.is_free and (due := self._due()):
+                self.line.write(b"".join(due))
+        except Exception:
+            log.exception("a stream of bench %s broke off", self.session.id)
+            self.close(CLOSE_FAILED, "the server failed on this stream; its log says why")
+
+    @property
+    def _has_room(self) -> bool:
+        """Whether another frame may go."""
+        return self._frame - self._acked < WINDOW and self.line.is_free
+
+    def _due(self) -> list[bytes]:
+        """Take what is to be sent now; written in one go it costs one call of the system."""
+        due = [*self._outbox]
+        self._outbox.clear()
+        if self._wants_events:
+            due += self._events()
+        if self._wants_status:
+            due += self._status()
+        if self._wants_frame and self._has_room:
+            due += self._picture()
+        return due
+
+    def _events(self) -> list[bytes]:
+        """Return some of the events behind the cursor; if the log has forgotten some, say how many."""
+        said, self._cursor = self._news.events(self._cursor)
+        self._wants_events = bool(said)
+        return said
+
+    def _status(self) -> list[bytes]:
+        """Return the status; the scenario as it is now only if it has changed since."""
+        self._wants_status = False
+        said = self._news.status(self._edition, self.dropped)
+        self._edition = self._news.edition
+        return [said]
+
+    def _picture(self) -> list[bytes]:
+        """Return the pictures that have changed as one frame."""
+        self._wants_frame = False
+        shown = [
+            (number, panel.revision, picture)
+            for number, panel in self.panels.items()
+            if (picture := panel.picture(self.cuts))
+        ]
+        if not shown:
+            return []
         if self._frame == self._acked:
             self._taken_at = time.monotonic()
         self._frame += 1
-        data = encode(self._frame, self.session.is_running, cuts.end_tick, self.session.dt_ms, pictures)
-        await self._send(data)
-        self._metrics.frames.inc()
-        self._metrics.frame_bytes.inc(len(data))
-
-    async def _send(self, data: str | bytes) -> None:
-        """Send one message; the time it hangs counts as stalling."""
-        self._sending = True
-        if self._frame == self._acked:
-            self._taken_at = time.monotonic()
-        try:
-            if isinstance(data, str):
-                await self.socket.send_text(data)
-            else:
-                await self.socket.send_bytes(data)
-        finally:
-            self._sending = False
+        parts = encode(self._frame, self.session.is_running, self.cuts.moment, shown)
+        length = sum(map(len, parts))
+        self._sent.frames += 1
+        self._sent.frame_bytes += length
+        return [binary_head(length), *parts]
 
     def _drop(self) -> None:
         """Count a frame the client was too slow for, and tell it so now and then."""
         if not self.session.is_running:
             return
         self.dropped += 1
-        self._metrics.frames_dropped.inc()
+        self._sent.frames_dropped += 1
         now = time.monotonic()
         if now - self._taken_at > 1.0 and now - self._told_slow_at > STALL_S:
             self._told_slow_at = now

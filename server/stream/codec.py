@@ -5,12 +5,13 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-WIRE = 1
-HEADER = struct.Struct("<BBHIdd")
+WIRE = 2
+HEADER = struct.Struct("<BBHIddd")
 PANEL = struct.Struct("<HHIddddII")
 
 RUNNING = 1
@@ -18,19 +19,15 @@ TRIGGERED, WAITING, FROZEN = 1, 2, 4
 
 
 @dataclass(frozen=True)
-class PanelFrame:
-    """One panel of a frame.
+class Picture:
+    """The content of a panel.
 
     Parameters
     ----------
-    panel : int
-        The client's number for it.
     start, end : float
         Ticks the columns cover; column ``c`` covers ``start + (end - start) * c / columns`` onward.
     trigger : float
         Tick of the trigger, between ticks where the level was crossed; NaN without one.
-    revision : int
-        How many times the client has subscribed this panel.
     flags : int
         ``TRIGGERED``, ``WAITING``, ``FROZEN``.
     columns : ndarray
@@ -39,39 +36,76 @@ class PanelFrame:
         float32 ``(n_signals,)``: the newest value of each signal.
     """
 
-    panel: int
     start: float
     end: float
     trigger: float
-    revision: int
     flags: int
     columns: NDArray[np.float32]
     latest: NDArray[np.float32]
 
+    @cached_property
+    def body(self) -> bytes:
+        """The samples as they are sent: made once, however many pages show this picture."""
+        odd = b"\0\0\0\0" if len(self.latest) % 2 else b""
+        return self.columns.tobytes() + self.latest.tobytes() + odd
 
-def encode(frame: int, running: bool, head: int, dt_ms: float, panels: Sequence[PanelFrame]) -> bytes:
-    """Encode one frame."""
-    parts = [HEADER.pack(WIRE, RUNNING if running else 0, len(panels), frame, head, dt_ms)]
-    for panel in panels:
-        signals, _, columns = panel.columns.shape
-        parts.append(
-            PANEL.pack(
-                panel.panel,
-                signals,
-                columns,
-                panel.start,
-                panel.end,
-                panel.trigger,
-                panel.revision,
-                panel.flags,
-                0,
-            )
-        )
-        parts.append(panel.columns.tobytes())
-        parts.append(panel.latest.tobytes())
-        if signals % 2:
-            parts.append(b"\0\0\0\0")
-    return b"".join(parts)
+
+@dataclass(frozen=True)
+class PanelFrame(Picture):
+    """The picture of one panel of a page.
+
+    Parameters
+    ----------
+    panel : int
+        The page's number for it.
+    revision : int
+        How many times the page has subscribed this panel.
+    """
+
+    panel: int
+    revision: int
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The moment a frame shows.
+
+    Parameters
+    ----------
+    head : int
+        First tick not computed yet.
+    dt_ms : float
+        Device time of one tick.
+    cut_s : float
+        When it was taken, on the server's monotonic clock.
+    """
+
+    head: int
+    dt_ms: float
+    cut_s: float
+
+
+def encode(frame: int, running: bool, moment: Moment, panels: Sequence[tuple[int, int, Picture]]) -> list[bytes]:
+    """Encode one frame, in parts to be sent one behind the other.
+
+    Parameters
+    ----------
+    frame : int
+        Its number on this connection.
+    running : bool
+        Whether time runs.
+    moment : Moment
+        The moment it shows.
+    panels : sequence of (int, int, Picture)
+        Number of the panel, revision of its subscription, its picture.
+    """
+    flags = RUNNING if running else 0
+    parts = [HEADER.pack(WIRE, flags, len(panels), frame, moment.head, moment.dt_ms, moment.cut_s)]
+    for panel, revision, picture in panels:
+        signals, _, columns = picture.columns.shape
+        head = (panel, signals, columns, picture.start, picture.end, picture.trigger, revision, picture.flags, 0)
+        parts += (PANEL.pack(*head), picture.body)
+    return parts
 
 
 @dataclass(frozen=True)
@@ -82,6 +116,7 @@ class Frame:
     running: bool
     head: int
     dt_ms: float
+    cut_s: float
     panels: list[PanelFrame]
 
 
@@ -95,7 +130,7 @@ def decode(data: bytes) -> Frame:
     """
     if len(data) < HEADER.size:
         raise ValueError("shorter than a frame header")
-    wire, flags, count, frame, head, dt_ms = HEADER.unpack_from(data)
+    wire, flags, count, frame, head, dt_ms, cut_s = HEADER.unpack_from(data)
     if wire != WIRE:
         raise ValueError(f"wire version {wire}, this is {WIRE}")
     at, panels = HEADER.size, []
@@ -107,7 +142,7 @@ def decode(data: bytes) -> Frame:
         at += 4 * size
         latest = np.frombuffer(data, "<f4", signals, at)
         at += 4 * (signals + signals % 2)
-        panels.append(PanelFrame(panel, start, end, trigger, int(revision), marks, cut, latest))
+        panels.append(PanelFrame(start, end, trigger, marks, cut, latest, panel, int(revision)))
     if at != len(data):
         raise ValueError(f"{len(data) - at} bytes left over")
-    return Frame(frame, bool(flags & RUNNING), int(head), dt_ms, panels)
+    return Frame(frame, bool(flags & RUNNING), int(head), dt_ms, cut_s, panels)

@@ -1,13 +1,17 @@
-"""What several pages look at is cut from the history once."""
+"""The history of a bench at one moment, and what pages show of it."""
 
 from __future__ import annotations
+
+import time
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from server.bench.session import Session
-
-Columns = NDArray[np.float32]
+from server.stream.codec import Moment, Picture
+from server.stream.view import View
+from server.stream.wire import Subscribe
 
 
 class SharedCuts:
@@ -21,35 +25,52 @@ class SharedCuts:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._columns: dict[tuple[object, ...], Columns] = {}
-        self._samples: dict[tuple[object, ...], Columns] = {}
+        self._views: WeakValueDictionary[str, View] = WeakValueDictionary()
         self._history = session.history
-        self.end_tick = self._history.end_tick
+        self._pictures: dict[View, Picture] = {}
+        self.refresh()
 
     def refresh(self) -> int:
         """Take the present moment; returns its tick."""
-        history = self._session.history
-        if history is not self._history or history.end_tick != self.end_tick:
-            self._history, self.end_tick = history, history.end_tick
-            self._columns.clear()
-            self._samples.clear()
-        return self.end_tick
+        if self._session.history is not self._history:
+            self._history = self._session.history
+            for view in self._views.values():
+                view.forget()
+        self.moment = Moment(self._history.end_tick, self._session.dt_ms, time.monotonic())
+        self._pictures.clear()
+        return self.moment.head
+
+    def picture(self, view: View) -> Picture:
+        """Return what a view shows at this moment."""
+        picture = self._pictures.get(view)
+        if picture is None:
+            picture = self._pictures[view] = view.picture(self)
+        return picture
+
+    def view(self, spec: Subscribe, indices: list[int], trigger_index: int | None) -> View:
+        """Return what a subscription shows: that of another page which asked for the same, or a new one."""
+        fresh = View(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head)
+        if spec.trigger is not None and spec.trigger.sweep == "single":
+            return fresh  # each page arms its own
+        key = f"{self.moment.dt_ms} {spec.model_copy(update={'panel': 0}).model_dump_json()}"
+        return self._views.setdefault(key, fresh)
+
+    # What views read.
+
+    @property
+    def end_tick(self) -> int:
+        """First tick that is not shown yet."""
+        return self.moment.head
 
     @property
     def first_tick(self) -> int:
         """Oldest tick kept."""
         return self._history.first_tick
 
-    def read(self, signals: list[int], start: int, stop: int) -> Columns:
+    def read(self, signals: list[int], start: int, stop: int) -> NDArray[np.float32]:
         """Return ``(n, ticks)`` samples."""
-        key = (*signals, start, stop)
-        if key not in self._samples:
-            self._samples[key] = self._history.read(signals, start, stop)
-        return self._samples[key]
+        return self._history.read(signals, start, stop)
 
-    def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Columns:
+    def columns(self, signals: list[int], start: int, stop: int, columns: int) -> NDArray[np.float32]:
         """Return ``(n, 2, columns)`` minima and maxima."""
-        key = (*signals, start, stop, columns)
-        if key not in self._columns:
-            self._columns[key] = self._history.columns(signals, start, stop, columns)
-        return self._columns[key]
+        return self._history.columns(signals, start, stop, columns)

@@ -20,7 +20,9 @@ class Samples(Protocol):
     def first_tick(self) -> int:
         """Oldest tick kept."""
 
-    end_tick: int
+    @property
+    def end_tick(self) -> int:
+        """First tick not computed yet."""
 
     def read(self, signals: list[int], start: int, stop: int) -> NDArray[np.float32]:
         """Return ``(n, ticks)`` samples."""

@@ -10,9 +10,9 @@ from server.bench.commands import Command
 from server.bench.events import Event
 from server.bench.status import Bench, BenchStatus
 from server.errors import ErrorBody
+from server.stream.codec import WIRE
 
-SUBPROTOCOL = "combbench.v1"
-WIRE = 1
+SUBPROTOCOL = f"combbench.v{WIRE}"
 MAX_PANELS = 32
 MAX_SIGNALS = 32
 MAX_COLUMNS = 4096
@@ -116,18 +116,18 @@ class Hello(BaseModel):
 
 
 class Status(BenchStatus):
-    """What changes on a bench: five times a second, and after every event."""
+    """What changes on a bench: five times a second, and after events at most twenty times."""
 
     type: Literal["status"] = "status"
     parameters: dict[str, Any] | None = Field(None, description="The scenario as it is now; null: unchanged")
     dropped_frames: int = Field(description="Frames this client was too slow for")
 
 
-class EventMessage(BaseModel):
-    """Something happened; numbered without gaps."""
+class Events(BaseModel):
+    """Events since the last such message, numbered without gaps."""
 
-    type: Literal["event"] = "event"
-    event: Event
+    type: Literal["events"] = "events"
+    events: list[Event]
 
 
 class Reply(BaseModel):
@@ -155,4 +155,4 @@ class Notice(BaseModel):
     message: str
 
 
-ServerMessage = Hello | Status | EventMessage | Reply | ErrorMessage | Notice
+ServerMessage = Hello | Status | Events | Reply | ErrorMessage | Notice

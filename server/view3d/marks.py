@@ -10,6 +10,7 @@ import numpy as np
 
 from core.device.frame import Damage
 from core.faults.broken_truss import EXTENTS
+from core.format import format_count, format_short
 from server.view3d.layout import FILM_UM, GROUND_UM, UM_PER_UNIT, Box, Layout, Mesh, merge
 from server.view3d.pose import Active
 
@@ -180,10 +181,11 @@ def place_of(part: str, layout: Layout) -> Place:
 
 def words(fault: Active) -> str:
     """Name a fault, with its severity where that has a unit."""
-    unit = fault.block.outputs[0].unit
+    unit, severity = fault.block.outputs[0].unit, fault.severity
     if unit == "1":
         return fault.block.title
-    return f"{fault.block.title} {fault.severity:.3g} {unit.replace('um', 'µm')}"
+    said = format_count(severity, unit) if unit == "week" else format_short(severity, unit, 3)
+    return f"{fault.block.title} {said}"
 
 
 def ball(centre: Place, radius: float, stretch: Place = (1.0, 1.0, 1.0)) -> Mesh:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from core.format import format_short
 from server.view3d.layout import HEIGHTS, WIDTHS
 
 SEEN_HZ = 8.0
@@ -96,10 +97,10 @@ def caption(factor: float, turn_factor: float | None, is_strobed: bool) -> str:
     is_strobed : bool
         Whether what is seen is slower than what happens.
     """
-    parts = [f"motion × {factor:g}"]
+    parts = [f"motion × {format_short(factor, '', 3)}"]
     if turn_factor is not None:
-        parts += [f"rotation × {turn_factor:g}", "gaps × 1"]
-    parts.append(f"heights × {HEIGHTS:g}, beam widths × {WIDTHS:g}")
+        parts += [f"rotation × {format_short(turn_factor, '', 3)}", "gaps × 1"]
+    parts.append(f"heights × {format_short(HEIGHTS, '')}, beam widths × {format_short(WIDTHS, '')}")
     if is_strobed:
         parts.append("strobe")
     return ", ".join(parts)

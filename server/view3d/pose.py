@@ -136,7 +136,7 @@ class Observer:
         plant = spec.plant.params
         turns = hasattr(plant, "rotation_stiffness_nm")
         combs = combs_of(shift, 1e-3 * turn, self._layout.tip_um, plant)
-        gap = getattr(plant, "gap_um", None) or self._layout.geometry.gap_um
+        gap = self._layout.geometry.gap_um
         return Pose(
             displacement_um=x * self._factor,
             reference_um=reference * self._factor,

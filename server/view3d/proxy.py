@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
+from importlib.metadata import version
+from pathlib import Path
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
@@ -15,9 +18,11 @@ from server.api.deps import ServiceDep, SocketServiceDep
 from server.security.headers import POLICY as POLICY_HEADER
 
 router = APIRouter(include_in_schema=False)
+log = logging.getLogger(__name__)
 
+SUBPROTOCOL = Subprotocol(f"viser-v{version('viser')}")
 MAX_WATCHERS = 32
-CLOSE_NO_BENCH, CLOSE_FULL, CLOSE_LOST = 4404, 1013, 1012
+CLOSE_VERSION, CLOSE_NO_BENCH, CLOSE_FULL, CLOSE_LOST = 4001, 4404, 1013, 1012
 
 
 @router.get("/benches/{bench_id}/3d/")
@@ -35,64 +40,64 @@ async def join(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> N
     """Connect a page to the scene of its bench."""
     session = service.benches.find(bench_id)
     show = service.theatre.show_of(session) if session is not None and service.theatre is not None else None
-    if show is None or show.watchers >= MAX_WATCHERS:
-        await socket.accept(subprotocol=next(iter(socket.scope["subprotocols"]), None))
-        code, reason = (CLOSE_NO_BENCH, "no such bench") if show is None else (CLOSE_FULL, "too many watchers")
-        await socket.close(code, reason)
+    offered = socket.scope["subprotocols"]
+    refusal: tuple[int, str] | None = None
+    if SUBPROTOCOL not in offered:
+        refusal = (CLOSE_VERSION, f"this server speaks {SUBPROTOCOL}: reload the page")
+    elif show is None:
+        refusal = (CLOSE_NO_BENCH, "no such bench")
+    elif show.watchers >= MAX_WATCHERS:
+        refusal = (CLOSE_FULL, "too many watchers")
+    await socket.accept(subprotocol=next(iter(offered), None) if refusal else SUBPROTOCOL)
+    if refusal or show is None:
+        await socket.close(*(refusal or (CLOSE_NO_BENCH, "")))
         return
-    port = await show.enter()
     try:
-        await _relay(socket, port)
+        path = await show.enter()
+    except OSError as error:  # a temporary folder that is full, or whose name is too long for a socket
+        log.error("the 3D scene of bench %s has no socket: %s", bench_id, error)
+        await socket.close(CLOSE_LOST, "the 3D scene is not reachable")
+        return
+    try:
+        await _relay(socket, path)
     finally:
         await show.leave()
 
 
-async def _relay(socket: WebSocket, port: int) -> None:
-    """Pass messages both ways until either side ends."""
-    offered = [Subprotocol(name) for name in socket.scope["subprotocols"]]
+async def _relay(socket: WebSocket, path: Path) -> None:
+    """Show the scene to the page until either side ends."""
+    reason = ""
     try:
-        # proxy=None: with a proxy in the environment even 127.0.0.1 would go to it.
-        upstream = await connect(
-            f"ws://127.0.0.1:{port}/",
-            subprotocols=offered or None,
+        async with unix_connect(
+            str(path),
+            "ws://localhost/",
+            subprotocols=[SUBPROTOCOL],
             compression=None,
             max_size=None,
             ping_interval=None,
-            proxy=None,
-        )
+        ) as scene:
+            tasks = [asyncio.create_task(_down(socket, scene)), asyncio.create_task(_until_gone(socket))]
+            try:
+                await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            finally:
+                for task in tasks:
+                    task.cancel()
+                await asyncio.gather(*tasks, return_exceptions=True)
     except (OSError, InvalidHandshake):
-        await socket.accept(subprotocol=next(iter(offered), None))
-        await socket.close(CLOSE_LOST, "the 3D scene is not reachable")
-        return
-    async with upstream:
-        await socket.accept(subprotocol=upstream.subprotocol)
-        tasks = [asyncio.create_task(_down(socket, upstream)), asyncio.create_task(_up(socket, upstream))]
-        try:
-            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
-        with contextlib.suppress(RuntimeError, WebSocketDisconnect):
-            await socket.close(CLOSE_LOST)
+        reason = "the 3D scene is not reachable"
+    with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+        await socket.close(CLOSE_LOST, reason)
 
 
-async def _down(socket: WebSocket, upstream: ClientConnection) -> None:
+async def _down(socket: WebSocket, scene: ClientConnection) -> None:
     """From the scene to the page."""
     with contextlib.suppress(ConnectionClosed, WebSocketDisconnect, RuntimeError):
-        async for message in upstream:
-            if isinstance(message, str):
-                await socket.send_text(message)
-            else:
+        async for message in scene:
+            if isinstance(message, bytes):
                 await socket.send_bytes(message)
 
 
-async def _up(socket: WebSocket, upstream: ClientConnection) -> None:
-    """From the page to the scene."""
-    with contextlib.suppress(ConnectionClosed):
-        while True:
-            message = await socket.receive()
-            if message["type"] == "websocket.disconnect":
-                return
-            data = message.get("bytes")
-            await upstream.send(data if data is not None else message.get("text") or "")
+async def _until_gone(socket: WebSocket) -> None:
+    """Let the page say what it likes; the scene is only looked at, and viser breaks at what it does not know."""
+    while (await socket.receive())["type"] != "websocket.disconnect":
+        pass

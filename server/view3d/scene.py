@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-import viser
 from numpy.typing import NDArray
-from viser import _messages as viser_messages
 
 from server.view3d.layout import UM_PER_UNIT, Box, Layout, Mesh, merge, unit_box
 from server.view3d.marks import LEFT, RIGHT, Marks, Place, ball, marks
 from server.view3d.pose import Active, Laser, Pose
+from server.view3d.private import PrivateServer
 from server.view3d.suspension import Flexure, flexure
 
 Color = tuple[int, int, int]
@@ -28,7 +26,7 @@ BEAM_UM, ABOVE_UM, BELOW_UM, SPOT_UM = 3.0, 130.0, 90.0, 5.0
 
 
 class Scene:
-    """One viser server on loopback, with the device of one bench.
+    """One viser server with the device of one bench.
 
     Parameters
     ----------
@@ -38,11 +36,8 @@ class Scene:
 
     def __init__(self, layout: Layout) -> None:
         self._layout = layout
-        with contextlib.redirect_stdout(io.StringIO()):  # it prints a banner whatever it is told
-            self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-        # Any client could open a public tunnel to this port with these.
-        for message in (viser_messages.ShareUrlRequest, viser_messages.ShareUrlDisconnect):
-            self._server._websock_server.unregister_handler(message)
+        self._private = PrivateServer()
+        self._server = self._private.viser
         self._shown = Pose()
         self._marks = Marks(layout)
         self._added: list[Any] = []
@@ -50,9 +45,9 @@ class Scene:
         self._build()
 
     @property
-    def port(self) -> int:
-        """Port of the viser server on loopback."""
-        return int(self._server.get_port())
+    def path(self) -> Path:
+        """Where the scene is watched: a Unix socket of this user alone."""
+        return self._private.path
 
     def show(self, pose: Pose) -> None:
         """Move the parts; nothing is sent if nothing changed."""
@@ -77,8 +72,7 @@ class Scene:
 
     def close(self) -> None:
         """Stop the server and let its clients go."""
-        with contextlib.redirect_stdout(io.StringIO()):
-            self._server.stop()
+        self._private.stop()
 
     def _move(self, pose: Pose, before: Pose) -> None:
         """Put everything that moves where it is."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from core.device.geometry import Geometry
 from server.bench.session import Session
 from server.view3d.layout import Layout
 from server.view3d.pose import Observer
@@ -41,15 +41,15 @@ class Show:
         """Open 3D pages."""
         return self._watchers
 
-    async def enter(self) -> int:
-        """Count a watcher in; return the port of the scene."""
+    async def enter(self) -> Path:
+        """Count a watcher in; return the socket of the scene."""
         self._watchers += 1
         try:
             async with self._ready:
                 if self._scene is None:
                     self._scene = await asyncio.to_thread(build_scene, self._session)
                     self._task = asyncio.create_task(self._play(self._scene))
-                return self._scene.port
+                return self._scene.path
         except BaseException:
             self._watchers -= 1
             raise
@@ -121,4 +121,4 @@ def build_scene(session: Session) -> Scene:
 
 def layout_of(session: Session) -> Layout:
     """Return where the parts are; a device without a drawing is drawn as the reference device."""
-    return Layout(session.geometry or Geometry())
+    return Layout(session.geometry)

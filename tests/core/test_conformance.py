@@ -96,7 +96,12 @@ def cases() -> dict[str, dict[str, Any]]:
     found = {}
     for entry in ALL:
         for name, values in variants(entry).items():
-            found[name] = {"document": document(values, RICH), "commands": STORY, "faults": []}
+            bench = document(values, RICH)
+            # nothing but the reference drives between samples, and not every controller suits every bench
+            is_analogue = bench.get("drive", {}).get("kind") == "analogue"
+            able = () if is_analogue else make(base=bench).spec.controllers
+            story = [command for command in STORY if command["kind"] != "switch" or command["controller"] in able]
+            found[name] = {"document": bench, "commands": story, "faults": []}
         if entry.family == "faults":
             for profile in profiles(entry):
                 severity = entry.suggested

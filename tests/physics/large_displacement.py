@@ -18,9 +18,13 @@ PARTS = 6
 
 
 class Frame:
-    """The suspension of a drawing; units um, uN."""
+    """The suspension of a drawing, damaged on the side at +y if it is; units um, uN.
 
-    def __init__(self, geometry: Geometry) -> None:
+    ``adhesion`` is the share of the inner beam at +x, from its root, of a point held to the ground; ``lost`` are the
+    segments of the truss that are gone, 2 the end at +x.
+    """
+
+    def __init__(self, geometry: Geometry, adhesion: float | None = None, lost: tuple[int, ...] = ()) -> None:
         places: list[tuple[float, float]] = []
         self.elements: list[tuple[int, int, float, float]] = []
         self.fixed: list[int] = []
@@ -45,10 +49,17 @@ class Frame:
                 places += [(x, foot), (x, foot + side * geometry.beam_length_um)]
                 root, top = len(places) - 2, len(places) - 1
                 (self.rigid if i in (0, 3) else self.fixed).append(root)
-                chain(root, top, PARTS, beam)
+                foothold = root
+                if adhesion is not None and side > 0 and i == 2:
+                    places.append((x, foot + adhesion * geometry.beam_length_um))
+                    foothold = len(places) - 1
+                    self.fixed.append(foothold)
+                    chain(root, foothold, PARTS, beam)
+                chain(foothold, top, PARTS, beam)
                 tops.append(top)
-            for a, b in itertools.pairwise(tops):
-                chain(a, b, 2, truss)
+            for j, (a, b) in enumerate(itertools.pairwise(tops)):
+                if side < 0 or j not in lost:
+                    chain(a, b, 2, truss)
         self.places = np.array(places)
         held = {*self.fixed, *self.rigid}
         self.free = [3 * i + j for i in range(len(places)) if i not in held for j in range(3)]
@@ -105,3 +116,24 @@ class Frame:
         whole = shape.T @ condensed @ shape
         whole[2, 2] += curved
         return float(sum(force[3 * i] for i in self.rigid)), whole
+
+    def follow(self, travel: float) -> tuple[float, float, float]:
+        """Return the force along x that holds the shuttle at a travel, and where it shifts and turns to, free to."""
+        u, shift, turn = np.zeros(3 * len(self.places)), 0.0, 0.0
+        drawn = self.places[self.rigid]
+        carried = np.zeros((len(u), len(self.free) + 2))
+        carried[self.free, range(len(self.free))] = 1.0
+        for share in np.linspace(0, 1, max(1, round(abs(travel))) + 1)[1:]:
+            for _ in range(60):
+                c, s = np.cos(turn), np.sin(turn)
+                turned = drawn @ np.array([[c, s], [-s, c]])
+                for node, at, now in zip(self.rigid, drawn, turned, strict=True):
+                    u[3 * node : 3 * node + 3] = [travel * share + now[0] - at[0], shift + now[1] - at[1], turn]
+                    carried[3 * node : 3 * node + 3, -2:] = [[0, -now[1]], [1, now[0]], [0, 1]]
+                force, tangent = self.assembled(u)
+                move = np.linalg.solve(carried.T @ tangent @ carried, -carried.T @ force)
+                u[self.free] += move[:-2]
+                shift, turn = shift + move[-2], turn + move[-1]
+                if np.abs(move).max() < 1e-8:  # Newton: what is left is its square
+                    break
+        return float(sum(force[3 * i] for i in self.rigid)), float(shift), float(turn)

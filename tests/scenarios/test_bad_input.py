@@ -98,7 +98,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"events": [{"at_sample": 1, "at_ms": 2.0, "heal": "all"}]}, "events.0"),
     ({"events": [{"when": "nothing > 1", "heal": "all"}]}, "events.0.when"),
     ({"events": [{"when": "@nothing > -1", "heal": "all"}]}, "events.0.when"),
-    ({"events": [{"when": "drive.charge > -1", "heal": "all"}]}, "events.0.when"),
+    ({"events": [{"when": "drive.middle > -1", "heal": "all"}]}, "events.0.when"),
     ({"events": [{"at_ms": 1e308, "heal": "all"}]}, "events.0.at_ms"),
     ({"events": [{"at_sample": 1, "set": {"sensor.noise_nm": 1}}]}, "events.0.sensor.noise_nm"),
     ({"events": [{"at_sample": 1, "switch": "nobody"}]}, "events.0.controller"),

@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner
 
+from core.registry import block
 from scenarios.library import get, library
 from scenarios.run import run
 from server.cli import app
@@ -226,6 +227,17 @@ def test_catalog_lists_every_block(call):
     assert "adaptation_gain" in text and "plant/linear" not in text
 
 
+def test_catalog_says_where_a_block_is_weak(call, monkeypatch):
+    monkeypatch.setattr(block("control", "pid"), "weaknesses", ("It is slow.", "It is blind below 1 kHz."))
+    weak = {card["name"]: card["weaknesses"] for card in json.loads(call("catalog", "control", "--json").stdout)}
+    assert weak["pid"] == ["It is slow.", "It is blind below 1 kHz."]
+    assert weak["open_loop"] == []
+    lines = call("catalog", "control").stdout.splitlines()
+    assert (
+        lines.count("  Known weakness: It is slow.") == lines.count("  Known weakness: It is blind below 1 kHz.") == 1
+    )
+
+
 @pytest.mark.parametrize(("args", "code"), [(["run", "ch3-mrac-spring-x2", "--json"], 0), (["run", "nothing"], 2)])
 def test_the_program_itself(args, code, tmp_path):
     done = subprocess.run(
@@ -251,3 +263,22 @@ def test_a_full_disk_behind_the_answer_is_exit_2_and_one_line(args, tmp_path):
         )
     assert done.returncode == 2
     assert done.stderr == "combbench: cannot write to standard output: No space left on device\n"
+
+
+@pytest.mark.parametrize("arguments", ["doctor", "catalog control", "run first-look --set samples=50", "run nowhere"])
+def test_a_closed_standard_output_is_no_failure(arguments: str) -> None:
+    command = f"exec {sys.executable} -m server.cli {arguments} >&-"
+    ended = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert ended.returncode == (2 if "nowhere" in arguments else 0)
+    assert "Traceback" not in ended.stderr
+
+
+@pytest.mark.parametrize("command", ["run", "sweep", "serve"])
+def test_a_number_of_thousands_of_digits_is_one_line(tmp_path: Path, command: str) -> None:
+    name = "combbench.toml" if command == "serve" else "mine.toml"
+    (tmp_path / name).write_text(f"max_benches = {'1' * 5000}\n")
+    arguments = [sys.executable, "-m", "server.cli", command, *([] if command == "serve" else [name])]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    ended = subprocess.run(arguments, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert ended.returncode == 2 and len(ended.stderr.strip().splitlines()) == 1, ended.stderr
+    assert "4300 digits" in ended.stderr and len(ended.stderr) < 500

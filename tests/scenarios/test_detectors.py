@@ -130,7 +130,7 @@ def test_a_bank_that_runs_now_and_then_is_counted_from_one_turn_to_the_next(ever
     """Between two turns x <- A x + B u of every model: three products and two sums for each of two states."""
     own = {"form": "steady", "probability_floor": 0.0}
     turn = operations("mmae", 3, **own)
-    mean_voltage = 2  # the difference of two charges over N
+    mean_voltage = every + 1  # a sum of N, over N
     for tick in range(600, 600 + every):
         found = operations("mmae", 3, tick=tick, every=every, **own)
         assert found == turn + mean_voltage + (every - 1) * 3 * 2 * (3 + 2)
@@ -170,4 +170,4 @@ def test_counting_does_not_take_longer_for_a_bank_that_seldom_runs():
     few, many = (
         count(build(with_values(get("ch5-seven-step"), {"diagnosers.kalman.every": n})), "kalman") for n in (2, 10_000)
     )
-    assert many[0] - few[0] == pytest.approx(9_998 * 6 * 10, abs=20)
+    assert many[0] - few[0] == pytest.approx(9_998 * (6 * 10 + 1), abs=20)

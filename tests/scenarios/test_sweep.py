@@ -99,7 +99,7 @@ def test_variants_are_controllers_or_diagnosers_by_name() -> None:
 )
 def test_what_is_wrong_is_said_in_one_line(change: dict[str, Any], words: list[str]) -> None:
     with pytest.raises(InputError) as caught:
-        Sweep({**SEVEN, **change})
+        Sweep.load({**SEVEN, **change})
     assert all(word in str(caught.value) for word in words), str(caught.value)
 
 

@@ -18,6 +18,7 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
 from server.cli import app
+from server.store.lock import lock
 
 CAMPAIGN = """
 schema = 1
@@ -95,6 +96,15 @@ def test_the_results_of_another_campaign_are_left_alone(sweep: Any, tmp_path: Pa
     assert {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()} == before
     (tmp_path / "mine.toml").write_text((tmp_path / "here" / "campaign.toml").read_text())  # it says what was run
     assert sweep("--out", "here", "--resume").exit_code == 0
+
+
+def test_a_folder_takes_one_campaign_at_a_time(sweep: Any, tmp_path: Path) -> None:
+    (tmp_path / "here").mkdir()
+    with lock(tmp_path / "here", "--out"):
+        refused = sweep("--out", "here", "--resume")
+    assert refused.exit_code == 2 and "--out: here is in use by process" in refused.stderr
+    assert len(refused.stderr.strip().splitlines()) == 1
+    assert [path.name for path in (tmp_path / "here").iterdir()] == [".lock"], "nothing is written"
 
 
 def test_one_that_stops_says_how_to_go_on(sweep: Any, monkeypatch: pytest.MonkeyPatch) -> None:

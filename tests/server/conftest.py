@@ -18,9 +18,9 @@ from server.app import create_app
 from server.serve import bind, make_server
 from server.settings import Settings
 from server.stream.codec import Frame, decode
+from server.stream.wire import SUBPROTOCOL
 
 TOKEN = "a-token-for-the-tests-only"
-SUBPROTOCOL = "combbench.v1"
 
 
 class Stream:
@@ -34,6 +34,21 @@ class Stream:
 
     def send(self, **message: Any) -> None:
         self.connection.send(json.dumps(message))
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """Every event that has come, in the order it came."""
+        return [event for m in self.messages if m["type"] == "events" for event in m["events"]]
+
+    def until_event(self, timeout: float = 10.0, **fields: Any) -> dict[str, Any]:
+        """Return the first event with these fields: one that has come already, or else one that comes."""
+
+        def found() -> list[dict[str, Any]]:
+            return [event for event in self.events if fields.items() <= event.items()]
+
+        if not found():
+            self.until(lambda _: bool(found()), timeout)
+        return found()[0]
 
     def step(self, timeout: float = 5.0) -> dict[str, Any] | Frame:
         """Take one message; acknowledge frames unless told not to."""

@@ -177,13 +177,13 @@ def test_the_page_that_steps_can_pause_the_step(live: Any) -> None:
         stream.send(type="command", id="b", command={"kind": "pause"})
         replies = [stream.until_type("reply"), stream.until_type("reply")]
         assert {(reply["id"], reply["ok"]) for reply in replies} == {("a", True), ("b", True)}
-        event = stream.until(lambda m: isinstance(m, dict) and m["type"] == "event" and m["event"]["kind"] == "pause")
-    assert event["event"]["tick"] < 100_000
+        event = stream.until_event(kind="pause")
+    assert event["tick"] < 100_000
     said = live.http.get(f"/api/v1/benches/{bench['id']}/events").json()["events"]
-    assert said[-2]["text"] == f"stepped {event['event']['tick']} of 100000 ticks"
+    assert said[-2]["text"] == f"stepped {event['tick']} of 100000 ticks"
     time.sleep(0.05)
     after = live.get(bench["id"])
-    assert (after["tick"], after["state"]) == (event["event"]["tick"], "paused")
+    assert (after["tick"], after["state"]) == (event["tick"], "paused")
 
 
 def test_a_trip_stops_one_bench_and_says_why(live: Any) -> None:

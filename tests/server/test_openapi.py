@@ -63,7 +63,7 @@ def test_the_messages_of_the_stream_are_described(document: dict[str, Any]) -> N
     client = {ref.rsplit("/", 1)[1] for ref in references(schemas["ClientMessage"])}
     server = {ref.rsplit("/", 1)[1] for ref in references(schemas["ServerMessage"])}
     assert {"Subscribe", "Rearm", "Unsubscribe", "Ack", "Resume", "CommandMessage"} <= client
-    assert {"Hello", "Status", "EventMessage", "Reply", "ErrorMessage", "Notice"} <= server
+    assert {"Hello", "Status", "Events", "Reply", "ErrorMessage", "Notice"} <= server
     assert {"Inject", "Heal", "Set", "Switch", "TimeScale", "Step"} <= set(schemas)
     assert schemas["ErrorBody"]["required"] == ["code", "message"]
     assert TypeAdapter(ServerMessage) and CLIENT_MESSAGE
@@ -71,3 +71,12 @@ def test_the_messages_of_the_stream_are_described(document: dict[str, Any]) -> N
 
 def test_the_service_answers_with_this_document(live: Any, document: dict[str, Any]) -> None:
     assert live.http.get("/api/v1/openapi.json").json() == document
+
+
+def test_a_method_that_is_not_allowed_hears_of_all_that_are(live: Any) -> None:
+    for path, operations in live.http.get("/api/v1/openapi.json").json()["paths"].items():
+        known = {method.upper() for method in operations} & {"GET", "POST", "PUT", "PATCH", "DELETE"}
+        answer = live.http.request("TRACE", path.replace("{", "").replace("}", ""))
+        assert answer.status_code == 405, (path, answer.status_code)
+        assert known <= set(answer.headers["Allow"].split(", ")), path
+        assert set(answer.json()) == {"error"}

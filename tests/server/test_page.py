@@ -23,7 +23,7 @@ def dist(tmp_path: Path) -> Path:
     return folder
 
 
-def get(page: Page, path: str, method: str = "GET") -> Any:
+def get(page: Page, path: str, method: str = "GET", query: bytes = b"") -> Any:
     sent: list[dict[str, Any]] = []
 
     async def send(message: Any) -> None:
@@ -32,17 +32,23 @@ def get(page: Page, path: str, method: str = "GET") -> Any:
     async def receive() -> Any:
         await asyncio.Event().wait()
 
-    scope = {"type": "http", "method": method, "path": path, "headers": [], "query_string": b"", "root_path": ""}
+    scope = {"type": "http", "method": method, "path": path, "headers": [], "query_string": query, "root_path": ""}
     asyncio.run(page(scope, receive, send))
     headers = {name.decode(): value.decode() for name, value in sent[0]["headers"]}
     return sent[0]["status"], headers, b"".join(message.get("body", b"") for message in sent[1:])
 
 
-@pytest.mark.parametrize("path", ["/", "/bench/abc", "/some/path/inside"])
-def test_a_path_inside_the_page_is_the_page(dist: Path, path: str) -> None:
-    status, headers, body = get(Page(dist), path)
+def test_the_page_is_at_the_root(dist: Path) -> None:
+    status, headers, body = get(Page(dist), "/")
     assert (status, headers["cache-control"]) == (200, "no-cache")
     assert b"the page" in body
+
+
+@pytest.mark.parametrize("path", ["/bench/abc", "/some/path/inside", "//evil.example"])
+def test_a_path_that_is_nothing_leads_to_the_page(dist: Path, path: str) -> None:
+    """All addresses in the page are relative, so it works at the root alone."""
+    assert get(Page(dist), path)[:2] == (303, {"location": "/", "content-length": "0"})
+    assert get(Page(dist), path, query=b"page=runs")[1]["location"] == "/?page=runs"
 
 
 def test_assets_with_a_hash_in_their_name_are_kept_by_the_browser(dist: Path) -> None:

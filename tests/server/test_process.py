@@ -26,7 +26,9 @@ from websockets.exceptions import ConnectionClosed
 from server.app import create_app
 from server.serve import make_server
 from server.settings import Settings
+from server.stream.wire import SUBPROTOCOL
 
+ROOT = Path(__file__).resolve().parents[2]
 TOKEN = "a-canary-token-for-the-logs"
 
 
@@ -42,8 +44,7 @@ def process(folder: Path, *arguments: str, **more: str) -> Iterator[Any]:
     }
     command = [sys.executable, "-m", "server.cli", "serve", "--port", "0", *arguments]
     errors = (folder / "stderr").open("wb")
-    root = Path(__file__).resolve().parents[2]
-    running = subprocess.Popen(command, cwd=root, env=environment, stdout=subprocess.PIPE, stderr=errors, text=True)
+    running = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=errors, text=True)
     try:
         assert running.stdout is not None
         running.address = running.stdout.readline().strip()  # type: ignore[attr-defined]
@@ -116,17 +117,38 @@ def test_a_damaged_token_file_does_not_keep_it_from_starting(tmp_path: Path) -> 
     assert "Traceback" not in (tmp_path / "stderr").read_text()
 
 
+def test_what_it_keeps_is_for_its_own_user_alone(tmp_path: Path) -> None:
+    before = os.umask(0o022)
+    try:
+        with process(tmp_path) as running, client(running.address) as http:
+            bench = http.post("/api/v1/benches", json={"scenario": "first-look"}).json()["id"]
+            http.post(f"/api/v1/benches/{bench}/recordings")
+            run = http.post("/api/v1/runs", json={"scenario": "first-look"}).json()["id"]
+            end = time.monotonic() + 60
+            while http.get(f"/api/v1/runs/{run}").json()["state"] != "done":
+                assert time.monotonic() < end
+                time.sleep(0.1)
+            data = tmp_path / "data"
+            kept = {str(path.relative_to(data)): path.stat().st_mode & 0o777 for path in [data, *data.rglob("*")]}
+    finally:
+        os.umask(before)
+    assert {"combbench.sqlite3", "combbench.sqlite3-wal", "combbench.sqlite3-shm", "recordings", "runs"} <= set(kept)
+    assert any(name.endswith(".arrows") for name in kept) and f"runs/{run}/run.parquet" in kept
+    assert {name: mode for name, mode in kept.items() if mode not in (0o700, 0o600)} == {}
+
+
 def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
     from websockets.sync.client import connect
 
-    with process(tmp_path) as running:
+    with process(tmp_path, COMBBENCH_MAX_RUN_MB="4000") as running:
         assert running.address.startswith("CombBench is at http://127.0.0.1:")
         assert running.address.endswith(f"/?token={TOKEN}")
         with client(running.address) as http:
             assert http.get("/health/ready").status_code == 200
             bench = http.post("/api/v1/benches", json={"scenario": "ch5-seven-step", "time_scale": 0.02}).json()
             recording = http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
-            http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", "set": {"samples": 9_000_000}})
+            run = {"scenario": "ch5-seven-step", "set": {"samples": 9_000_000}}
+            assert http.post("/api/v1/runs", json=run).status_code == 202
             with http.stream("GET", f"/?token={TOKEN}"):
                 pass
             url = str(http.base_url).replace("http", "ws").rstrip("/")
@@ -134,7 +156,7 @@ def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
             stream = connect(
                 f"{url}/api/v1/benches/{bench['id']}/stream",
                 additional_headers=headers,
-                subprotocols=["combbench.v1"],  # type: ignore[list-item]
+                subprotocols=[SUBPROTOCOL],  # type: ignore[list-item]
                 proxy=None,
             )
             time.sleep(1.0)
@@ -208,3 +230,47 @@ def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
             assert running.wait(20) == 2
     said = (tmp_path / "stderr").read_text()
     assert f"127.0.0.1:{port}" in said and len(said.strip().splitlines()) == 1
+
+
+def test_a_data_folder_serves_one_server_until_that_has_ended(tmp_path: Path) -> None:
+    """The second one touches nothing: the recording of the first goes on. A killed one leaves the folder free."""
+    second = tmp_path / "second"
+    second.mkdir()
+    with process(tmp_path) as running, client(running.address) as http:
+        bench = http.post("/api/v1/benches", json={"scenario": "first-look"}).json()
+        recording = http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
+        with process(second, "--data", str(tmp_path / "data")) as other:
+            assert other.wait(20) == 2
+        said = (second / "stderr").read_text()
+        assert f"{tmp_path / 'data'} is in use by process {running.pid} on {socket.gethostname()}" in said
+        assert len(said.strip().splitlines()) == 1
+        assert http.get(f"/api/v1/recordings/{recording['id']}").json()["state"] == "recording"
+        running.kill()
+        running.wait(5)
+    with process(tmp_path) as running:
+        assert running.address
+
+
+def test_it_serves_with_its_standard_output_closed(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command = f"exec {sys.executable} -m server.cli serve --port {port} --data {tmp_path / 'data'} >&-"
+    environment = {**os.environ, "COMBBENCH_TOKEN": TOKEN}
+    root = Path(__file__).resolve().parents[2]
+    with (tmp_path / "stderr").open("wb") as errors:
+        running = subprocess.Popen(["sh", "-c", command], cwd=root, env=environment, stderr=errors)
+    try:
+        with httpx.Client(base_url=f"http://127.0.0.1:{port}", trust_env=False) as page:
+            while True:
+                assert running.poll() is None, (tmp_path / "stderr").read_text()
+                with contextlib.suppress(httpx.TransportError):
+                    assert page.get("/health/live").status_code == 200
+                    break
+                time.sleep(0.1)
+        running.terminate()
+        assert running.wait(20) == 0
+    finally:
+        if running.poll() is None:
+            running.kill()
+        running.wait()
+    assert "Traceback" not in (tmp_path / "stderr").read_text()

@@ -72,6 +72,25 @@ def test_every_setting_is_explained_and_the_token_is_not_shown(monkeypatch: pyte
 
 
 @pytest.mark.parametrize(
+    ("address", "shown"),
+    [
+        ("postgresql://user:canary@host:1/name", "postgresql://user:***@host:1/name"),
+        ("postgresql://user:p%40canary@host/name", "postgresql://user:***@host/name"),
+        ("postgresql://host/name?user=user&password=canary", "postgresql://host/name?password=...&user=user"),
+        ("postgresql://user:canary@host/name?sslpassword=canary", "postgresql://user:***@host/name?sslpassword=..."),
+        ("postgresql://user:canary@host:port/name", "***"),
+        ("canary", "***"),
+        ("postgresql://user@host/name", "postgresql://user@host/name"),
+        ("", ""),
+    ],
+)
+def test_the_password_of_the_database_is_not_shown(address: str, shown: str) -> None:
+    settings = load_settings(database_url=address)
+    rows = {row.name: row.value for row in describe_settings(settings)}
+    assert rows["database_url"] == shown and "canary" not in repr(settings)
+
+
+@pytest.mark.parametrize(
     ("host", "loopback"),
     [
         ("127.0.0.1", True),

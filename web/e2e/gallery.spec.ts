@@ -1,4 +1,4 @@
-import { expect, test } from "./lab";
+import { addressOf, expect, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
 test("the gallery filters, runs an experiment headless, and opens it live", async ({ page, server, openBench }) => {
@@ -23,7 +23,7 @@ test("the gallery filters, runs an experiment headless, and opens it live", asyn
   const drawing = card.getByRole("img", { name: /over the run/ });
   await expect.poll(() => drawing.evaluate((img) => (img as HTMLImageElement).naturalWidth)).toBeGreaterThan(0);
   await expect(card.getByRole("row", { name: /correct fraction/ })).toContainText(/≥ 0\.\d+.*0\.9\d+/);
-  const report = await page.request.get(`${server.origin}${await card.getByRole("link").getAttribute("href")}`);
+  const report = await page.request.get(await addressOf(card.getByRole("link")));
   expect(await report.text()).toContain("Expectations");
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 

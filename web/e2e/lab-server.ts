@@ -11,16 +11,19 @@ const START_MS = 120_000;
 export class LabServer {
   /** Address with the token in it. */
   url = "";
-  private readonly port: number;
+  readonly port: number;
+  private readonly settings: Record<string, string>;
   private readonly data = mkdtempSync(join(tmpdir(), "combbench-e2e-"));
   private process: ChildProcess | undefined;
 
-  private constructor(port: number) {
+  private constructor(port: number, settings: Record<string, string>) {
     this.port = port;
+    this.settings = settings;
   }
 
-  static async create(): Promise<LabServer> {
-    const server = new LabServer(await freePort());
+  /** Start one, with settings given as environment variables. */
+  static async create(settings: Record<string, string> = {}): Promise<LabServer> {
+    const server = new LabServer(await freePort(), settings);
     await server.start();
     return server;
   }
@@ -30,14 +33,15 @@ export class LabServer {
   }
 
   async start(): Promise<void> {
-    const child = spawn(COMBBENCH, ["serve", "--port", String(this.port), "--data", this.data]);
+    const env = { ...process.env, ...this.settings };
+    const child = spawn(COMBBENCH, ["serve", "--port", String(this.port), "--data", this.data], { env });
     this.process = child;
     let said = "";
     this.url = await new Promise((resolve, reject) => {
       const timer = setTimeout(() => reject(new Error(`the server did not start:\n${said}`)), START_MS);
       const listen = (chunk: Buffer) => {
         said += chunk.toString();
-        const address = /http:\/\/\S+token=\S+/.exec(said)?.[0];
+        const address = /https?:\/\/\S+token=\S+/.exec(said)?.[0];
         if (!address) return;
         clearTimeout(timer);
         resolve(address);
@@ -77,7 +81,7 @@ export class LabServer {
   }
 }
 
-function freePort(): Promise<number> {
+export function freePort(): Promise<number> {
   return new Promise((resolve, reject) => {
     const probe = createServer();
     probe.once("error", reject);

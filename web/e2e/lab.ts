@@ -1,4 +1,4 @@
-import { test as base, expect, type Page } from "@playwright/test";
+import { test as base, expect, type Locator, type Page } from "@playwright/test";
 import { LabServer } from "./lab-server";
 
 interface LabFixtures {
@@ -38,6 +38,9 @@ export const pictureOf = (page: Page, selector: string): Promise<string> =>
     .locator(selector)
     .first()
     .evaluate((canvas) => (canvas as HTMLCanvasElement).toDataURL());
+
+/** Where a link leads. */
+export const addressOf = (link: Locator): Promise<string> => link.evaluate((a) => (a as HTMLAnchorElement).href);
 
 export const SCOPE_CANVAS = "section[aria-label^='Scope'] canvas";
 

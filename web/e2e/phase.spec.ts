@@ -15,7 +15,7 @@ test("the phase plane moves, and has the unstable region beneath once the plant 
   await expect.poll(() => pictureOf(page, CANVAS)).not.toBe(before);
 
   await panel.getByRole("button", { name: "Use the planar plant" }).click();
-  await expect(panel.getByText(/a slow drive folds at \d+\.\d\d µm and \d+\.\d\d V/)).toBeVisible();
+  await expect(panel.getByText(/a slow drive folds at \d\.\d\d\sµm and \d[\d.]+\sV/)).toBeVisible();
   await expect(panel.getByRole("img", { name: /over the map of the unstable region$/ })).toBeVisible();
   await panel.getByRole("combobox", { name: "Across" }).selectOption("drive.voltage");
   await expect(panel.getByText(/lies beneath a displacement/)).toBeVisible();

@@ -68,11 +68,13 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
   const told = await svgOf(page, lanes);
   expect(told).toEqual(expect.arrayContaining(["probability of each hypothesis, 0 to 1", "time of the device, ms"]));
   expect(told).toEqual(expect.arrayContaining(HYPOTHESES.map(({ name }) => name)));
-  expect(told.some((text) => /^at [\d\s.]+ ms: .*mass/i.test(text))).toBe(true);
+  expect(told.some((text) => /^at [\d\s.]+\sms: .*mass/i.test(text))).toBe(true);
 
   const spectrum = await front("Spectrum");
   await expect(spectrum.getByText(/^Strongest/)).toBeVisible();
-  expect(await svgOf(page, spectrum)).toEqual(expect.arrayContaining(["frequency, kHz", "amplitude, µm"]));
+  expect(await svgOf(page, spectrum)).toEqual(
+    expect.arrayContaining(["frequency, kHz", "amplitude", "1\u00a0µm", "100\u00a0nm"]),
+  );
   const png = await keep(page, spectrum, "PNG");
   expect(png.subarray(1, 4).toString()).toBe("PNG");
   // twice the pixels of the drawing, from the header

@@ -16,7 +16,7 @@ test("diagnosers race on one axis: each with its delay, its place and its score"
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
   await expect(kalman.getByText("m+5", { exact: true })).toBeVisible();
   await expect(imm.getByText("m+5", { exact: true })).toBeVisible();
-  await expect(page.getByText(/^0\.\d\d\sms1st$/).first()).toBeVisible();
+  await expect(page.getByText(/^[\d.]+\s[µm]s1st$/).first()).toBeVisible();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 
   await page.getByRole("combobox", { name: "Diagnosers shown" }).selectOption("imm");

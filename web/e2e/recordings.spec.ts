@@ -37,7 +37,7 @@ test("a bench is recorded with its past, replayed with a loop, compared and dele
   await panel.getByRole("button", { name: "Compare second with another" }).click();
   await panel.getByText("first on first").click();
   await panel.getByRole("button", { name: "Compare", exact: true }).first().click();
-  await expect(panel.getByRole("status")).toHaveText(/^(Pass|Fail): \d+ of \d+ signals within 1 % over 300 ticks/);
+  await expect(panel.getByRole("status")).toHaveText(/^(Pass|Fail): \d+ of \d+ signals within 1\s% over 300\sticks/);
   await panel.getByRole("textbox", { name: "Tolerance" }).fill("0");
   await panel.getByRole("button", { name: "Compare", exact: true }).first().click();
   await expect(panel.getByRole("status")).toHaveText(/^Fail/);

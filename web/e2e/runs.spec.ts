@@ -1,4 +1,4 @@
-import { expect, test } from "./lab";
+import { addressOf, expect, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
 test("a run is started from the page, and its files are offered", async ({ page, server }) => {
@@ -58,9 +58,7 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   await expect(result.getByRole("img", { name: /Receiver operating characteristic/ })).toBeVisible();
   await expect(result.getByRole("img", { name: /Detection delay/ })).toBeVisible();
   await expect(result.getByRole("table").filter({ hasText: "truth down" })).toBeVisible();
-  const report = await page.request.get(
-    `${server.origin}${await result.getByRole("link", { name: "Report" }).getAttribute("href")}`,
-  );
+  const report = await page.request.get(await addressOf(result.getByRole("link", { name: "Report" })));
   expect(await report.text()).toContain("Receiver operating characteristic");
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 });

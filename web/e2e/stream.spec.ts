@@ -99,5 +99,5 @@ test("a trigger holds the picture at an edge", async ({ page, openBench }) => {
   await openBench();
   const scope = page.locator("section[aria-label^='Scope']").first();
   await scope.getByRole("button", { name: "Trigger" }).click();
-  await expect(scope.getByRole("button", { name: /● ↗ 0 V/ })).toBeVisible();
+  await expect(scope.getByRole("button", { name: /● ↗ 0\sV/ })).toBeVisible();
 });

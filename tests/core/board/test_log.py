@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Any
 
-import numpy as np
 import pytest
 
 from core.board.commands import Heal
 from core.board.log import KEPT, Log
 from core.errors import InputError
-from scenarios.run import run
-from scenarios.schema import Scenario
-from tests.lab import RICH, STORY, do, document, fault, make
+from tests.lab import RICH, STORY, do, fault, make
 
 FAST = {"reference.frequency_hz": 2000.0}
 
@@ -70,15 +66,6 @@ def test_the_order_of_the_log_does_not_depend_on_chunks():
         return [(entry.tick, entry.text) for entry in board.log]
 
     assert told(1) == told(300)
-
-
-def test_digest_is_the_hash_of_the_outputs():
-    scenario = Scenario.load({**document({}, RICH), "samples": 1500, "events": [{"at_sample": 9, "switch": "pid"}]})
-    result = run(scenario)
-    assert result.outputs.dtype == np.float64
-    assert result.digest == hashlib.sha256(np.ascontiguousarray(result.outputs).tobytes()).hexdigest()
-    names = [signal.name for signal in result.board.signals if signal.kind == "output"]
-    assert names == result.board.signals.names[: result.outputs.shape[1]]
 
 
 def test_rows_are_the_ticks_asked_for():

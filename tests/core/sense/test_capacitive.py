@@ -54,3 +54,31 @@ def test_noise_has_the_density_asked_for_and_filters_are_told():
     assert board.spec.context().sensor_noise_um == pytest.approx(expected, rel=0.01)
     trace = play(board, TICKS)
     assert np.std(trace["capacitive.error"]) == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize("gap", [1.05, 4.2])
+def test_capacitance_goes_with_one_over_the_gap(gap):
+    r""":math:`C=2n\varepsilon_0tL/g` of each comb; the same noise density on half the slope is twice the noise."""
+    board = make({**QUIET, "sensors.capacitive.gap_um": gap})
+    trace = play(board, 1000)
+    slope = 2 * 87 * 8.8541878128e-12 * 2.0 / gap * 1e9  # fF/um
+    np.testing.assert_allclose(trace["capacitive.sum"], 2 * slope * 40.0, rtol=1e-9)
+    difference = trace["capacitive.positive"] - trace["capacitive.negative"]
+    np.testing.assert_allclose(difference, 2 * slope * trace["plant.displacement"], atol=1e-9)
+    np.testing.assert_allclose(trace["sensor.displacement"], trace["plant.displacement"], atol=1e-12)
+    noisy = make({"sensor.kind": "capacitive", "sensors.capacitive.gap_um": gap})
+    told = 0.1e-3 * math.sqrt(259e3) / (2 * slope)
+    assert noisy.spec.context().sensor_noise_um == pytest.approx(told, rel=1e-9)
+    assert np.std(play(noisy, TICKS)["capacitive.error"]) == pytest.approx(told, rel=0.03)
+
+
+def test_a_wider_gap_feels_less_of_what_is_lateral():
+    """Both combs by integration, at twice the gap."""
+    p = Capacitive.pack(Capacitive.Params(gap_um=4.2), make().spec.context())
+    own = p[0] * squeezed(p, 1.0, 40.0, 0.7, 1e-3)
+
+    def density(xi: float) -> float:
+        eta = 0.7 + 1e-3 * xi
+        return 87 * 8.8541878128e-12 * 2.0 * 1e9 * (1 / (4.2 - eta) + 1 / (4.2 + eta))
+
+    assert own == pytest.approx(quad(density, 126.132, 166.132)[0], rel=1e-6)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter
 
+from core import voltage
 from core.sense import tracker
 from core.sense.tracker import TrackerParams
 from tests.core.sense.bench import errors, lost, make, rms_nm
@@ -80,7 +81,7 @@ def test_rests_unless_needed():
 def test_one_filter_is_the_filter_of_another_library():
     context = make().spec.context()
     p = np.array(tracker.pack_model(TrackerParams(), context))
-    s = np.array(tracker.start(TrackerParams(), context))
+    s = np.array([*tracker.start(TrackerParams(), context), *[0.0] * voltage.STATES])
     device = context.device
     # exact discretisation of x'' = (F u - b x' - k x)/m + f, f' = 0, by the exponential of the augmented matrix
     from scipy.linalg import expm
@@ -99,7 +100,8 @@ def test_one_filter_is_the_filter_of_another_library():
     rng = np.random.default_rng(1)
     for _ in range(200):
         u, z, h, r = rng.normal(0, 3), rng.normal(0, 0.1), rng.normal(0, 0.3), 1e-4
-        tracker.predict(p, 0, s, 0, u)
+        s[tracker.FILTER + voltage.START] = u
+        tracker.predict(p, 0, s, 0, tracker.FILTER)
         other.predict(u=np.array([[u]]))
         residual = z - h * s[tracker.X]
         log = tracker.correct(s, 0, residual, h, r)

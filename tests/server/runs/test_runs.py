@@ -7,6 +7,8 @@ import json
 import os
 import signal
 import statistics
+import subprocess
+import sys
 import time
 from typing import Any
 
@@ -15,7 +17,7 @@ import pytest
 
 from scenarios.edit import with_values
 from scenarios.library import get
-from scenarios.run import run
+from scenarios.run import build, run, run_bytes
 from scenarios.seeds import run_seeds
 from server.store.models import RunRow
 
@@ -100,7 +102,7 @@ def cancel(live: Any, run_id: str) -> dict[str, Any]:
 
 
 def test_the_queue_is_bounded_and_any_run_can_be_cancelled(serve: Any) -> None:
-    with serve(max_queued_runs=3) as live:
+    with serve(max_queued_runs=3, max_run_mb=4000) as live:
         ids = [live.http.post("/api/v1/runs", json=long_run(number)).json()["id"] for number in range(3)]
         refused = live.http.post("/api/v1/runs", json=long_run(9))
         assert refused.status_code == 429 and refused.json()["error"]["code"] == "too_many_runs"
@@ -115,7 +117,7 @@ def test_the_queue_is_bounded_and_any_run_can_be_cancelled(serve: Any) -> None:
         status = live.get(bench["id"])
         assert status["state"] == "running" and status["tick"] > 0
     # The server has gone while one was under way: it begins again, and what was cancelled stays so.
-    with serve() as live:
+    with serve(max_run_mb=4000) as live:
         states = {found["id"]: found["state"] for found in live.http.get("/api/v1/runs").json()["runs"]}
         assert states[ids[0]] == states[ids[2]] == "cancelled"
         assert states[ids[1]] in ("queued", "running")
@@ -126,7 +128,7 @@ def test_the_queue_is_bounded_and_any_run_can_be_cancelled(serve: Any) -> None:
 
 def test_a_trace_without_room_for_taps_holds_the_outputs(serve: Any) -> None:
     body = {"scenario": "ch5-seven-step", "set": {"samples": 1500}}
-    with serve(max_run_mb=1) as live:
+    with serve(max_run_mb=401) as live:
         found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
         assert found["state"] == "done", found["error"]
         assert found["summary"]["digest"] == run(with_values(get("ch5-seven-step"), body["set"])).digest
@@ -188,7 +190,7 @@ def kill_workers(live: Any, killed: set[int]) -> set[int]:
 
 
 def test_a_run_whose_worker_dies_begins_again_but_not_for_ever(serve: Any) -> None:
-    with serve() as live:
+    with serve(max_run_mb=4000) as live:
         run_id = live.http.post("/api/v1/runs", json=long_run()).json()["id"]
         killed: set[int] = set()
         for _ in range(3):
@@ -218,3 +220,20 @@ def test_a_study_is_a_run_too(live: Any) -> None:
     for name in few["study.signals"]:
         assert 0.5 < metrics[f"roc.{name}.area"] <= 1.0 and metrics[f"detectors.{name}.missed"] <= 1.0
     assert metrics["detectors.glr100.tone.healthy.delay"] > 0
+
+
+def test_a_run_takes_no_more_memory_than_is_reckoned_with(tmp_path: Any) -> None:
+    """The largest resident size of a process of its own, trace, report and Parquet included."""
+    scenario = with_values(get("ch5-seven-step"), {"samples": 150_000})
+    program = (
+        "import json, re, sys; from server.runs.worker import work; "
+        "work(json.loads(sys.argv[1]), [1], sys.argv[2], 10**10); "
+        # not ru_maxrss, which begins with the size of the process that started this one
+        "print(1024 * int(re.search(r'VmHWM:\\s+(\\d+)', open('/proc/self/status').read())[1]))"
+    )
+    arguments = [sys.executable, "-c", program, json.dumps(scenario.document, default=str), str(tmp_path)]
+    peak = int(subprocess.run(arguments, capture_output=True, text=True, check=True).stdout)
+    board = build(scenario)
+    kept = 8 * 150_000 * len(board.signals)
+    assert kept < peak < run_bytes(board, 150_000, taps=True)
+    assert len(pq.read_schema(tmp_path / "run.parquet").names) == len(board.signals) + 2

@@ -24,7 +24,7 @@ CAMPAIGN = {
     "schema": 1,
     "id": "survivor",
     "scenario": "ch5-seven-step",
-    "set": {"samples": 30_000},
+    "set": {"samples": 60_000},
     "seeds": {"count": RUNS // 2},
     "grid": {"sensor.noise_um": [0.05, 0.1]},
 }

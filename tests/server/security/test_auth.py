@@ -8,6 +8,8 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
+from server.stream.wire import SUBPROTOCOL
+
 OPEN = {
     "/health/live": "a container's health check has no token, and it tells only which parts are well",
     "/health/ready": "the same",
@@ -60,15 +62,17 @@ def test_the_refusal_tells_a_person_how_to_get_in(live: Any) -> None:
 
 
 @pytest.mark.parametrize("path", ["/api/v1/benches/x/stream", "/benches/x/3d", "/nothing"])
-@pytest.mark.parametrize("headers", [{}, {"Authorization": "Bearer wrong"}, {"Cookie": "combbench=wrong"}])
+@pytest.mark.parametrize("headers", [{}, {"Authorization": "Bearer wrong"}, {"Cookie": "{cookie}=wrong"}])
 def test_every_socket_refuses_a_stranger(live: Any, path: str, headers: dict[str, str]) -> None:
+    cookie = live.app.state.identity.cookie_name
+    headers = {name: value.format(cookie=cookie) for name, value in headers.items()}
     url = live.address.replace("http", "ws") + path
     with (
         connect(
             url,
             origin=live.address,
             additional_headers=headers,
-            subprotocols=["combbench.v1"],  # type: ignore[list-item]
+            subprotocols=[SUBPROTOCOL],  # type: ignore[list-item]
             proxy=None,
         ) as socket,
         pytest.raises(ConnectionClosed) as caught,
@@ -90,6 +94,23 @@ def test_the_token_in_the_address_is_exchanged_for_a_cookie(live: Any) -> None:
         assert browser.post("/api/v1/benches", json={"scenario": "x"}).status_code == 403
         same = {"Origin": live.address}
         assert browser.post("/api/v1/benches", json={"scenario": "x"}, headers=same).status_code == 422
+
+
+def test_the_token_leaves_the_address_of_who_is_known_already_too(live: Any) -> None:
+    link = f"/?bench=x&token={live.app.state.identity.token}"
+    with live.anonymous() as browser:
+        for _ in range(2):
+            answer = browser.get(link)
+            assert (answer.status_code, answer.headers["location"]) == (303, "/?bench=x")
+
+
+def test_two_benches_on_one_host_do_not_log_each_other_out(live: Any, serve: Any) -> None:
+    """A browser sends the cookies of a host to all its ports."""
+    with serve(token="another-token-for-the-tests") as other, live.anonymous() as browser:
+        for bench in (live, other, live):
+            browser.get(f"{bench.address}/?token={bench.app.state.identity.token}")
+        assert [browser.get(f"{bench.address}/api/v1/benches").status_code for bench in (live, other)] == [200, 200]
+        assert len(browser.cookies) == 2
 
 
 def test_a_link_on_another_site_gets_in_by_a_page_of_ours(live: Any) -> None:

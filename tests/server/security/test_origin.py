@@ -92,7 +92,8 @@ def test_a_program_with_the_token_needs_no_origin_and_a_cookie_does(live: Any) -
     bench = live.bench(paused=True)
     with live.stream(bench["id"], origin=None) as stream:
         assert stream.step()["type"] == "hello"
-    cookie = {"Cookie": f"combbench={live.app.state.identity.cookie}"}
+    identity = live.app.state.identity
+    cookie = {"Cookie": f"{identity.cookie_name}={identity.cookie}"}
     with pytest.raises(InvalidStatus), live.stream(bench["id"], origin=None, additional_headers=cookie):
         pass
     with live.stream(bench["id"], origin=live.address, additional_headers=cookie) as stream:

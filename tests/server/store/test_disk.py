@@ -21,10 +21,8 @@ def broken_off(live: Any, bench: dict[str, Any], recording_id: str) -> dict[str,
     """The recording once it has broken off, after the alarm was seen on the stream and the bench went on."""
     with live.stream(bench["id"]) as stream:
         stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
-        event = stream.until(
-            lambda m: isinstance(m, dict) and m["type"] == "event" and m["event"]["kind"] == "recording_failed", 30
-        )
-        assert "the disk failed" in event["event"]["text"]
+        event = stream.until_event(kind="recording_failed", timeout=30)
+        assert "the disk failed" in event["text"]
         tick = live.get(bench["id"])["tick"]
         stream.frames.clear()
         stream.until_frame(1)
@@ -54,7 +52,7 @@ def test_a_recording_ends_while_there_is_room_to_make_it_whole(serve: Any, monke
         until(lambda: live.service.recordings.path(started["id"]).with_suffix(".arrows").stat().st_size > 100_000)
         now[0] = 1.5e8
         found = broken_off(live, bench, started["id"])
-        assert found["state"] == "done" and "150 MB are free" in found["reason"]
+        assert found["state"] == "cut_short" and "150 MB are free" in found["reason"]
         is_whole(live, found)
         headless = {"scenario": "first-look"}
         for path, body in (
@@ -112,7 +110,7 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
         bench = live.bench("first-look", time_scale=0.02)
         started = live.http.post(recordings(bench)).json()
         found = broken_off(live, bench, started["id"])
-        assert found["state"] == "done" and "File too large" in found["reason"]
+        assert found["state"] == "cut_short" and "File too large" in found["reason"]
         is_whole(live, found)
         run = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", "set": {"samples": 9000}}).json()
         ended = until(lambda: (one := live.http.get(f"/api/v1/runs/{run['id']}").json())["finished"] and one, 60)
@@ -120,6 +118,9 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
         assert live.get(bench["id"])["state"] == "running"
         again = live.http.post(recordings(bench), json={"past_ticks": 100, "ticks": 0}).json()
         assert (again["state"], again["ticks"]) == ("done", 100)
+        live.command(bench["id"], "step", ticks=10_000)
+        refused = live.http.get(f"/api/v1/benches/{bench['id']}/trace?format=csv")
+        assert refused.status_code == 507 and refused.json()["error"]["code"] == "no_space", refused.text[:500]
 
 
 def test_on_a_full_disk_a_recording_can_be_deleted(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:

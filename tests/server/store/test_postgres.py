@@ -9,6 +9,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from core.errors import InputError
 from server.store.database import Database
 from server.store.models import ResultRow, RunRow
 from server.store.results import Results
@@ -30,6 +33,22 @@ def test_results_are_put_once(place: Any) -> None:
     found = dict(results.outcomes(keys))
     assert len(found) == 1200 and found["0" * 64] == {"seed": 0}
     database.close()
+
+
+def test_a_database_serves_one_server_at_a_time(postgres_server: str, tmp_path: Path) -> None:
+    address = new_database(postgres_server, "claimed")
+    first, second = Database(address), Database(address)
+    first.claim()
+    environment = os.environ | {"COMBBENCH_DATABASE_URL": address, "COMBBENCH_PORT": "0"}
+    command = [sys.executable, "-m", "server.cli", "serve", "--data", str(tmp_path)]
+    told = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert told.returncode == 2
+    assert "database_url: the database is in use by another server" in told.stderr.splitlines()[-1]
+    with pytest.raises(InputError, match="another server"):
+        second.claim()
+    first.close()
+    second.claim()
+    second.close()
 
 
 def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: str, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as stn
 
-from server.stream.codec import PanelFrame, decode, encode
+from server.stream.codec import Moment, PanelFrame, Picture, decode, encode
+
+NOW = Moment(1000, 0.01, 77.5)
+
+
+def joined(*given: Any) -> bytes:
+    return b"".join(encode(*given))
+
 
 floats = st.floats(width=32, allow_nan=True, allow_infinity=True)
 
@@ -34,8 +42,9 @@ def panels(draw: st.DrawFn) -> PanelFrame:
 def test_a_frame_decodes_to_what_was_encoded(
     given_panels: list[PanelFrame], number: int, running: bool, head: int
 ) -> None:
-    frame = decode(encode(number, running, head, 0.01, given_panels))
-    assert (frame.frame, frame.running, frame.head, frame.dt_ms) == (number, running, head, 0.01)
+    shown = [(one.panel, one.revision, one) for one in given_panels]
+    frame = decode(joined(number, running, Moment(head, 0.01, 12.5), shown))
+    assert (frame.frame, frame.running, frame.head, frame.dt_ms, frame.cut_s) == (number, running, head, 0.01, 12.5)
     for found, meant in zip(frame.panels, given_panels, strict=True):
         assert (found.panel, found.start, found.end, found.flags) == (
             meant.panel,
@@ -53,26 +62,26 @@ def test_the_layout_is_the_one_agreed_on() -> None:
     """Offsets written out by hand, as the page has them."""
     columns = np.arange(12, dtype=np.float32).reshape(3, 2, 2)
     latest = np.array([1.5, 2.5, 3.5], np.float32)
-    data = encode(7, True, 1000, 0.01, [PanelFrame(4, 10, 20, 12.5, 3, 1, columns, latest)])
+    data = joined(7, True, NOW, [(4, 3, Picture(10, 20, 12.5, 1, columns, latest))])
     assert len(data) % 8 == 0
-    assert struct.unpack_from("<BBHIdd", data, 0) == (1, 1, 1, 7, 1000.0, 0.01)
-    assert struct.unpack_from("<HHI", data, 24) == (4, 3, 2)
-    assert struct.unpack_from("<dddd", data, 32) == (10.0, 20.0, 12.5, 3.0)
-    assert struct.unpack_from("<II", data, 64) == (1, 0)
-    assert np.frombuffer(data, "<f4", 12, 72).tolist() == list(range(12))
-    assert np.frombuffer(data, "<f4", 3, 72 + 48).tolist() == [1.5, 2.5, 3.5]
-    assert len(data) == 72 + 48 + 16
+    assert struct.unpack_from("<BBHIddd", data, 0) == (2, 1, 1, 7, 1000.0, 0.01, 77.5)
+    assert struct.unpack_from("<HHI", data, 32) == (4, 3, 2)
+    assert struct.unpack_from("<dddd", data, 40) == (10.0, 20.0, 12.5, 3.0)
+    assert struct.unpack_from("<II", data, 72) == (1, 0)
+    assert np.frombuffer(data, "<f4", 12, 80).tolist() == list(range(12))
+    assert np.frombuffer(data, "<f4", 3, 80 + 48).tolist() == [1.5, 2.5, 3.5]
+    assert len(data) == 80 + 48 + 16
 
 
-@pytest.mark.parametrize("cut", [0, 10, 23])
+@pytest.mark.parametrize("cut", [0, 10, 31])
 def test_a_cut_header_is_refused(cut: int) -> None:
     with pytest.raises(ValueError, match="shorter"):
-        decode(encode(1, False, 0, 1.0, [])[:cut])
+        decode(joined(1, False, NOW, [])[:cut])
 
 
 def test_another_version_and_left_over_bytes_are_refused() -> None:
-    data = encode(1, False, 0, 1.0, [])
-    with pytest.raises(ValueError, match="version 2"):
-        decode(b"\x02" + data[1:])
+    data = joined(1, False, NOW, [])
+    with pytest.raises(ValueError, match="version 3"):
+        decode(b"\x03" + data[1:])
     with pytest.raises(ValueError, match="left over"):
         decode(data + b"\0")

@@ -38,7 +38,7 @@ def test_a_stream_that_breaks_off_says_so(
     bench = live.bench()
     with live.stream(bench["id"]) as stream:
         stream.step()
-        monkeypatch.setattr(Client, "_send_status", broken)
+        monkeypatch.setattr(Client, "_status", broken)
         with pytest.raises(ConnectionClosed) as caught:
             stream.drain(5)
     assert caught.value.rcvd is not None and caught.value.rcvd.code == 1011

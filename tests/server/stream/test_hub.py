@@ -1,8 +1,10 @@
-"""What pages are shown of a bench that stops: its last tick, whenever in a frame it stops."""
+"""When pages are shown something, and what they share."""
 
 from __future__ import annotations
 
 import asyncio
+import json
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -13,78 +15,248 @@ from server.bench.commands import parse
 from server.bench.session import Session
 from server.metrics import Metrics
 from server.settings import Settings
+from server.stream import client as client_module
 from server.stream.client import Client
+from server.stream.codec import Frame, decode
 from server.stream.hub import Hub
 from server.stream.panel import Panel
+from server.stream.room import PAGES_AT_ONCE, STATUS_S
 from server.stream.wire import Subscribe
 
 
-class Socket:
-    """A socket that keeps what is sent, and may hang."""
+class Line:
+    """A line that keeps what is written, and may be full."""
 
     def __init__(self) -> None:
-        self.frames: list[bytes] = []
-        self.goes_on = asyncio.Event()
-        self.goes_on.set()
+        self.is_free = True
+        self.written: list[bytes] = []
+        self.waiting = self.passed_on = 0
 
-    async def send_text(self, _: str) -> None:
-        await self.goes_on.wait()
+    def write(self, data: bytes) -> None:
+        self.written.append(data)
 
-    async def send_bytes(self, data: bytes) -> None:
-        self.frames.append(data)
+    def messages(self) -> list[Any]:
+        """Read what was written, frame by frame of RFC 6455."""
+        data, found = b"".join(self.written), []
+        self.written = []
+        while data:
+            length, at = data[1], 2
+            if length == 126:
+                length, at = int.from_bytes(data[2:4]), 4
+            elif length == 127:
+                length, at = int.from_bytes(data[2:10]), 10
+            body, text = data[at : at + length], data[0] == 0x81
+            found.append(json.loads(body) if text else decode(body))
+            data = data[at + length :]
+        return found
 
-
-@pytest.fixture
-def watched() -> tuple[Hub, Session, Client]:
-    session = Session(get("first-look"), build(get("first-look")), None, 20_000, Metrics(), lambda: 0.0)
-    session.begin(True)
-    hub = Hub(Settings(), Metrics(), dict)
-    cuts: Any = hub.cuts(session)
-    client = Client(Socket(), session, Metrics(), hub.describe, cuts, 0)  # type: ignore[arg-type]
-    wanted = Subscribe(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0, width=100)
-    client.panels[1] = Panel(wanted, session.indices(["plant.displacement"]), None, 1, session.dt_ms, 0)
-    hub.add(client)
-    return hub, session, client
-
-
-def test_the_end_is_offered_although_no_frame_is_due(watched: tuple[Hub, Session, Client]) -> None:
-    hub, session, client = watched
-    session.slice(100)
-    hub.publish()
-    assert client._wants_frame
-    client._wants_frame = False
-    session.slice(137)
-    hub.publish()
-    assert not client._wants_frame  # its time has not come, and another round will
-    session.execute(parse({"kind": "pause"}), "test")
-    hub.publish()
-    assert client._wants_frame and client._cuts.end_tick == session.board.tick == 137
-    client._wants_frame = False
-    hub.publish()
-    assert not client._wants_frame  # once is enough
+    def frames(self) -> list[Frame]:
+        return [message for message in self.messages() if isinstance(message, Frame)]
 
 
-def test_the_end_is_sent_although_the_line_was_busy_when_it_was_offered(
-    watched: tuple[Hub, Session, Client],
-) -> None:
-    hub, session, client = watched
+class Bench:
+    """A bench with pages, all in this thread."""
+
+    def __init__(self) -> None:
+        scenario = get("first-look")
+        self.session = Session(scenario, build(scenario), None, 20_000, Metrics(), lambda: 0.0)
+        self.session.begin(True)
+        self.hub = Hub(Settings(), Metrics(), dict)
+
+    def page(self, **fields: Any) -> tuple[Client, Any]:
+        """Let a page watch, and say that all before is known to it."""
+        line: Any = Line()
+        room = self.hub.room(self.session)
+        client = Client(line, self.session, Metrics().sent, room.news, room.cuts, self.session.events.last)
+        told = {"signals": ["plant.displacement"], "window_ms": 1.0, "width": 100}
+        wanted = Subscribe(type="subscribe", panel=1, **{**told, **fields})
+        client.panels[1] = Panel(room.cuts.view(wanted, self.session.indices(wanted.signals), None), 1)
+        self.hub.add(client)
+        return client, line
+
+
+def on_loop(test: Callable[[], Any]) -> None:
+    asyncio.run(test())
+
+
+def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same() -> None:
+    async def play() -> None:
+        bench = Bench()
+        _, line = bench.page()
+        bench.session.slice(100)
+        bench.hub.publish()
+        assert [frame.head for frame in line.frames()] == [100]
+        bench.session.slice(120)
+        bench.hub.publish()
+        bench.session.slice(137)
+        bench.session.execute(parse({"kind": "pause"}), "test")
+        bench.hub.publish()
+        assert not line.written  # its time has not come, and no later round of the engine will say so
+        await asyncio.sleep(0.1)
+        said = line.messages()
+        assert [m.head for m in said if isinstance(m, Frame)] == [bench.session.board.tick] == [137]
+        assert [e["kind"] for m in said if isinstance(m, dict) and m["type"] == "events" for e in m["events"]] == [
+            "pause"
+        ]
+        bench.hub.publish()
+        await asyncio.sleep(0.1)
+        assert not line.frames()  # once is enough
+
+    on_loop(play)
+
+
+def test_all_that_is_due_goes_out_in_one_write() -> None:
+    async def play() -> None:
+        bench = Bench()
+        _, line = bench.page()
+        bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+        bench.session.slice(100)
+        bench.hub.publish()
+        assert len(line.written) == 1
+        kinds = [message["type"] if isinstance(message, dict) else "frame" for message in line.messages()]
+        assert kinds == ["events", "status", "frame"]
+
+    on_loop(play)
+
+
+def test_what_many_pages_see_is_made_once() -> None:
+    async def play() -> None:
+        bench = Bench()
+        pages = [bench.page() for _ in range(3)]
+        other, _ = bench.page(width=50)
+        assert len({id(client.panels[1].view) for client, _ in pages}) == 1
+        assert other.panels[1].view is not pages[0][0].panels[1].view
+        bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+        bench.session.slice(100)
+        bench.hub.publish()
+        assert len({bytes(line.written[0]) for _, line in pages}) == 1
+        room = bench.hub.room(bench.session)
+        news = room.news
+        assert news.events(0) is news.events(0)
+        assert news.status(0, 0) is news.status(0, 0)
+        assert news.status(0, 3) != news.status(0, 0)
+
+    on_loop(play)
+
+
+def test_parameters_are_told_when_they_have_changed() -> None:
+    async def play() -> None:
+        bench = Bench()
+        client, line = bench.page()
+
+        def told() -> list[bool]:
+            client.offer(status=True)
+            return [m["parameters"] is not None for m in line.messages() if m["type"] == "status"]
+
+        assert [told(), told()] == [[True], [False]]
+        bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+        assert told() == [False]  # an event, but nothing of the scenario
+        bench.session.execute(parse({"kind": "set", "values": {"reference.amplitude_v": 3.0}}), "test")
+        assert [told(), told()] == [[True], [False]]
+
+    on_loop(play)
+
+
+def test_many_events_bring_the_status_now_and_then() -> None:
+    async def play() -> None:
+        bench = Bench()
+        _, line = bench.page()
+        room = bench.hub.room(bench.session)
+        said: list[Any] = []
+        for number in range(100):
+            bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+            list(room.publish(1e6 + 0.01 * number))
+            said += [message for message in line.messages() if isinstance(message, dict)]
+        seen = [event["seq"] for m in said if m["type"] == "events" for event in m["events"]]
+        assert len(seen) == 100 and seen == list(range(seen[0], seen[0] + 100))
+        statuses = sum(m["type"] == "status" for m in said)
+        assert 100 * 0.01 / STATUS_S <= statuses + 1 <= 100 * 0.01 / STATUS_S + 2
+
+    on_loop(play)
+
+
+def test_a_full_line_is_left_alone_until_it_has_drained() -> None:
+    async def play() -> None:
+        bench = Bench()
+        client, line = bench.page()
+        line.is_free = False
+        bench.session.slice(137)
+        bench.session.execute(parse({"kind": "pause"}), "test")
+        bench.hub.publish()
+        assert not line.written
+        line.is_free = True
+        client.flush()
+        assert [frame.head for frame in line.frames()] == [137]
+
+    on_loop(play)
+
+
+def test_words_are_not_taken_for_deeds() -> None:
+    """A page that acknowledges all there is, while nothing leaves for it, is let go like one that says nothing."""
 
     async def play() -> None:
-        socket: Any = client.socket
-        sender = asyncio.create_task(client.run())
-        socket.goes_on.clear()
-        client.offer_status()  # hangs
-        await asyncio.sleep(0)
-        await asyncio.sleep(0)
-        session.slice(137)
-        session.execute(parse({"kind": "pause"}), "test")
-        hub.publish()
-        assert not socket.frames
-        socket.goes_on.set()
-        for _ in range(20):
-            await asyncio.sleep(0)
-        assert len(socket.frames) == 1
-        client.close(1000, "")
-        await sender
+        bench = Bench()
+        client, line = bench.page()
+        bench.session.slice(100)
+        bench.hub.publish()
+        line.waiting, now = 10_000, client._moved_at
+        for step in range(60):
+            client.acknowledge(10)
+            assert client.stalled(now + 0.1 * step) == (0.1 * step > client_module.STALL_S)
+        line.passed_on += 1
+        assert not client.stalled(now + 6.1)
 
-    asyncio.run(play())
+    on_loop(play)
+
+
+@pytest.mark.parametrize("hurt", ["_events", "_status", "_picture"])
+def test_one_broken_stream_does_not_harm_the_others(hurt: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def play() -> None:
+        bench = Bench()
+        bad, _ = bench.page()
+        _, line = bench.page()
+        monkeypatch.setattr(bad, hurt, lambda: 1 / 0)
+        bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+        bench.session.slice(100)
+        bench.hub.publish()
+        assert bad.closing is not None and bad.closing[0] == 1011
+        assert len(line.frames()) == 1
+
+    on_loop(play)
+
+
+def test_many_pages_are_served_with_breaks_and_each_once() -> None:
+    """The loop may do other things meanwhile; the next picture begins when all have this one."""
+
+    async def play() -> None:
+        bench = Bench()
+        pages = [bench.page() for _ in range(3 * PAGES_AT_ONCE)]
+        bench.session.slice(100)
+        bench.hub.publish()
+        assert sum(bool(line.written) for _, line in pages) == PAGES_AT_ONCE
+        bench.session.slice(200)
+        bench.hub.publish()
+        await asyncio.sleep(0)
+        assert sum(bool(line.written) for _, line in pages) == 2 * PAGES_AT_ONCE
+        await asyncio.sleep(0.1)
+        heads = {tuple(frame.head for frame in line.frames()) for _, line in pages}
+        assert heads == {(100, 200)}
+
+    on_loop(play)
+
+
+def test_a_bench_that_cannot_be_shown_does_not_end_the_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def play() -> None:
+        bench = Bench()
+        _, line = bench.page()
+        room = bench.hub.room(bench.session)
+        with monkeypatch.context() as patched:
+            patched.setattr(room.cuts, "refresh", lambda: 1 / 0)
+            bench.session.slice(100)
+            bench.hub.publish()
+        assert not line.written
+        await asyncio.sleep(0.1)
+        bench.hub.publish()
+        assert [frame.head for frame in line.frames()] == [100]
+
+    on_loop(play)

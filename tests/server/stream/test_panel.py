@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from core.board.history import History
 from core.board.rows import Rows
-from server.stream.codec import FROZEN, TRIGGERED, WAITING
-from server.stream.panel import Panel, Span
+from server.stream.codec import FROZEN, TRIGGERED, WAITING, Picture
+from server.stream.panel import Panel
+from server.stream.view import Span, View
 from server.stream.wire import Subscribe, TriggerSpec
 
 DT = 0.01
@@ -25,9 +26,23 @@ def fill(history: History, values: np.ndarray[Any, Any]) -> None:
         history.append(Rows.of(history.end_tick, np.hstack([part, -part]), part.shape[1]))
 
 
+class Cuts:
+    """A history at its present moment, as a bench's cuts have it."""
+
+    def __init__(self, history: History) -> None:
+        self._history = history
+
+    def picture(self, view: View) -> Picture:
+        return view.picture(self._history)
+
+
+def picture_of(one: Panel, history: History) -> Picture | None:
+    return one.picture(Cuts(history))  # type: ignore[arg-type]
+
+
 def panel(head: int = 0, **fields: Any) -> Panel:
     spec = Subscribe(**{"type": "subscribe", "panel": 1, "signals": ["a"], "window_ms": 1.0, **fields})
-    return Panel(spec, [0], 0 if spec.trigger else None, 1, DT, head)
+    return Panel(View(spec, [0], 0 if spec.trigger else None, DT, head), 1)
 
 
 @given(st.integers(0, 10**6), st.integers(2, 10**5), st.integers(1, 4096))
@@ -55,9 +70,9 @@ def test_a_rolling_picture_keeps_its_columns_while_it_moves() -> None:
     rng = np.random.default_rng(1)
     fill(history, rng.normal(size=1003))
     rolling = panel(window_ms=8.0, width=100)
-    first = rolling.picture(history)
+    first = picture_of(rolling, history)
     fill(history, rng.normal(size=9))
-    second = rolling.picture(history)
+    second = picture_of(rolling, history)
     assert first is not None and second is not None
     step = (first.end - first.start) / first.columns.shape[2]
     moved = round((second.start - first.start) / step)
@@ -71,7 +86,7 @@ def test_a_spike_of_one_tick_is_never_lost() -> None:
     values = np.zeros(100_000)
     values[77_777] = 5.0
     fill(history, values)
-    picture = panel(window_ms=1000.0, width=100).picture(history)
+    picture = picture_of(panel(window_ms=1000.0, width=100), history)
     assert picture is not None
     assert np.nanmax(picture.columns[0, 1]) == 5.0
 
@@ -81,36 +96,36 @@ def test_the_same_picture_is_not_sent_twice() -> None:
     fill(history, np.zeros(50))
     for kind in ({"mode": "roll"}, {"mode": "frozen", "start_tick": 0, "end_tick": 40}):
         one = panel(**kind)
-        assert one.picture(history) is not None
-        assert one.picture(history) is None
+        assert picture_of(one, history) is not None
+        assert picture_of(one, history) is None
 
 
 def test_a_frozen_picture_follows_until_its_end_is_reached() -> None:
     history = History(1, 1, 20_000)
     fill(history, np.zeros(50))
     frozen = panel(mode="frozen", start_tick=20, end_tick=80, width=60)
-    first = frozen.picture(history)
+    first = picture_of(frozen, history)
     assert first is not None and first.flags == FROZEN
     assert np.isnan(first.columns[0, 0]).sum() == 30
     fill(history, np.ones(50))
-    second = frozen.picture(history)
+    second = picture_of(frozen, history)
     assert second is not None and not np.isnan(second.columns).any()
     fill(history, np.ones(50))
-    assert frozen.picture(history) is None
+    assert picture_of(frozen, history) is None
 
 
 def test_a_bench_that_goes_back_in_time_is_shown_again() -> None:
     history = History(1, 1, 20_000)
     fill(history, sine(1000))
     auto, rolling = triggered("auto", head=1000), panel()
-    assert auto.picture(history) and rolling.picture(history)
+    assert picture_of(auto, history) and picture_of(rolling, history)
     history.end_tick = 300
     fill(history, sine(310)[300:])
     for one in (auto, rolling):
-        again = one.picture(history)
+        again = picture_of(one, history)
         assert again is not None and again.end <= 310
     fill(history, sine(500)[310:])
-    later = auto.picture(history)
+    later = picture_of(auto, history)
     assert later is not None and later.flags == TRIGGERED and 310 < later.trigger < 500
 
 
@@ -131,7 +146,7 @@ def test_a_triggered_picture_stands_still_at_any_moment() -> None:
     for piece in (7, 33, 80, 1, 1, 1, 200):
         data = sine(history.end_tick + piece)[history.end_tick :]
         fill(history, data)
-        picture = auto.picture(history)
+        picture = picture_of(auto, history)
         if picture is None:
             continue
         assert picture.flags == TRIGGERED
@@ -146,7 +161,7 @@ def test_a_triggered_picture_stands_still_at_any_moment() -> None:
 def test_normal_waits_and_auto_rolls_when_nothing_triggers() -> None:
     history = History(1, 1, 20_000)
     fill(history, np.ones(500))
-    waiting, rolling = triggered("normal").picture(history), triggered("auto").picture(history)
+    waiting, rolling = picture_of(triggered("normal"), history), picture_of(triggered("auto"), history)
     assert waiting is not None and waiting.flags == WAITING and np.isnan(waiting.columns).all()
     assert rolling is not None and rolling.flags == WAITING and not np.isnan(rolling.columns).all()
 
@@ -156,20 +171,38 @@ def test_normal_keeps_the_last_picture_and_single_the_first() -> None:
     fill(history, np.zeros(100) - 1)
     normal, single = triggered("normal", head=100), triggered("single", head=100)
     fill(history, sine(200))
-    shown = normal.picture(history)
+    shown = picture_of(normal, history)
     assert shown is not None and shown.flags == TRIGGERED and shown.trigger > 200
-    first = single.picture(history)
+    first = picture_of(single, history)
     assert first is not None and first.flags == TRIGGERED
     assert first.trigger == pytest.approx(100.5, abs=0.6)
     fill(history, sine(400))
-    assert single.picture(history) is None
-    single.rearm(history.end_tick)
-    armed = single.picture(history)
+    assert picture_of(single, history) is None
+    single.view.rearm(history.end_tick)
+    armed = picture_of(single, history)
     assert armed is not None and armed.flags == TRIGGERED | WAITING
     assert armed.trigger == first.trigger
     fill(history, sine(200))
-    again = single.picture(history)
+    again = picture_of(single, history)
     assert again is not None and again.flags == TRIGGERED and again.trigger > 700
     fill(history, np.ones(400))
-    late = normal.picture(history)
+    late = picture_of(normal, history)
     assert late is not None and late.flags & WAITING and not np.isnan(late.columns).all()
+
+
+def test_pages_that_show_the_same_share_one_picture() -> None:
+    history = History(1, 1, 20_000)
+    fill(history, sine(500))
+    spec = Subscribe(type="subscribe", panel=1, signals=["a"], window_ms=1.0)
+    view = View(spec, [0], None, DT, 0)
+    first, second = Panel(view, 1), Panel(view, 3)
+    shown = picture_of(first, history)
+    assert shown is not None and picture_of(second, history) is shown
+    assert picture_of(first, history) is None
+    fill(history, sine(510)[500:])
+    again = picture_of(second, history)
+    assert again is not None and again is not shown
+    view.forget()
+    other = picture_of(second, history)
+    assert other is not None and other is not again
+    np.testing.assert_array_equal(other.columns, again.columns)

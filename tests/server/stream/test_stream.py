@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import socket
 import threading
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from server.api import stream as stream_module
 from server.stream import client as client_module
 
 
@@ -19,14 +21,14 @@ def test_it_says_hello_with_the_bench(live: Any) -> None:
     bench = live.bench()
     with live.stream(bench["id"]) as stream:
         hello = stream.step()
-        assert hello["type"] == "hello" and hello["wire"] == 1
+        assert hello["type"] == "hello" and hello["wire"] == 2
         assert hello["server"] == live.service.id
         assert hello["bench"]["id"] == bench["id"]
         assert {s["name"] for s in hello["bench"]["signals"]} >= {"plant.displacement", "drive.voltage"}
         assert hello["last_event"] == hello["bench"]["last_event"]
 
 
-@pytest.mark.parametrize("offered", [None, ["combbench.v0"], ["other"]])
+@pytest.mark.parametrize("offered", [None, ["combbench.v1"], ["other"]])
 def test_another_version_is_told_to_reload(live: Any, offered: list[str] | None) -> None:
     bench = live.bench()
     with live.stream(bench["id"], subprotocols=offered) as stream, pytest.raises(ConnectionClosed) as caught:
@@ -184,22 +186,50 @@ def test_a_server_that_stood_still_does_not_blame_its_pages(live: Any, monkeypat
         assert live.service.hub.watchers(bench["id"]) == 1
 
 
-def test_a_page_that_reads_nothing_at_all_is_cut_off(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Not even the close gets through to it; its line is cut, and nothing of it stays."""
+def deaf(live: Any) -> dict[str, Any]:
+    """Options of a connection that never reads, on a socket with little room."""
+    sock = socket.socket()
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    sock.connect(("127.0.0.1", int(live.address.rpartition(":")[2])))
+    return {"sock": sock, "max_queue": 1, "close_timeout": 0.5}
+
+
+def test_a_page_that_acknowledges_and_never_reads_is_cut_off(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its word for it keeps no stream open: not even the close gets through, its line is cut, and nothing stays."""
     monkeypatch.setattr(client_module, "STALL_S", 1.0)
-    monkeypatch.setattr(client_module, "WINDOW", 10**9)  # so that the socket itself fills up
     names = [signal["name"] for signal in live.bench()["signals"]][:32]
     bench = live.bench(time_scale=0.05)
-    before = len(live.server.server_state.connections)
-    with live.stream(bench["id"], max_queue=1, close_timeout=0.5) as stream:
+    before, most = len(live.server.server_state.connections), 0
+    with live.stream(bench["id"], **deaf(live)) as stream:
         for panel in range(6):
-            stream.send(type="subscribe", panel=panel, signals=names, window_ms=50.0, width=1300)
+            stream.send(type="subscribe", panel=panel, signals=names[:8], window_ms=50.0, width=1300)
+        (room,) = live.service.hub._rooms.values()
         deadline = time.monotonic() + 15
         while live.service.hub.watchers(bench["id"]) and time.monotonic() < deadline:
-            time.sleep(0.1)
+            most = max(most, *(client.line.waiting for client in list(room.clients)), 0)
+            with contextlib.suppress(ConnectionClosed):
+                stream.send(type="ack", frame=10**6)
+            time.sleep(0.02)
         assert live.service.hub.watchers(bench["id"]) == 0
+        assert 0 < most < 2_000_000
         time.sleep(1.5)
         assert len(live.server.server_state.connections) <= before
+
+
+def test_a_page_that_asks_and_never_reads_is_let_go(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Answers wait for it, but not without end."""
+    monkeypatch.setattr(stream_module, "FLOOD_RATE", 1e9)
+    monkeypatch.setattr(client_module, "STALL_S", 60.0)
+    bench = live.bench(paused=True)
+    with live.stream(bench["id"], **deaf(live)) as stream:
+        (room,) = live.service.hub._rooms.values()
+        (client,) = room.clients
+        deadline = time.monotonic() + 30
+        with contextlib.suppress(ConnectionClosed):
+            while client.closing is None and time.monotonic() < deadline:
+                stream.send(type="x" * 1000)
+                assert len(client._outbox) <= client_module.MOST_WAITING + 1
+        assert client.closing == (4408, "answers were asked for and not read")
 
 
 def test_events_come_in_order_and_are_replayed_after_a_reconnect(live: Any) -> None:
@@ -207,21 +237,20 @@ def test_events_come_in_order_and_are_replayed_after_a_reconnect(live: Any) -> N
     with live.stream(bench["id"]) as stream:
         for severity in (0.01, 0.02, 0.03):
             assert stream.command("inject", fault="added_mass", severity=severity)["ok"]
-        stream.until_type("event", timeout=3)
+        stream.until_type("events", timeout=3)
         stream.drain(0.2)
-        seen = [m["event"]["seq"] for m in stream.messages if m["type"] == "event"]
+        seen = [event["seq"] for event in stream.events]
         assert seen == list(range(seen[0], seen[0] + len(seen)))
     for severity in (0.04, 0.05):
         live.command(bench["id"], "inject", fault="added_mass", severity=severity)
     with live.stream(bench["id"]) as stream:
         hello = stream.step()
         stream.send(type="resume", after=seen[-1])
-        stream.until(
-            lambda m: isinstance(m, dict) and m["type"] == "event" and m["event"]["seq"] == hello["last_event"]
-        )
-        again = [m["event"] for m in stream.messages if m["type"] == "event"]
+        stream.until_event(seq=hello["last_event"])
+        again = stream.events
         # One that happened meanwhile may come before the replay, and once more within it.
         again = again[[event["seq"] for event in again].index(seen[-1] + 1) :]
+        again = [event for event in again if event["seq"] <= hello["last_event"]]
         assert [event["seq"] for event in again] == list(range(seen[-1] + 1, hello["last_event"] + 1))
         injected = [event["command"]["severity"] for event in again if event["kind"] == "inject"]
         assert injected == [0.04, 0.05]
@@ -236,8 +265,8 @@ def test_a_long_backlog_is_replayed_whole(live: Any) -> None:
     with live.stream(bench["id"]) as stream:
         last = stream.step()["last_event"]
         stream.send(type="resume", after=0)
-        stream.until(lambda m: isinstance(m, dict) and m.get("event", {}).get("seq") == last)
-        assert [m["event"]["seq"] for m in stream.messages if m["type"] == "event"] == list(range(1, last + 1))
+        stream.until_event(seq=last)
+        assert [event["seq"] for event in stream.events] == list(range(1, last + 1))
 
 
 def test_a_new_page_gets_only_what_is_new(live: Any) -> None:
@@ -246,7 +275,7 @@ def test_a_new_page_gets_only_what_is_new(live: Any) -> None:
     with live.stream(bench["id"]) as stream:
         hello = stream.step()
         live.command(bench["id"], "heal")
-        event = stream.until_type("event")["event"]
+        event = stream.until_event()
         assert event["seq"] > hello["last_event"]
 
 
@@ -257,9 +286,9 @@ def test_a_command_is_answered_with_its_tick(live: Any) -> None:
         stream.send(type="command", id="mine", command={"kind": "switch", "controller": "mrac"})
         reply = stream.until_type("reply")
         assert reply["id"] == "mine" and reply["ok"] and reply["tick"] >= before
-        event = stream.until(lambda m: isinstance(m, dict) and m.get("event", {}).get("kind") == "switch")
-        assert event["event"]["tick"] == reply["tick"]
-        assert event["event"]["actor"].startswith("page ")
+        event = stream.until_event(kind="switch")
+        assert event["tick"] == reply["tick"]
+        assert event["actor"].startswith("page ")
         status = stream.until(lambda m: isinstance(m, dict) and m["type"] == "status" and m["parameters"])
         assert status["controller"] == "mrac"
         assert status["parameters"]["controller"]["kind"] == "mrac"

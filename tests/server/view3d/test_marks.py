@@ -47,20 +47,20 @@ def test_a_fault_nobody_has_drawn_is_a_label_at_its_part(part: str) -> None:
         outputs = (Port("severity", "nm", "how bad"),)
 
     found = marks([Active(Unheard, FaultParams(severity=3.0), 3.0)], LAYOUT)
-    assert list(found.labels.values()) == [["Unheard of 3 nm"]]
+    assert list(found.labels.values()) == [["Unheard of 3\u00a0nm"]]
     assert not found.solids and found.beams == [0.0, 0.0]
 
 
 def test_severities_have_their_unit_as_people_write_it() -> None:
-    assert words(active("sensor_bias", 0.5)) == "Sensor bias 0.5 µm"
-    assert words(active("shock", 20.0)) == "Shock 20 g"
+    assert words(active("sensor_bias", 0.5)) == "Sensor bias 500\u00a0nm"
+    assert words(active("shock", 20.0)) == "Shock 20\u00a0g"
     assert words(active("added_mass", 0.05)) == "Added mass"
 
 
 def test_faults_at_one_place_share_a_label() -> None:
     found = marks([active("stiffness"), active("ageing")], LAYOUT)
     assert [len(lines) for lines in found.labels.values()] == [2]
-    assert words(active("ageing", 4.0)) == "Ageing 4 week"
+    assert words(active("ageing", 4.0)) == "Ageing 4\u00a0weeks"
 
 
 def test_an_adhesion_is_a_dot_where_it_holds() -> None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-import socket
+import os
 import sys
+import tempfile
 import threading
 import time
+from pathlib import Path
 from typing import Any
 
 import httpx
+import msgspec
+import psutil
 import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
@@ -16,18 +20,18 @@ from websockets.sync.client import connect
 VISER = "viser-v1.1.1"
 
 
-def join(live: Any, bench: dict[str, Any]) -> Any:
+def join(live: Any, bench: dict[str, Any], **options: Any) -> Any:
     url = live.address.replace("http", "ws") + f"/benches/{bench['id']}/3d"
     headers = {"Authorization": live.http.headers["authorization"]}
-    return connect(
-        url,
-        additional_headers=headers,
-        subprotocols=[VISER],
-        proxy=None,
-        max_size=None,
-        compression=None,
-        close_timeout=0.5,  # type: ignore[list-item]
-    )
+    given: dict[str, Any] = {
+        "additional_headers": headers,
+        "subprotocols": [VISER],
+        "proxy": None,
+        "max_size": None,
+        "compression": None,
+        "close_timeout": 0.5,
+    }
+    return connect(url, **{**given, **options})
 
 
 def count(socket_: Any, seconds: float) -> int:
@@ -59,16 +63,15 @@ def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
         assert page.subprotocol == VISER
         assert count(page, 1.0) > 10
         assert count(page, 2.0) > 40
-        port = show._scene.port
+        path = show._scene.path
         with join(live, bench) as second:
             assert count(second, 1.0) > 10
-            assert show.watchers == 2 and show._scene.port == port
+            assert show.watchers == 2 and show._scene.path == path
     end = time.monotonic() + 5
     while show._scene is not None:
         assert time.monotonic() < end, "the scene stays lit for nobody"
         time.sleep(0.05)
-    with pytest.raises(OSError), socket.create_connection(("127.0.0.1", port), 1):
-        pass
+    assert not path.parent.exists()
 
 
 def test_a_paused_bench_sends_nothing(live: Any) -> None:
@@ -79,17 +82,56 @@ def test_a_paused_bench_sends_nothing(live: Any) -> None:
         assert count(page, 1.0) <= 1
 
 
-def test_the_scene_listens_on_loopback_and_opens_no_tunnel(live: Any) -> None:
-    bench = live.bench()
+def listening() -> set[int]:
+    """The TCP ports this process listens on."""
+    found = psutil.Process().net_connections("tcp")
+    return {connection.laddr.port for connection in found if connection.status == psutil.CONN_LISTEN}
+
+
+def test_the_scene_is_on_no_port_and_its_socket_is_for_this_user_alone(live: Any) -> None:
+    bench, before = live.bench(), listening()
     with join(live, bench) as page:
         count(page, 0.3)
-        server = live.service.theatre.show_of(live.service.benches.get(bench["id"]))._scene._server
-        assert server.get_host() == "127.0.0.1"
-        from viser import _messages
+        assert listening() <= before
+        path = live.service.theatre.show_of(live.service.benches.get(bench["id"]))._scene.path
+        assert path.is_socket()
+        folder = path.parent.stat()
+        assert folder.st_mode & 0o777 == 0o700 and folder.st_uid == os.getuid()
 
-        handlers = server._websock_server._incoming_handlers
-        assert not handlers.get(_messages.ShareUrlRequest)
-        assert not handlers.get(_messages.ShareUrlDisconnect)
+
+def test_a_temporary_folder_without_room_for_a_socket_is_told_in_one_line(
+    live: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    deep = tmp_path / ("x" * 100)  # a socket's name has at most 107 bytes
+    deep.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(deep))
+    bench = live.bench()
+    with join(live, bench) as page, pytest.raises(ConnectionClosed) as caught:
+        page.recv(timeout=10)
+    assert caught.value.rcvd is not None and caught.value.rcvd.code == 1012
+    assert [record.exc_info for record in caplog.records] == [None] and "AF_UNIX path too long" in caplog.text
+    assert not list(deep.iterdir())
+    monkeypatch.undo()
+    with join(live, bench) as page:
+        assert count(page, 1.0) > 0
+
+
+def test_what_a_page_says_does_not_reach_the_scene(live: Any, caplog: pytest.LogCaptureFixture) -> None:
+    """viser would open a public tunnel for who asks, and breaks at what it does not know."""
+    bench = live.bench(time_scale=0.002)
+    with join(live, bench) as page:
+        for said in (b"", b"\xff" * 300, "text", msgspec.msgpack.encode({"type": "ShareUrlRequest"})):
+            page.send(said)
+            assert count(page, 0.5) > 10
+    assert not caplog.records
+
+
+@pytest.mark.parametrize("offered", [["viser-v0.0.1"], ["other", "more"]])
+def test_a_page_of_another_viser_is_told_to_reload(live: Any, offered: list[str]) -> None:
+    bench = live.bench()
+    with join(live, bench, subprotocols=offered) as page, pytest.raises(ConnectionClosed) as caught:
+        page.recv(timeout=5)
+    assert caught.value.rcvd is not None and caught.value.rcvd.code == 4001 and "reload" in caught.value.rcvd.reason
 
 
 def test_closing_the_bench_closes_its_scene(live: Any) -> None:

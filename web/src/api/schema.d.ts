@@ -1431,6 +1431,8 @@ export interface components {
             shows: string | null;
             /** Suggested */
             suggested: number | null;
+            /** Weaknesses */
+            weaknesses: string[];
             /** Equations */
             equations: components["schemas"]["EquationCard"][];
             /** Parameters */
@@ -1725,7 +1727,7 @@ export interface components {
         };
         /**
          * Digest
-         * @description SHA-256 over the float64 trace of all outputs up to a tick.
+         * @description What tells runs apart: SHA-256 over a fold of the outputs of each block at every tick.
          */
         Digest: {
             /** Tick */
@@ -2798,8 +2800,11 @@ export interface components {
             name: string;
             /** Title */
             title: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "armed" | "recording" | "done" | "cut_short" | "failed" | "aborted";
             /** Dt Ms */
             dt_ms: number;
             /** Start Tick */
@@ -2841,8 +2846,11 @@ export interface components {
             name: string;
             /** Title */
             title: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "armed" | "recording" | "done" | "cut_short" | "failed" | "aborted";
             /** Dt Ms */
             dt_ms: number;
             /** Start Tick */
@@ -3375,7 +3383,10 @@ export interface components {
             title: string;
             /** Version */
             version: string;
-            /** Runs */
+            /**
+             * Runs
+             * @description Different runs; until all points have been checked, at most
+             */
             runs: number;
             /**
              * Done
@@ -3775,17 +3786,18 @@ export interface components {
             error: components["schemas"]["ErrorBody"];
         };
         /**
-         * EventMessage
-         * @description Something happened; numbered without gaps.
+         * Events
+         * @description Events since the last such message, numbered without gaps.
          */
-        EventMessage: {
+        Events: {
             /**
              * Type
-             * @default event
+             * @default events
              * @constant
              */
-            type?: "event";
-            event: components["schemas"]["Event"];
+            type?: "events";
+            /** Events */
+            events: components["schemas"]["Event"][];
         };
         /**
          * Hello
@@ -3800,7 +3812,7 @@ export interface components {
             type?: "hello";
             /**
              * Wire
-             * @default 1
+             * @default 2
              */
             wire?: number;
             /**
@@ -3856,7 +3868,7 @@ export interface components {
         };
         /**
          * Status
-         * @description What changes on a bench: five times a second, and after every event.
+         * @description What changes on a bench: five times a second, and after events at most twenty times.
          */
         Status: {
             /**
@@ -3965,7 +3977,7 @@ export interface components {
              */
             dropped_frames: number;
         };
-        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["EventMessage"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"];
+        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"];
         /**
          * ErrorReply
          * @description The one error shape of every answer.

@@ -8,9 +8,16 @@ import { alarm, announce, useAnnouncements } from "./announce";
 export function Announcer() {
   const { polite, alarm: loud } = useAnnouncements();
   const event = useBench((s) => s.events.at(-1));
+  const blind = useBench((s) => s.blind);
   const notice = useBench((s) => s.notice);
   const phase = useBench((s) => s.connection.phase);
   const quiet = useBench((s) => s.connection.reason?.quiet ?? false);
+
+  useEffect(() => {
+    if (!blind) return;
+    announce(""); // what was said last may tell a verdict
+    alarm("");
+  }, [blind]);
 
   useEffect(() => {
     if (!event) return;

@@ -3,7 +3,7 @@ import type { ReactNode } from "react";
 import { useEffect, useState } from "react";
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
-import { formatDeviceTime } from "../ui/time-axis";
+import { formatClock, formatTick } from "../ui/format";
 import { actions } from "./actions";
 import styles from "./banner.module.css";
 import { openAnyBench, startAgain } from "./first-bench";
@@ -57,7 +57,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
       <Line
         tone="alarm"
         title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
-        text={`at ${formatDeviceTime(trip.tick * dtMs)} s, tick ${trip.tick}. The voltage is off; what is shown are the last values before.`}
+        text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; what is shown are the last values before.`}
       >
         <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
           Reset the trip

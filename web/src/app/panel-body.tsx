@@ -3,12 +3,17 @@ import { EmptyState } from "../ui/empty-state";
 import { ErrorFence } from "../ui/error-fence";
 import type { PanelKind, PanelProps } from "./panels";
 
-/** A panel of a kind, fenced; what changes a bench has no place on one that plays a recording. */
+/** A panel of a kind, fenced; what changes a bench has no place on one that plays a recording, what tells a fault none while it is to be found. */
 export function PanelBody({ kind, params, setParams }: PanelProps & { kind: PanelKind }) {
   const replay = useBench((s) => s.bench?.replay_of);
+  const blind = useBench((s) => s.blind);
   return (
     <ErrorFence name={kind.title}>
-      {replay && kind.changes ? (
+      {blind && kind.tells ? (
+        <EmptyState title="Hidden while you look for the fault">
+          What stands here would tell it. It comes back once you commit an answer under Blind diagnosis.
+        </EmptyState>
+      ) : replay && kind.changes ? (
         <EmptyState title="The past cannot be changed">
           A recording is played here; what was done then stands under Events. Leave the replay to go on.
         </EmptyState>

@@ -29,21 +29,23 @@ export interface PanelKind {
   title: string;
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;
+  /** It tells what acts on the device or what a diagnoser takes it for, which is hidden while a fault is to be found. */
+  tells?: boolean;
   component: ComponentType<PanelProps>;
 }
 
 /** Every kind of panel; a new one is its folder and a line here. */
 export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
-  lanes: { title: "Diagnosis", component: LanesPanel },
+  lanes: { title: "Diagnosis", tells: true, component: LanesPanel },
   adaptation: { title: "Adaptation", component: AdaptationPanel },
   hypotheses: { title: "Hypotheses", changes: true, component: HypothesesPanel },
   labs: { title: "Noise and memory", changes: true, component: LabsPanel },
   blind: { title: "Blind diagnosis", changes: true, component: BlindPanel },
   twins: { title: "Twins", changes: true, component: TwinsPanel },
-  why: { title: "Why", component: WhyPanel },
+  why: { title: "Why", tells: true, component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
-  faults: { title: "Faults", changes: true, component: FaultsPanel },
+  faults: { title: "Faults", changes: true, tells: true, component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
   environment: { title: "Environment", changes: true, component: EnvironmentPanel },
   phase: { title: "Phase plane", component: PhasePanel },
@@ -51,8 +53,8 @@ export const PANELS: Record<string, PanelKind> = {
   identify: { title: "Swept sine", changes: true, component: IdentifyPanel },
   recordings: { title: "Recordings", component: RecordingsPanel },
   events: { title: "Events", component: EventsPanel },
-  scores: { title: "Scoreboard", component: ScoreboardPanel },
-  view3d: { title: "3D", component: View3dPanel },
+  scores: { title: "Scoreboard", tells: true, component: ScoreboardPanel },
+  view3d: { title: "3D", tells: true, component: View3dPanel },
 };
 
 function Scope({ params, setParams }: PanelProps) {

@@ -1,10 +1,8 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { useEffect, useRef, useState } from "react";
-import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
-import { View3dPanel } from "../panels/view3d/view3d-panel";
 import { useBench } from "../stream/bench-store";
 import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible } from "../ui/panel-visible";
@@ -41,14 +39,10 @@ export function Phone() {
             </ErrorFence>
           </div>
           <div className={styles.lanes}>
-            <ErrorFence name="Diagnosis">
-              <LanesPanel />
-            </ErrorFence>
+            <PanelBody kind={PANELS.lanes} params={{}} setParams={() => undefined} />
           </div>
           <div className={styles.view}>
-            <ErrorFence name="3D">
-              <View3dPanel />
-            </ErrorFence>
+            <PanelBody kind={PANELS.view3d} params={{}} setParams={() => undefined} />
           </div>
           <Extra />
         </main>

@@ -5,15 +5,13 @@ import { api } from "../api/api";
 import type { Bench } from "../api/types";
 import { useAnswer } from "../api/use-answer";
 import { useBench } from "../stream/bench-store";
-import { formatNumber } from "../ui/format";
+import { formatMoment } from "../ui/format";
 import { openAnyBench } from "./first-bench";
 import { restoreLayout } from "./layouts";
 import { openBench } from "./open-bench";
 import styles from "./replay-bar.module.css";
 import { send, showError } from "./send";
-
-/** Multiples of the pace it was recorded at. */
-const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
+import { REPLAY_SPEEDS, speedItems } from "./time-scale";
 
 /** The bench a replay was begun from, to go back to. */
 let cameFrom: string | undefined;
@@ -42,10 +40,10 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
   const first = about.start_tick;
   const end = first + about.ticks;
   const [from, to] = span ?? [first, end];
-  const ms = (tick: number) => formatNumber(tick * about.dt_ms, 2);
+  const ms = (tick: number) => formatMoment(tick * about.dt_ms);
   const speed = bench.recorded_scale && bench.time_scale ? bench.time_scale / bench.recorded_scale : undefined;
   const nearest =
-    speed && SPEEDS.reduce((a, b) => (Math.abs(Math.log(b / speed)) < Math.abs(Math.log(a / speed)) ? b : a));
+    speed && REPLAY_SPEEDS.reduce((a, b) => (Math.abs(Math.log(b / speed)) < Math.abs(Math.log(a / speed)) ? b : a));
 
   const loop = async (next: boolean, [start_tick, end_tick]: [number, number]) => {
     setLooping(next);
@@ -75,7 +73,7 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
           size="sm"
           min={first}
           max={end - 1}
-          label={(tick) => `${ms(tick)} ms`}
+          label={ms}
           thumbLabel="Position of the replay"
           value={held ?? Math.min(Math.max(bench.tick, first), end - 1)}
           onChange={setHeld}
@@ -95,13 +93,13 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         )}
       </div>
       <span className={styles.time}>
-        {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)} ms
+        {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)}
       </span>
       <NativeSelect
         size="xs"
         aria-label="Speed of the replay"
         value={String(nearest ?? 1)}
-        data={SPEEDS.map((s) => ({ value: String(s), label: `${s} ×` }))}
+        data={speedItems()}
         onChange={(e) =>
           send({
             kind: "time_scale",

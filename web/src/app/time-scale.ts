@@ -1,14 +1,32 @@
-import { formatNumber } from "../ui/format";
-import { unitScale } from "../ui/unit-scale";
+import { formatShort, formatSi } from "../ui/format";
+import { roundTo } from "../ui/unit-scale";
 
 export const SLOWEST = 1e-6;
 export const FASTEST = 1;
 
+/** What the menu of time scales offers at a press. */
+export const PRESETS: readonly (number | null)[] = [0.002, FASTEST, null];
+
+/** Multiples of the pace a recording was made at. */
+export const REPLAY_SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
+
+/** A time scale to choose: "2 ms/s", "Real time". */
+export function presetLabel(scale: number | null): string {
+  if (scale === null) return "As fast as possible";
+  return scale === FASTEST ? "Real time" : formatShort(scale, "s/s");
+}
+
+/** Marks of the slider of time scales: its ends and its middle. */
+export const scaleMarks = () =>
+  [0, 0.5, 1].map((value) => ({ value, label: presetLabel(sliderToTimeScale(value)).toLowerCase() }));
+
+export const speedItems = () =>
+  REPLAY_SPEEDS.map((speed) => ({ value: String(speed), label: formatShort(speed, "×") }));
+
 /** Device time per wall time in words: "2.00 ms/s". */
 export function formatTimeScale(scale: number | null): string {
   if (scale === null) return "as fast as possible";
-  const shown = unitScale("s", scale, 3);
-  return `${formatNumber(scale * shown.factor, shown.decimals)}\u00a0${shown.unit}/s`;
+  return formatSi(scale, "s/s", 3);
 }
 
 /** Twice or half as fast, staying on the slider. */
@@ -30,5 +48,5 @@ export function sliderToTimeScale(position: number): number {
     (best, m) => (Math.abs(Math.log(raw / power / m)) < Math.abs(Math.log(raw / power / best)) ? m : best),
     1,
   );
-  return Math.min(FASTEST, Math.max(SLOWEST, Number((mantissa * power).toPrecision(3))));
+  return Math.min(FASTEST, Math.max(SLOWEST, roundTo(mantissa * power, 3)));
 }

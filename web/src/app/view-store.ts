@@ -16,8 +16,6 @@ interface ViewStore {
   card: CardId;
   /** The sample of a diagnoser that was clicked, to be explained. */
   sample: { diagnoser: string; tick: number } | undefined;
-  /** A hidden fault is to be found: the page keeps the truth to itself. */
-  blind: boolean;
   dialog: "none" | "keys" | "bench";
   /** On a phone: the panel shown beside those it always has. */
   extra: string;
@@ -34,7 +32,6 @@ export const useView = create<ViewStore>(() => ({
   layout: window.innerWidth >= WIDE ? "research" : "lab",
   card: "diagnosers.kalman",
   sample: undefined,
-  blind: false,
   dialog: "none",
   extra: "",
   large: false,

@@ -1,4 +1,4 @@
-import { formatNumber } from "../ui/format";
+import { formatNumber, formatSi } from "../ui/format";
 import styles from "./designer.module.css";
 
 /** Two fingers between three, enlarged: the gap and the overlap that make the force. */
@@ -22,7 +22,7 @@ export function CombDetail({ geometry: g }: { geometry: Record<string, number> }
       <svg
         viewBox={`-1 ${-text * 1.6} ${whole + 2} ${y(tall) + text * 3.4}`}
         role="img"
-        aria-label={`Comb: gap ${formatNumber(gap, 2)} µm, overlap ${formatNumber(g.overlap_um, 1)} µm`}
+        aria-label={`Comb: gap ${formatSi(gap, "um", 3)}, overlap ${formatSi(g.overlap_um, "um", 3)}`}
       >
         <path d={bars(3, 0, whole - length)} className={styles.stator} />
         <path d={bars(2, pitch / 2, 0)} className={styles.shuttle} />
@@ -31,11 +31,11 @@ export function CombDetail({ geometry: g }: { geometry: Record<string, number> }
           className={styles.scale}
         />
         <text x={whole / 2} y={y(tall) + text * 1.6} fontSize={text} textAnchor="middle" className={styles.detailText}>
-          overlap {formatNumber(g.overlap_um, 1)} µm
+          overlap {formatSi(g.overlap_um, "um", 3)}
         </text>
       </svg>
       <figcaption>
-        Comb as etched: gap {formatNumber(gap, 2)} µm, fingers {formatNumber(finger, 2)} µm wide
+        Comb as etched: gap {formatSi(gap, "um", 3)}, fingers {formatSi(finger, "um", 3)} wide
         {stretch > 1 ? `; drawn ${formatNumber(stretch, 1)} times as large across as along` : ""}
       </figcaption>
     </figure>

@@ -1,4 +1,5 @@
 import type { Design, Device, NewBench } from "../api/types";
+import { roundTo } from "../ui/unit-scale";
 
 /** What has been changed about a device of the catalogue, and the air around it. */
 export interface DesignState {
@@ -75,4 +76,4 @@ export function benchOf(design: Design, title: string, metrics: Record<string, n
   };
 }
 
-const round = (value: number) => Number(value.toPrecision(2));
+const round = (value: number) => roundTo(value, 2);

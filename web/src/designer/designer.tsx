@@ -115,19 +115,21 @@ export function Designer() {
               onChooseDrawn={() => setState(newDesign(FIRST))}
             />
           </section>
-          <section className={styles.figures} aria-label="Figures">
-            <FigureGrid
-              figures={evaluation.figures}
-              original={original?.figures}
-              drawn={evaluation.geometry !== null}
-            />
-          </section>
-          <section className={styles.response} aria-label="Frequency response">
-            <ResponseView bode={bode} drawing={drawing} />
-          </section>
-          <section className={styles.sensitivity} aria-label="Sensitivity">
-            <SensitivityTable evaluation={evaluation} />
-          </section>
+          <div className={styles.results}>
+            <section className={styles.figures} aria-label="Figures">
+              <FigureGrid
+                figures={evaluation.figures}
+                original={original?.figures}
+                drawn={evaluation.geometry !== null}
+              />
+            </section>
+            <section className={styles.response} aria-label="Frequency response">
+              <ResponseView bode={bode} drawing={drawing} />
+            </section>
+            <section className={styles.sensitivity} aria-label="Sensitivity">
+              <SensitivityTable evaluation={evaluation} />
+            </section>
+          </div>
         </>
       ) : (
         <EmptyState title="Working it out">Figures, drawing and response appear with the first answer.</EmptyState>

@@ -1,3 +1,5 @@
+import { roundTo } from "../ui/unit-scale";
+
 /** A rectangle from corner to corner, um; x is the direction of the drive. */
 export interface Rect {
   x: number;
@@ -93,4 +95,4 @@ export function rectPath(rects: readonly Rect[]): string {
     .join("");
 }
 
-const fix = (value: number) => Number(value.toFixed(3));
+const fix = (value: number) => roundTo(value, 7);

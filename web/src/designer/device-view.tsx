@@ -1,7 +1,7 @@
 import { Button } from "@mantine/core";
 import { useMemo } from "react";
 import { EmptyState } from "../ui/empty-state";
-import { formatNumber } from "../ui/format";
+import { formatShort, formatSi } from "../ui/format";
 import { CombDetail } from "./comb-detail";
 import styles from "./designer.module.css";
 import { deviceDrawing, rectPath } from "./device-drawing";
@@ -41,7 +41,7 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
         className={styles.device}
         viewBox={`${-width / 2} ${-drawing.height / 2 - MARGIN} ${width} ${height}`}
         role="img"
-        aria-label={`${title} from above, to scale: ${formatNumber(drawing.width, 0)} by ${formatNumber(drawing.height, 0)} µm`}
+        aria-label={`${title} from above, to scale: ${formatSi(drawing.width, "um")} by ${formatSi(drawing.height, "um")}`}
       >
         <path d={rectPath(drawing.stators)} className={styles.stator} />
         <path d={rectPath([...drawing.plate, ...drawing.arms])} className={styles.shuttle} />
@@ -51,7 +51,7 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
         <g transform={`translate(${-width / 2 + MARGIN} ${drawing.height / 2 + 22})`}>
           <path d={`M0 -5 V5 M0 0 H${bar} M${bar} -5 V5`} className={styles.scale} />
           <text x={bar + 8} y={6} className={styles.scaleText}>
-            {bar} µm
+            {formatShort(bar, "um")}
           </text>
         </g>
         <g transform={`translate(${width / 2 - MARGIN} ${drawing.height / 2 + 22})`}>

@@ -1,7 +1,7 @@
 import { Popover, UnstyledButton } from "@mantine/core";
 import type { Evaluation } from "../api/types";
 import { EquationDetail } from "../panels/card/equation-detail";
-import { formatNumber, formatSi } from "../ui/format";
+import { formatChange, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import styles from "./designer.module.css";
 
@@ -60,5 +60,5 @@ function since({ name, value }: Figure, original: Figure[] | undefined): string 
   if (!before) return "";
   const change = 100 * (value / before - 1);
   if (Math.abs(change) < 0.05) return "as in the catalogue";
-  return `${change > 0 ? "+" : ""}${formatNumber(change, 1)} %`;
+  return formatChange(change, "%", 1);
 }

@@ -1,5 +1,5 @@
 import type { Evaluation } from "../api/types";
-import { formatNumber } from "../ui/format";
+import { formatChange, formatIn, formatSi } from "../ui/format";
 import styles from "./designer.module.css";
 
 const STEPS: [string, string][] = [
@@ -64,10 +64,10 @@ export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
         </tbody>
       </table>
       <p className={styles.source}>
-        Changes in %. The beams are {formatNumber(width, 2)} µm wide as etched
+        Changes in %. The beams are {formatSi(width, "um", 3)} wide as etched
         {softer === undefined
           ? ": 0.2 µm less leaves nothing of them."
-          : `; 1 − (1 − 0.2/w)³ (1.4.2) says ${formatNumber(100 * (1 - (1 - 0.2 / width) ** 3), 1)} % softer, the linear rule 3 · 0.2/w ${formatNumber(60 / width, 1)} %.`}
+          : `; 1 − (1 − 0.2/w)³ (1.4.2) says ${formatIn(100 * (1 - (1 - 0.2 / width) ** 3), "%", 1)} softer, the linear rule 3 · 0.2/w ${formatIn(60 / width, "%", 1)}.`}
       </p>
     </>
   );
@@ -75,5 +75,5 @@ export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
 
 function signed(change: number): string {
   if (Math.abs(change) < 0.05) return "0";
-  return `${change > 0 ? "+" : ""}${formatNumber(change, 1)}`;
+  return formatChange(change, "", 1);
 }

@@ -32,7 +32,7 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
       <div className={styles.thumbnail}>
         {card.state === "done" && card.run ? (
           <img
-            src={`/api/v1/runs/${card.run}/thumbnail`}
+            src={`./api/v1/runs/${card.run}/thumbnail`}
             alt={card.study ? "Measured figures on the bars expected" : "Displacement and verdicts over the run"}
             loading="lazy"
           />
@@ -63,7 +63,7 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
           {card.state === "done" && card.run && (
             <Button
               component="a"
-              href={`/api/v1/runs/${card.run}/report`}
+              href={`./api/v1/runs/${card.run}/report`}
               target="_blank"
               size="compact-sm"
               variant="subtle"

@@ -1,6 +1,7 @@
 import type { ReactElement } from "react";
 import { flushSync } from "react-dom";
 import { createRoot } from "react-dom/client";
+import { roundTo } from "../ui/unit-scale";
 import { svgColour } from "./svg-colour";
 import { FAMILY } from "./svg-text";
 
@@ -40,7 +41,7 @@ function writeStyle(shape: SVGElement): void {
       const value = style.getPropertyValue(kind);
       const { colour, opacity } = svgColour(value || "none");
       shape.setAttribute(kind, colour);
-      if (opacity < 1) shape.setAttribute(`${kind}-opacity`, opacity.toFixed(3));
+      if (opacity < 1) shape.setAttribute(`${kind}-opacity`, `${roundTo(opacity, 3)}`);
     }
     for (const [name, usual] of Object.entries(USUAL)) {
       const value = style.getPropertyValue(name);

@@ -2,7 +2,7 @@ import type { LogEntry } from "../api/types";
 import { eventTone } from "../panels/events/event-tone";
 import type { Marks } from "../panels/scope/scope-marks";
 import { fontFor } from "../ui/canvas-font";
-import { formatNumber } from "../ui/format";
+import { formatMoment } from "../ui/format";
 import { CANVAS } from "../ui/palette";
 import { timeUnit } from "../ui/time-axis";
 import type { Pen } from "./pen";
@@ -89,7 +89,7 @@ export function listEvents(
   if (events.length === 0) return top;
   const shown = events.slice(0, MOST).map((e) => ({
     number: String(e.seq),
-    words: `at ${formatNumber((e.tick - origin) * dtMs, 3)} ms: ${e.text}`,
+    words: `at ${formatMoment((e.tick - origin) * dtMs)}: ${e.text}`,
   }));
   if (events.length > MOST) shown.push({ number: "", words: `and ${events.length - MOST} more` });
   pen.textAlign = "left";

@@ -45,7 +45,7 @@ it("has a title, titled axes and a legend around what the painter draws", () => 
 
 it("numbers the events of the span on the plot, tells them below, and bands the faults", () => {
   const document = drawn({ time: axis(event(3, 500), event(4, 2000), event(5, 600, "pause")) });
-  expect(texts(document)).toEqual(["A < B", "3", "time of the device, ms", "3", "at 5.000 ms: fault 3"]);
+  expect(texts(document)).toEqual(["A < B", "3", "time of the device, ms", "3", "at 5.000\u00a0ms: fault 3"]);
   const width = PICTURE_WIDTH - 32;
   expect(document.querySelector("g path")?.getAttribute("d")).toBe(`M${width / 2} 0L${width / 2} 100`);
   expect(document.querySelector("g rect")?.getAttribute("width")).toBe(String(width / 4));
@@ -55,7 +55,7 @@ it("joins the numbers of events that lie close, and does not list without end", 
   const many = Array.from({ length: 14 }, (_, i) => event(i + 1, 500 + i));
   const found = texts(drawn({ time: axis(...many) }));
   expect(found.filter((text) => /–/.test(text))).toEqual(["1–14"]);
-  expect(found).toContain("at 5.110 ms: fault 12");
-  expect(found).not.toContain("at 5.120 ms: fault 13");
+  expect(found).toContain("at 5.110\u00a0ms: fault 12");
+  expect(found).not.toContain("at 5.120\u00a0ms: fault 13");
   expect(found.at(-1)).toBe("and 2 more");
 });

@@ -24,7 +24,7 @@ export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
   const ask = useCallback(() => api.sweepPoints(sweep.id), [sweep.id, active]);
   const { value, error, since, again } = useAnswer(ask, () => (active ? BUSY_MS : undefined));
   const [metrics, setMetrics] = useState<string[] | undefined>(undefined);
-  const files = `/api/v1/sweeps/${sweep.id}`;
+  const files = `./api/v1/sweeps/${sweep.id}`;
   const points = (value?.points ?? []).filter((point) => (point.runs ?? 0) > 0);
   const shown = metrics ?? usualMetrics(points);
 

@@ -2,6 +2,7 @@ import { NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import type { PointTally } from "../api/types";
 import { Confusion } from "../panels/scoreboard/confusion";
+import { formatCount, formatSi } from "../ui/format";
 import { LineChart } from "../ui/line-chart";
 import { delayLine, pointName } from "./points";
 import styles from "./runs.module.css";
@@ -37,7 +38,7 @@ export function DiagnosisCharts({ points }: { points: PointTally[] }) {
         )}
         {found.length > MOST_LINES && (
           <span className={styles.note}>
-            curves of the first {MOST_LINES} of {found.length} points
+            curves of the first {MOST_LINES} of {formatCount(found.length, "point")}
           </span>
         )}
       </div>
@@ -52,7 +53,7 @@ export function DiagnosisCharts({ points }: { points: PointTally[] }) {
             tally.roc
               ? [
                   {
-                    name: `${name} (area ${tally.roc.area.toFixed(4)})`,
+                    name: `${name} (area ${formatSi(tally.roc.area, "")})`,
                     x: tally.roc.false_alarm,
                     y: tally.roc.detection,
                   },

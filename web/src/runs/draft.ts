@@ -1,4 +1,5 @@
 import type { Document } from "../api/types";
+import { roundTo } from "../ui/unit-scale";
 
 /** A value at a dotted path of the scenario, as typed; one value or several. */
 export interface Row {
@@ -68,7 +69,7 @@ export function parseValues(text: string): unknown[] {
       const span = /^\s*(\S+)\s*:\s*(\S+)\s*:\s*(\d+)\s*$/.exec(piece);
       const [low, high, count] = span ? span.slice(1).map(Number) : [];
       if (!span || !Number.isFinite(low) || !Number.isFinite(high) || count < 2) return [parseValue(piece)];
-      return Array.from({ length: count }, (_, i) => Number((low + ((high - low) * i) / (count - 1)).toPrecision(12)));
+      return Array.from({ length: count }, (_, i) => roundTo(low + ((high - low) * i) / (count - 1), 12));
     });
 }
 

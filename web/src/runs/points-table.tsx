@@ -1,6 +1,6 @@
 import { useState } from "react";
 import type { PointTally } from "../api/types";
-import { formatSi } from "../ui/format";
+import { formatCount, formatNumber, formatSi } from "../ui/format";
 import { metricName } from "../ui/metric-name";
 import { labelText } from "./points";
 import styles from "./runs.module.css";
@@ -27,9 +27,9 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
         say: (p) => labelText(p.labels[axis] ?? ""),
       }),
     ),
-    { id: "runs", title: "runs", of: (p) => p.runs, say: (p) => String(p.runs) },
-    { id: "ok", title: "as expected", of: (p) => p.ok, say: (p) => String(p.ok) },
-    { id: "tripped", title: "tripped", of: (p) => p.tripped, say: (p) => String(p.tripped) },
+    { id: "runs", title: "runs", of: (p) => p.runs, say: (p) => formatNumber(p.runs ?? 0, 0) },
+    { id: "ok", title: "as expected", of: (p) => p.ok, say: (p) => formatNumber(p.ok ?? 0, 0) },
+    { id: "tripped", title: "tripped", of: (p) => p.tripped, say: (p) => formatNumber(p.tripped ?? 0, 0) },
     ...metrics.map(
       (metric): Column => ({
         id: metric,
@@ -79,7 +79,7 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
       </table>
       {rows.length > SHOWN && (
         <p className={styles.note}>
-          The first {SHOWN} of {rows.length} points; the downloads hold all.
+          The first {SHOWN} of {formatCount(rows.length, "point")}; the downloads hold all.
         </p>
       )}
     </div>

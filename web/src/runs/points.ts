@@ -1,4 +1,5 @@
 import type { DiagnosisTally, PointTally } from "../api/types";
+import { formatShort } from "../ui/format";
 import type { ChartLine } from "../ui/line-field";
 import { metricName } from "../ui/metric-name";
 
@@ -6,8 +7,7 @@ import { metricName } from "../ui/metric-name";
 const USUAL = [/\.correct_fraction$/, /\.mean_delay_samples$/, /\.false_switches$/, /^control\.rms_error_um$/];
 
 /** A value a point differs by; a number cut to what can be told apart. */
-export const labelText = (value: string | number) =>
-  typeof value === "number" ? String(Number(value.toPrecision(4))) : value;
+export const labelText = (value: string | number) => (typeof value === "number" ? formatShort(value, "") : value);
 
 /** What a point is called: the values it differs by. */
 export function pointName(labels: PointTally["labels"]): string {

@@ -8,7 +8,7 @@ import { setPage } from "../app/view-store";
 import { ExpectationTable } from "../gallery/expectation-table";
 import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
-import { formatNumber, formatSi } from "../ui/format";
+import { formatCount, formatPercent, formatShort, formatSi } from "../ui/format";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import styles from "./runs.module.css";
 
@@ -23,6 +23,7 @@ interface Summary {
   verdict: string | null;
   claim: string;
   trip: { reason: string; time_ms: number } | null;
+  warnings: string[];
   metrics: Record<string, number>;
   metrics_std?: Record<string, number>;
   expectations: GalleryCard["expectations"];
@@ -30,7 +31,7 @@ interface Summary {
 
 /** One run: what was expected and measured, every figure, and the files it left. */
 export function RunDetail({ run }: { run: Run }) {
-  const files = `/api/v1/runs/${run.id}`;
+  const files = `./api/v1/runs/${run.id}`;
   const summary = run.summary as Summary | null;
   if (!summary)
     return (
@@ -38,7 +39,7 @@ export function RunDetail({ run }: { run: Run }) {
         {(run.error?.message as string | undefined) ??
           (run.state === "cancelled"
             ? "Start it again to have its result."
-            : `${Math.round(run.progress * 100)} % done.`)}
+            : `${formatPercent(run.progress, 0)} done.`)}
       </EmptyState>
     );
   const live = () =>
@@ -54,10 +55,15 @@ export function RunDetail({ run }: { run: Run }) {
         <small>
           {run.scenario_id} ·{" "}
           {run.seeds.length > 1 ? `seeds ${run.seeds[0]} to ${run.seeds.at(-1)}` : `seed ${run.seeds[0]}`}
-          {hasTrace && ` · ${formatNumber(summary.ticks, 0)} ticks of ${formatSi(summary.dt_s, "s", 3)}`} · took{" "}
+          {hasTrace && ` · ${formatCount(summary.ticks, "tick")} of ${formatShort(summary.dt_s, "s")}`} · took{" "}
           {formatSi(summary.elapsed_s, "s", 3)}
         </small>
         {summary.trip && <p className={styles.refusal}>Tripped: {summary.trip.reason}</p>}
+        {summary.warnings.map((text) => (
+          <p key={text} className={styles.refusal}>
+            Warning: {text}
+          </p>
+        ))}
       </header>
       <div className={styles.overview}>
         <img src={`${files}/thumbnail`} alt="The run as a drawing" />

@@ -18,6 +18,8 @@ export interface BenchStore {
   bench: Bench | undefined;
   scores: Record<string, Score>;
   events: LogEntry[];
+  /** A hidden fault is to be found: what tells it is not in this store, and panels that tell it show nothing. */
+  blind: boolean;
   droppedFrames: number;
   /** The latest word of the server about this connection. */
   notice: { code: string; message: string } | undefined;
@@ -29,6 +31,7 @@ export const useBench = create<BenchStore>(() => ({
   bench: undefined,
   scores: {},
   events: [],
+  blind: false,
   droppedFrames: 0,
   notice: undefined,
 }));

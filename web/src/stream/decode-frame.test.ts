@@ -60,8 +60,8 @@ describe("decodeFrame", () => {
 
   it("refuses another wire version and a torn message", () => {
     const good = encodeFrame({ frame: 1, headTick: 0, dtMs: 1, panels: [] });
-    new Uint8Array(good)[0] = 2;
-    expect(() => decodeFrame(good)).toThrow(/wire version 2/);
+    new Uint8Array(good)[0] = 3;
+    expect(() => decodeFrame(good)).toThrow(/wire version 3/);
     expect(() => decodeFrame(new ArrayBuffer(8))).toThrow(RangeError);
   });
 });

@@ -1,7 +1,7 @@
 import type { PanelFrame } from "./panel-frame";
 import { WIRE_VERSION } from "./wire";
 
-const FRAME_HEADER = 24;
+const FRAME_HEADER = 32;
 const PANEL_HEADER = 48;
 
 export interface Frame {

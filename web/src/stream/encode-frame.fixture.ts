@@ -1,3 +1,5 @@
+import { WIRE_VERSION } from "./wire";
+
 interface PanelFixture {
   panel: number;
   revision: number;
@@ -18,16 +20,16 @@ export function encodeFrame(input: {
 }): ArrayBuffer {
   const size = input.panels.reduce(
     (sum, p) => sum + 48 + p.min.length * (p.min[0].length * 8 + 4) + (p.min.length % 2) * 4,
-    24,
+    32,
   );
   const view = new DataView(new ArrayBuffer(size));
-  view.setUint8(0, 1);
+  view.setUint8(0, WIRE_VERSION);
   view.setUint8(1, 1);
   view.setUint16(2, input.panels.length, true);
   view.setUint32(4, input.frame, true);
   view.setFloat64(8, input.headTick, true);
   view.setFloat64(16, input.dtMs, true);
-  let at = 24;
+  let at = 32;
   const float = (value: number) => {
     view.setFloat32(at, value, true);
     at += 4;

@@ -74,7 +74,7 @@ describe("StreamClient", () => {
 
   it("offers the wire version as its subprotocol and subscribes when it is open", () => {
     client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 10 }, vi.fn());
-    expect(last().protocol).toBe("combbench.v1");
+    expect(last().protocol).toBe("combbench.v2");
     expect(last().sent).toEqual([]);
     last().accept();
     expect(types(last())).toEqual(["subscribe"]);

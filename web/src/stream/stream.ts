@@ -1,5 +1,5 @@
 import { benchExists } from "../api/bench-exists";
-import type { LogEntry } from "../api/types";
+import type { Bench, LogEntry, Score } from "../api/types";
 import { type Connection, useBench } from "./bench-store";
 import { DrawLoop } from "./draw-loop";
 import { appendEvent } from "./event-log";
@@ -13,6 +13,8 @@ const STALE_MS = 1000;
 let benchId = "";
 let serverId = "";
 let pendingEvents: LogEntry[] = [];
+/** What the server said of the bench; the store has it as the veil lets it through. */
+let known: { bench: Bench | undefined; scores: Record<string, Score> } = { bench: undefined, scores: {} };
 
 const patch = (connection: Partial<Connection>) =>
   useBench.setState((s) => ({ connection: { ...s.connection, ...connection } }));
@@ -40,10 +42,12 @@ function open(id: string): void {
   veil.show(id);
   pendingEvents = [];
   client.head = { tick: 0, dtMs: 0, running: false };
-  useBench.setState({ bench: undefined, scores: {}, events: [], droppedFrames: 0, notice: undefined });
+  known = { bench: undefined, scores: {} };
+  tell();
+  useBench.setState({ events: [], droppedFrames: 0, notice: undefined });
   patch({ phase: "connecting", reason: undefined, retryAt: undefined, staleSince: undefined });
-  const scheme = window.location.protocol === "https:" ? "wss" : "ws";
-  client.connect(`${scheme}://${window.location.host}/api/v1/benches/${encodeURIComponent(id)}/stream`);
+  const url = new URL(`./api/v1/benches/${encodeURIComponent(id)}/stream`, document.baseURI);
+  client.connect(url.href.replace(/^http/, "ws"));
 }
 
 function receive(message: ServerMessage): void {
@@ -52,23 +56,26 @@ function receive(message: ServerMessage): void {
       const restarted = serverId !== "" && serverId !== message.server;
       serverId = message.server;
       if (restarted) useBench.setState({ events: [] });
-      useBench.setState({ bench: veil.status(message.bench) });
+      known.bench = message.bench;
+      tell();
       const last = useBench.getState().events.at(-1)?.seq ?? 0;
       if (message.last_event > last) client.send({ type: "resume", after: last });
       return;
     }
     case "status": {
-      const { bench, scores } = useBench.getState();
-      const next = bench && mergeStatus(bench, veil.status(message));
-      if (next && next !== bench) useBench.setState({ bench: next });
-      if (message.scores && JSON.stringify(message.scores) !== JSON.stringify(scores))
-        useBench.setState({ scores: message.scores });
+      const bench = known.bench && mergeStatus(known.bench, message);
+      const isScored = message.scores && JSON.stringify(message.scores) !== JSON.stringify(known.scores);
+      const scores = isScored && message.scores ? message.scores : known.scores;
+      if (bench !== known.bench || scores !== known.scores) {
+        known = { bench, scores };
+        tell();
+      }
       if (message.dropped_frames !== undefined) useBench.setState({ droppedFrames: message.dropped_frames });
       return;
     }
-    case "event":
+    case "events":
       if (pendingEvents.length === 0) setTimeout(flushEvents, 30);
-      pendingEvents.push(message.event);
+      pendingEvents.push(...message.events);
       return;
     case "notice":
       useBench.setState({ notice: { code: message.code, message: message.message } });
@@ -89,9 +96,26 @@ function flushEvents(): void {
   useBench.setState({ events });
 }
 
+/** Put what is known into the store, as far as it may be seen. */
+function tell(): void {
+  useBench.setState({
+    blind: veil.on,
+    bench: known.bench && veil.bench(known.bench),
+    scores: veil.scores(known.scores),
+  });
+}
+
+/** Hide what tells the fault of a bench. */
+export function dropVeil(bench: string): void {
+  veil.drop(bench);
+  tell();
+  useBench.setState({ events: veil.events(useBench.getState().events) });
+}
+
 /** Show again what was hidden. */
 export function liftVeil(): void {
   useBench.setState({ events: veil.lift().reduce(appendEvent, useBench.getState().events) });
+  tell();
 }
 
 setInterval(() => {

@@ -1,7 +1,16 @@
-import type { Bench, LogEntry } from "../api/types";
+import type { Bench, LogEntry, Score, Signal } from "../api/types";
 
-/** Events that give a hidden fault away. */
-const TELLING = ["inject", "scheduled", "truth_changed", "recognised", "heal"];
+/** Events that give a hidden fault away, or say what a diagnoser takes it for. */
+const TELLING = [
+  ...["inject", "scheduled", "heal", "truth_changed", "recognised"],
+  ...["verdict", "region", "alarm", "unexcited"],
+];
+
+/** Signals that are the fault itself, or know of it; of twins too. */
+const TRUTHS = /^(?:[^:]+:)?(?:faults|effects)\.|_(?:true|ideal)(?:\.|$)|\.(?:truth|error_pct)(?:\.|$)/;
+
+const NONE: never[] = [];
+const UNSCORED: Record<string, Score> = {};
 
 /** The bench that hides a fault, and the one that is shown. */
 let hiding: string | undefined;
@@ -9,9 +18,11 @@ let shown: string | undefined;
 let held: LogEntry[] = [];
 
 /**
- * Keeps a hidden fault from the page while it is to be found: what acts, what waits, and the log of it.
+ * Keeps a hidden fault from the page while it is to be found: what acts, what waits, the signals that know of it, what
+ * the diagnosers say, and the log of it.
  *
- * It lies over one bench, and is there again when that bench is shown again. The traces stay what they are; a veil is a game's courtesy, not a lock.
+ * It lies over one bench, and is there again when that bench is shown again. The traces stay what they are; a veil is a
+ * game's courtesy, not a lock.
  */
 export const veil = {
   get on(): boolean {
@@ -32,8 +43,11 @@ export const veil = {
     held = [];
     return events;
   },
-  status<T extends Partial<Pick<Bench, "faults" | "pending">>>(status: T): T {
-    return veil.on ? { ...status, faults: [], pending: [] } : status;
+  bench(bench: Bench): Bench {
+    return veil.on ? { ...bench, faults: NONE, pending: NONE, signals: harmless(bench) } : bench;
+  },
+  scores(scores: Record<string, Score>): Record<string, Score> {
+    return veil.on ? UNSCORED : scores;
   },
   events(events: LogEntry[]): LogEntry[] {
     if (!veil.on) return events;
@@ -43,3 +57,18 @@ export const veil = {
 };
 
 const tells = (event: LogEntry): boolean => TELLING.includes(event.kind) || event.command?.kind === "inject";
+
+const harmlessOf = new WeakMap<Signal[], Signal[]>();
+
+/** The signals that may be seen: none of a diagnoser, and none that knows the truth. The same list for the same bench. */
+function harmless({ signals, diagnosers }: Bench): Signal[] {
+  const known = harmlessOf.get(signals);
+  if (known) return known;
+  const blocks = new Set(Object.keys(diagnosers));
+  const kept = signals.filter(
+    ({ name }) =>
+      !TRUTHS.test(name) && !blocks.has(name.replace(/^[^:]+:/, "").split(".")[0]) && !blocks.has(name.split(".")[0]),
+  );
+  harmlessOf.set(signals, kept);
+  return kept;
+}

@@ -4,7 +4,7 @@ import type { Bench, Command } from "../api/types";
 type Schemas = components["schemas"];
 
 /** Version of the wire format; also the subprotocol offered to the server. */
-export const WIRE_VERSION = 1;
+export const WIRE_VERSION = 2;
 export const SUBPROTOCOL = `combbench.v${WIRE_VERSION}`;
 
 export type Trigger = Required<Schemas["TriggerSpec"]>;
@@ -28,7 +28,7 @@ export type Status = Omit<Schemas["Status"], "parameters"> & { parameters: Bench
 export type ServerMessage =
   | Schemas["Hello"]
   | Status
-  | Schemas["EventMessage"]
+  | Schemas["Events"]
   | Schemas["Reply"]
   | Schemas["ErrorMessage"]
   | Schemas["Notice"];

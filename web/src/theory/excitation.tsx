@@ -6,6 +6,7 @@ import { useAsked } from "../api/use-asked";
 import { formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
+import { roundTo } from "../ui/unit-scale";
 import styles from "./theory.module.css";
 
 interface Tone {
@@ -97,7 +98,7 @@ export function Excitation() {
           onClick={() =>
             setTones([
               ...tones,
-              { amplitude: 10, frequency: Number((Math.max(...tones.map((t) => t.frequency)) + 0.3).toFixed(2)) },
+              { amplitude: 10, frequency: roundTo(Math.max(...tones.map((t) => t.frequency)) + 0.3, 4) },
             ])
           }
         >

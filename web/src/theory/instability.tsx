@@ -5,7 +5,7 @@ import type { InstabilityMap, MapSource } from "../api/types";
 import { useAsked } from "../api/use-asked";
 import { useScheme } from "../app/use-scheme";
 import { PictureMenu } from "../picture/picture-menu";
-import { formatNumber } from "../ui/format";
+import { formatCount, formatNumber, formatPercent, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
 import { useCanvas } from "../ui/use-canvas";
@@ -97,11 +97,11 @@ export function Instability() {
             {unstableShare(answer)} of the map is unstable.{" "}
             {answer.critical_gain_constant === null
               ? "Under a constant no gain on the map is."
-              : `Under a constant it is beyond ${formatNumber(answer.critical_gain_constant, 3)}.`}
+              : `Under a constant it is beyond ${formatSi(answer.critical_gain_constant, "")}.`}
           </p>
         </div>
       ) : (
-        !refusal && <p className={styles.advice}>Working out {CELLS * CELLS} points.</p>
+        !refusal && <p className={styles.advice}>Working out {formatCount(CELLS * CELLS, "point")}.</p>
       )}
     </section>
   );
@@ -133,8 +133,8 @@ function MapPicture({ map, name }: { map: InstabilityMap; name: string }) {
       </div>
       <p className={styles.reading} style={{ paddingLeft: FIELD.left }}>
         {at
-          ? `ω = ${formatNumber(at.frequency, 2)}, gain ${formatNumber(at.gain, 3)}: ${
-              at.growth > STILL ? `grows by e every ${formatNumber(1 / at.growth, 1)}` : "settles"
+          ? `ω = ${formatNumber(at.frequency, 2)}, gain ${formatSi(at.gain, "", 3)}: ${
+              at.growth > STILL ? `grows by e every ${formatSi(1 / at.growth, "", 3)}` : "settles"
             }`
           : "Point at the map to read it"}
       </p>
@@ -144,5 +144,5 @@ function MapPicture({ map, name }: { map: InstabilityMap; name: string }) {
 
 function unstableShare({ growth }: InstabilityMap): string {
   const cells = growth.flat();
-  return `${formatNumber((100 * cells.filter((g) => g > STILL).length) / cells.length, 0)} %`;
+  return formatPercent(cells.filter((g) => g > STILL).length / cells.length, 0);
 }

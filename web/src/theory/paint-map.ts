@@ -1,7 +1,7 @@
 import type { InstabilityMap } from "../api/types";
 import type { Pen } from "../picture/pen";
 import { fontFor } from "../ui/canvas-font";
-import { formatNumber } from "../ui/format";
+import { tickLabels } from "../ui/format";
 import { CANVAS, type Scheme } from "../ui/palette";
 import { linearTicks } from "../ui/ticks";
 
@@ -53,11 +53,15 @@ export function paintMap(
   ctx.fillStyle = colours.muted;
   ctx.textBaseline = "middle";
   ctx.textAlign = "right";
-  for (const tick of linearTicks(0, highest, 5))
-    ctx.fillText(formatNumber(tick, highest <= 1 ? 1 : 0), left - 6, top + tall - (tick / highest) * tall);
+  const rows = linearTicks(0, highest, 5);
+  tickLabels(rows).forEach((label, i) => {
+    ctx.fillText(label, left - 6, top + tall - (rows[i] / highest) * tall);
+  });
   ctx.textAlign = "center";
-  for (const tick of linearTicks(first, last, Math.max(2, wide / 70)))
-    ctx.fillText(formatNumber(tick, 1), left + ((tick - first) / (last - first)) * wide, height - bottom + 12);
+  const columns = linearTicks(first, last, Math.max(2, wide / 70));
+  tickLabels(columns).forEach((label, i) => {
+    ctx.fillText(label, left + ((columns[i] - first) / (last - first)) * wide, height - bottom + 12);
+  });
   if (!isFramed) {
     ctx.textAlign = "right";
     ctx.fillText("drive frequency ω", left + wide, height - 6);

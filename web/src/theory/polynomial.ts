@@ -1,3 +1,6 @@
+import { formatShort, inTex } from "../ui/format";
+import { roundTo } from "../ui/unit-scale";
+
 /** Coefficients, lowest power first. */
 export type Polynomial = readonly number[];
 
@@ -27,8 +30,8 @@ export const isZero = (p: Polynomial): boolean => p.every((x) => x === 0);
 export function polynomialLatex(p: Polynomial): string {
   const terms = p.flatMap((value, power) => {
     if (value === 0) return [];
-    const size = Number(Math.abs(value).toPrecision(6));
-    const number = size === 1 && power > 0 ? "" : String(size);
+    const size = roundTo(Math.abs(value), 6);
+    const number = size === 1 && power > 0 ? "" : inTex(formatShort(size, "", 6));
     const s = power === 0 ? "" : power === 1 ? "s" : `s^{${power}}`;
     return [{ sign: value < 0 ? "-" : "+", text: `${number}${s}` }];
   });

@@ -3,7 +3,7 @@ import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/use-asked";
 import { PictureMenu } from "../picture/picture-menu";
-import { formatNumber } from "../ui/format";
+import { formatShort, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { printRealPart } from "./print-theory";
 import { RealPart } from "./real-part";
@@ -85,10 +85,8 @@ export function PositiveReal() {
             <div>
               <dt>least Re G(jω)</dt>
               <dd>
-                {answer.least_real === null
-                  ? "unbounded"
-                  : Number(answer.least_real.toPrecision(4)).toString().replace("-", "−")}
-                {answer.at === null ? " at infinity" : ` at ω = ${formatNumber(answer.at, 3)}`}
+                {answer.least_real === null ? "unbounded" : formatShort(answer.least_real, "")}
+                {answer.at === null ? " at infinity" : ` at ω = ${formatSi(answer.at, "")}`}
               </dd>
             </div>
           </dl>

@@ -1,6 +1,7 @@
 import type { PositiveReal } from "../api/types";
-import { formatNumber } from "../ui/format";
+import { formatShort, tickLabels } from "../ui/format";
 import { linearTicks } from "../ui/ticks";
+import { roundTo } from "../ui/unit-scale";
 import { useSize } from "../ui/use-size";
 import styles from "./theory.module.css";
 
@@ -11,7 +12,7 @@ const BOTTOM = 34;
 /** Re G(jw) over frequency, and the curve of Nyquist beside it; what lies below zero is marked. */
 export function RealPart({ found }: { found: PositiveReal }) {
   const { element, size } = useSize<HTMLDivElement>();
-  const label = `Real part over frequency; least ${found.least_real === null ? "unbounded" : formatNumber(found.least_real, 4)}`;
+  const label = `Real part over frequency; least ${found.least_real === null ? "unbounded" : formatShort(found.least_real, "")}`;
   const split = size.width > 460;
   const width = split ? size.width * 0.58 : size.width;
   const second = split ? size.width - width : size.width;
@@ -80,33 +81,35 @@ function Plot({ label, width, x, y, across, up, log = false }: PlotProps) {
   const tall = HEIGHT - BOTTOM - 8;
   const px = (value: number) => LEFT + ((value - left) / (right - left)) * wide;
   const py = (value: number) => 8 + tall - ((value - low) / (high - low)) * tall;
-  const path = points.map(([a, b], i) => `${i ? "L" : "M"}${px(a).toFixed(1)} ${py(b).toFixed(1)}`).join("");
+  const path = points.map(([a, b], i) => `${i ? "L" : "M"}${roundTo(px(a), 5)} ${roundTo(py(b), 5)}`).join("");
   const forbidden = log
     ? low < 0 && { x: LEFT, y: py(0), width: wide, height: Math.max(0, 8 + tall - py(0)) }
     : left < 0 && { x: LEFT, y: 8, width: Math.max(0, px(0) - LEFT), height: tall };
   const rows = linearTicks(low, high, 4);
-  const columns = linearTicks(left, right, log ? right - left : wide / 80);
+  const columns = linearTicks(left, right, log ? right - left : wide / 80).filter(
+    (tick) => !log || Number.isInteger(tick),
+  );
+  const rowLabels = tickLabels(rows);
+  const columnLabels = log ? columns.map((tick) => formatShort(10 ** tick, "")) : tickLabels(columns);
   return (
     <svg width={width} height={HEIGHT} role="img" aria-label={label}>
       {forbidden && <rect {...forbidden} className={styles.forbidden} />}
-      {rows.map((tick) => (
+      {rows.map((tick, i) => (
         <g key={tick}>
           <path d={`M${LEFT} ${py(tick)} H${LEFT + wide}`} className={tick === 0 ? styles.zero : styles.grid} />
           <text x={LEFT - 6} y={py(tick) + 4} textAnchor="end" className={styles.tick}>
-            {formatNumber(tick, decimals(rows))}
+            {rowLabels[i]}
           </text>
         </g>
       ))}
-      {columns
-        .filter((tick) => !log || Number.isInteger(tick))
-        .map((tick) => (
-          <g key={tick}>
-            <path d={`M${px(tick)} 8 V${8 + tall}`} className={!log && tick === 0 ? styles.zero : styles.grid} />
-            <text x={px(tick)} y={HEIGHT - 20} textAnchor="middle" className={styles.tick}>
-              {log ? formatNumber(10 ** tick, Math.max(0, -tick)) : formatNumber(tick, decimals(columns))}
-            </text>
-          </g>
-        ))}
+      {columns.map((tick, i) => (
+        <g key={tick}>
+          <path d={`M${px(tick)} 8 V${8 + tall}`} className={!log && tick === 0 ? styles.zero : styles.grid} />
+          <text x={px(tick)} y={HEIGHT - 20} textAnchor="middle" className={styles.tick}>
+            {columnLabels[i]}
+          </text>
+        </g>
+      ))}
       <path d={path} className={styles.curve} />
       <text x={LEFT + wide} y={HEIGHT - 5} textAnchor="end" className={styles.tick}>
         {across}
@@ -116,12 +119,6 @@ function Plot({ label, width, x, y, across, up, log = false }: PlotProps) {
       </text>
     </svg>
   );
-}
-
-/** As many decimals as the steps need. */
-function decimals(ticks: readonly number[]): number {
-  const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
-  return Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-9)));
 }
 
 const ends = (values: number[]): [number, number] => [Math.min(...values), Math.max(...values)];

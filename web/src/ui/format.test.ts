@@ -1,42 +1,151 @@
 import { describe, expect, it } from "vitest";
-import { formatNumber, formatOn, formatPercent, formatSi } from "./format";
-import { unitScale, unitText } from "./unit-scale";
+import {
+  formatChange,
+  formatClock,
+  formatCount,
+  formatEntry,
+  formatIn,
+  formatMoment,
+  formatNumber,
+  formatOn,
+  formatPercent,
+  formatShort,
+  formatSi,
+  formatTick,
+  inTex,
+  labelsOn,
+  tickLabels,
+} from "./format";
+import cases from "./format-cases.json";
+import { UNITS, unitScale, unitText } from "./unit-scale";
 
-describe("formatSi", () => {
-  it.each([
-    [0.0032, "um", "3.200\u00a0nm"],
-    [3.2071, "um", "3.207\u00a0µm"],
-    [1234, "um", "1.234\u00a0mm"],
-    [-12.5, "V", "−12.50\u00a0V"],
-    [0.01, "V", "10.00\u00a0mV"],
-    [2.209e-10, "kg", "220.9\u00a0ng"],
-    [2000, "Hz", "2.000\u00a0kHz"],
-    [0.74, "ms", "740.0\u00a0µs"],
-    [0, "um", "0.000\u00a0µm"],
-    [0.99999999, "ms", "1.000\u00a0ms"],
-    [5, "1", "5.000"],
-    [1e-5, "", "1.000e−5"],
-  ])("%s %s", (value, unit, text) => expect(formatSi(value, unit)).toBe(text));
+const FORMATS = { si: formatSi, short: formatShort, in: formatIn };
 
-  it("shows missing values as a dash", () => expect(formatSi(Number.NaN, "V")).toBe("–"));
+describe.each(Object.entries(FORMATS))("the cases it shares with Python, %s", (name, format) => {
+  it.each(
+    cases[name as keyof typeof cases] as [number, string, number, string][],
+  )("%s %s in %s digits is %s", (...one) => {
+    const [value, unit, digits, text] = one;
+    expect(format(value, unit, digits)).toBe(text);
+  });
+});
+
+it("has the units that Python has, and writes each as itself", () => {
+  expect(Object.keys(UNITS).sort()).toEqual(Object.keys(cases.units).sort());
+  for (const [unit, text] of Object.entries(cases.units)) expect(formatShort(1, unit)).toBe(text);
+});
+
+it.each(cases.ticks as [number[], string[]][])("labels ticks as Python does, %s", (ticks, texts) =>
+  expect(tickLabels(ticks)).toEqual(texts));
+
+/** Numbers of every size and both signs, the same each time. */
+function* values(count: number): Generator<number> {
+  let state = 1;
+  const uniform = () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 2 ** 32;
+  };
+  for (let i = 0; i < count; i += 1) yield (uniform() < 0.5 ? -1 : 1) * (0.1 + uniform()) * 10 ** (60 * uniform() - 30);
+}
+
+const PREFIX = { T: 1e12, G: 1e9, M: 1e6, k: 1e3, "": 1, m: 1e-3, µ: 1e-6, n: 1e-9, p: 1e-12, f: 1e-15, a: 1e-18 };
+const SHOWN = /^(−?)(\d{1,3}(?:\.\d+)?)(?:e(−?\d+))?\u00a0([TGMkmµnpfa]?)V$/;
+
+function parsed(text: string): number {
+  const [, sign, digits, power, prefix] = SHOWN.exec(text) ?? [];
+  expect(digits, text).toBeDefined();
+  const size = Number(digits) * 10 ** Number((power ?? "0").replace("−", "-")) * PREFIX[prefix as keyof typeof PREFIX];
+  return sign ? -size : size;
+}
+
+describe.each([2, 3, 4, 6])("any value in %i digits", (digits) => {
+  const half = 0.5 * 10 ** (1 - digits) * 1.000001;
+
+  it("reads back within half of its last digit, below 1000 of its unit", () => {
+    for (const value of values(3000))
+      for (const format of [formatSi, formatShort]) {
+        const text = format(value, "V", digits);
+        expect(Math.abs(parsed(text) / value - 1), `${value} as ${text}`).toBeLessThan(half);
+        expect(
+          Math.abs(
+            Number(
+              text
+                .slice(0, -1)
+                .replace("−", "-")
+                .match(/^-?[\d.]+/)?.[0],
+            ),
+          ),
+          text,
+        ).toBeLessThan(1000);
+      }
+  });
+
+  it("shows all the digits of what is measured, and no trailing zeros of a fraction of what was chosen", () => {
+    for (const value of values(1000)) {
+      const [whole, fraction = ""] = (/[\d.]+/.exec(formatSi(value, "V", digits)) ?? [""])[0].split(".");
+      expect(fraction.length).toBe(Math.max(0, digits - whole.length));
+      expect(formatShort(value, "V", digits)).not.toMatch(/\.\d*0(\u00a0|e)/);
+    }
+  });
+
+  it("keeps every whole number whole", () => {
+    for (let whole = 0; whole < 1000; whole += 1) expect(formatShort(whole, "V", 3)).toBe(`${whole}\u00a0V`);
+  });
+});
+
+it("says missing and boundless values by a dash", () => {
+  for (const value of [Number.NaN, Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY])
+    expect([formatSi(value, "V"), formatShort(value, "V"), formatIn(value, "V", 1), formatPercent(value)]).toEqual(
+      Array(4).fill("–"),
+    );
 });
 
 describe("formatOn", () => {
   it("keeps unit and decimals of the axis, so a value through zero does not jump", () => {
     const scale = unitScale("um", 4.1);
-    expect(scale.unit).toBe("µm");
-    expect([4.1, 0.003, -0.003, 0].map((v) => formatOn(scale, v))).toEqual(["4.100", "0.003", "−0.003", "0.000"]);
+    expect([4.1, 0.003, -0.003, 0, -0].map((v) => formatOn(scale, v))).toEqual(
+      ["4.100", "0.003", "−0.003", "0.000", "0.000"].map((text) => `${text}\u00a0µm`),
+    );
   });
 
-  it("never writes minus zero", () => expect(formatNumber(-0.0001, 2)).toBe("0.00"));
+  it("keeps the power of ten too", () =>
+    expect([2e-5, 0].map((v) => formatOn(unitScale("", 2e-5), v))).toEqual(["20.00e−6", "0.00e−6"]));
+});
 
-  it("groups thousands", () => expect(formatNumber(1234567.8, 1)).toBe("1\u2009234\u2009567.8"));
+it("labels an axis whose title says the unit", () =>
+  expect(labelsOn(unitScale("ms", 0.4), [0, 0.2, 0.4])).toEqual(["0", "200", "400"]));
+
+it("shows device time to the microsecond", () => {
+  expect(formatClock(184.32)).toBe("0.184\u2009320");
+  expect(formatClock(12345678.901)).toBe("12\u2009345.678\u2009901");
+  expect(formatMoment(1234.56)).toBe("1234.560\u00a0ms");
+  expect(formatTick(1234567)).toBe("tick\u00a01\u2009234\u2009567");
+});
+
+it("counts one and many", () => {
+  expect([0, 1, 2, 4096, 12345].map((n) => formatCount(n, "sample"))).toEqual([
+    "0\u00a0samples",
+    "1\u00a0sample",
+    "2\u00a0samples",
+    "4096\u00a0samples",
+    "12\u2009345\u00a0samples",
+  ]);
+});
+
+it("gives a change its sign, and none to what is no change", () => {
+  expect([3.24, -3.24, 0.001, -0.001].map((c) => formatChange(c, "%", 1))).toEqual(
+    ["+3.2", "−3.2", "0.0", "0.0"].map((text) => `${text}\u00a0%`),
+  );
+});
+
+it("writes entries as they are typed", () => {
+  expect([0.1 + 0.2, -20, 1e-9].map(formatEntry)).toEqual(["0.3", "-20", "1e-9"]);
+});
+
+it("goes into an equation", () => {
+  expect([formatSi(-2.5e-7, ""), formatNumber(123456, 0)].map(inTex)).toEqual(["-250.0\\cdot10^{-9}", "123\\,456"]);
 });
 
 it("writes units as people do", () => {
-  expect(unitText("um/ms")).toBe("µm/ms");
-  expect(unitText("uN")).toBe("µN");
-  expect(unitText("1")).toBe("");
+  expect(["um/ms", "uN", "1", "um^2", "N s/m"].map(unitText)).toEqual(["µm/ms", "µN", "", "µm²", "N·s/m"]);
 });
-
-it("writes shares as percentages", () => expect(formatPercent(0.9823)).toBe("98.2\u00a0%"));

@@ -1,11 +1,19 @@
-import { type UnitScale, unitScale } from "./unit-scale";
+import { roundTo, type UnitScale, unitScale, unitText } from "./unit-scale";
+
+// Every number the page writes for people is written here. `core/format.py` does the same for reports, pictures and
+// logs; `format-cases.json` holds both to one text for one value.
 
 const MINUS = "−";
 const THIN = "\u2009";
+const SPACE = "\u00a0";
+const NOTHING = "–";
+/** From here on a number with fixed decimals would be a row of digits that mean nothing. */
+const IMMENSE = 1e15;
 
 /** A number with fixed decimals, a real minus sign and grouped thousands. */
 export function formatNumber(value: number, decimals: number): string {
-  if (!Number.isFinite(value)) return "–";
+  if (!Number.isFinite(value)) return NOTHING;
+  if (Math.abs(value) >= IMMENSE) return formatSi(value, "");
   const text = Math.abs(value).toFixed(decimals);
   const [whole, fraction] = text.split(".");
   const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, THIN) : whole;
@@ -13,27 +21,101 @@ export function formatNumber(value: number, decimals: number): string {
   return sign + grouped + (fraction ? `.${fraction}` : "");
 }
 
+/** A value with an SI-prefixed unit and all its significant digits, for figures that are measured. */
+export function formatSi(value: number, unit: string, digits = 4): string {
+  if (!Number.isFinite(value)) return NOTHING;
+  return formatOn(unitScale(unit, value, digits), value);
+}
+
+/** A value with an SI-prefixed unit in as few digits as it needs, for figures that were chosen: "200 µs", "1.5 ms". */
+export function formatShort(value: number, unit: string, digits = 4): string {
+  if (!Number.isFinite(value)) return NOTHING;
+  const scale = unitScale(unit, value, digits);
+  const shown = Number((value * scale.factor).toFixed(scale.decimals));
+  return formatOn({ ...scale, decimals: decimalsOf(shown, scale.decimals) }, value);
+}
+
 /** A value on a scale chosen beforehand; its width does not jump. */
 export function formatOn(scale: UnitScale, value: number): string {
-  return formatNumber(value * scale.factor, scale.decimals);
+  if (!Number.isFinite(value)) return NOTHING;
+  return withUnit(formatNumber(value * scale.factor, scale.decimals) + scale.exponent, scale.unit);
 }
 
-/** A value with an SI-prefixed unit, for text that stands still. */
-export function formatSi(value: number, unit: string, digits = 4): string {
-  if (!Number.isFinite(value)) return "–";
-  if (tiny(value, unit))
-    return `${value.toExponential(digits - 1).replace("-", MINUS)}${unit ? THIN + unitScale(unit, 1).unit : ""}`;
-  const scale = unitScale(unit, value, digits);
-  return formatOn(scale, value) + (scale.unit ? `\u00a0${scale.unit}` : "");
-}
-
-/** Dimensionless numbers have no prefix to take: far from 1 they need a power of ten. */
-function tiny(value: number, unit: string): boolean {
-  const size = Math.abs(value);
-  return (unit === "" || unit === "1") && size > 0 && (size < 1e-3 || size >= 1e6);
+/** A value in its own unit with fixed decimals, for columns and for units that take no prefix. */
+export function formatIn(value: number, unit: string, decimals: number): string {
+  return Number.isFinite(value) ? withUnit(formatNumber(value, decimals), unitText(unit)) : NOTHING;
 }
 
 /** A share as a percentage. */
 export function formatPercent(share: number, decimals = 1): string {
-  return Number.isFinite(share) ? `${formatNumber(share * 100, decimals)}\u00a0%` : "–";
+  return formatIn(share * 100, "%", decimals);
+}
+
+/** A change, with its sign. */
+export function formatChange(change: number, unit: string, decimals: number): string {
+  const text = formatIn(change, unit, decimals);
+  return change > 0 && Number(change.toFixed(decimals)) !== 0 ? `+${text}` : text;
+}
+
+/** How many of something: "1 sample", "4096 ticks". */
+export function formatCount(count: number, noun: string): string {
+  return withUnit(formatNumber(count, 0), Math.abs(count) === 1 ? noun : `${noun}s`);
+}
+
+/** A moment of device time, to the microsecond: it names a tick. */
+export function formatMoment(ms: number): string {
+  return formatIn(ms, "ms", 3);
+}
+
+/** The name of a tick. */
+export function formatTick(tick: number): string {
+  return `tick${SPACE}${formatNumber(tick, 0)}`;
+}
+
+/** Device time as a clock shows it, in seconds: to the microsecond, of fixed width. */
+export function formatClock(ms: number): string {
+  const text = formatNumber(ms / 1000, 6);
+  return text === NOTHING ? text : `${text.slice(0, -3)}${THIN}${text.slice(-3)}`;
+}
+
+/** Labels of the ticks of an axis: as many decimals as its steps need, and no more. */
+export function tickLabels(ticks: readonly number[]): string[] {
+  return labelsOn(unitScale("", Math.max(0, ...ticks.map(Math.abs))), ticks);
+}
+
+/** Labels of the ticks of an axis whose title says the unit of its scale. */
+export function labelsOn(
+  { factor, exponent }: Pick<UnitScale, "factor" | "exponent">,
+  ticks: readonly number[],
+): string[] {
+  const shown = ticks.map((tick) => roundTo(tick * factor, 12));
+  const decimals = Math.max(0, ...shown.map((tick) => decimalsOf(tick, 9)));
+  return shown.map((tick) => formatNumber(tick, decimals) + (tick === 0 ? "" : exponent));
+}
+
+/** A text of this file inside an equation. */
+export function inTex(text: string): string {
+  return text
+    .replaceAll(MINUS, "-")
+    .replaceAll(THIN, "\\,")
+    .replaceAll(SPACE, "~")
+    .replace(/e(-?\d+)$/, "\\cdot10^{$1}");
+}
+
+/** A number as one would type it, for fields that are edited: without grouping, with the hyphen of the keyboard. */
+export function formatEntry(value: number): string {
+  return String(roundTo(value, 8));
+}
+
+/** Fewest decimals, at most `most`, that show a value as it is. */
+function decimalsOf(value: number, most: number): number {
+  const full = Number(value.toFixed(most));
+  let decimals = 0;
+  while (decimals < most && Number(value.toFixed(decimals)) !== full) decimals += 1;
+  return decimals;
+}
+
+function withUnit(text: string, unit: string): string {
+  if (unit === "") return text;
+  return unit === "°" ? text + unit : text + SPACE + unit;
 }

@@ -1,10 +1,11 @@
 import { ActionIcon, Slider, Tooltip } from "@mantine/core";
 import { IconArrowBackUp } from "@tabler/icons-react";
 import { useState } from "react";
+import { formatShort } from "./format";
 import styles from "./knob.module.css";
 import { NumberField } from "./number-field";
 import { positionOf, valueAt } from "./slider-scale";
-import { unitText } from "./unit-scale";
+import { roundTo, unitText } from "./unit-scale";
 
 interface KnobProps {
   label: string;
@@ -51,11 +52,11 @@ export function Knob(props: KnobProps) {
       <div className={styles.line}>
         <span className={styles.label}>{label}</span>
         {!isOriginal && (
-          <Tooltip label={`Back to ${Number(original.toPrecision(4))} ${unitText(unit)}`}>
+          <Tooltip label={`Back to ${formatShort(original, unit)}`}>
             <ActionIcon
               size={20}
               variant="subtle"
-              aria-label={`${label}: back to ${Number(original.toPrecision(4))}`}
+              aria-label={`${label}: back to ${formatShort(original, unit)}`}
               onClick={() => onChange(original)}
             >
               <IconArrowBackUp size={13} />
@@ -65,7 +66,7 @@ export function Knob(props: KnobProps) {
         <NumberField
           label={label}
           unit={unitText(unit)}
-          value={Number(shown.toPrecision(6))}
+          value={roundTo(shown, 6)}
           minimum={minimum ?? null}
           maximum={maximum ?? null}
           integer={step === 1 && unit === ""}

@@ -1,6 +1,8 @@
+import { formatShort, tickLabels } from "./format";
 import styles from "./line-chart.module.css";
 import { DASHES, type Scheme, TRACE_COLOURS } from "./palette";
 import { linearTicks } from "./ticks";
+import { roundTo } from "./unit-scale";
 
 export interface ChartLine {
   name: string;
@@ -46,8 +48,11 @@ export function LineField(props: LineFieldProps) {
     yRange ?? spanOf(lines.flatMap((l) => l.y.flatMap((v, i) => [v - (l.spread?.[i] ?? 0), v + (l.spread?.[i] ?? 0)])));
   const tall = Math.max(40, height - TOP - BOTTOM);
   const rows = linearTicks(y0, y1, tall / 34);
-  const left = TITLE + DIGIT * Math.max(5, ...rows.map((t) => say(t).length));
+  const rowLabels = tickLabels(rows);
+  const left = TITLE + DIGIT * Math.max(5, ...rowLabels.map((text) => text.length));
   const wide = Math.max(60, width - left - RIGHT);
+  const columns = linearTicks(x0, x1, wide / 70);
+  const columnLabels = tickLabels(columns);
   const px = (x: number) => left + ((x - x0) / (x1 - x0)) * wide;
   const py = (y: number) => TOP + tall - ((y - y0) / (y1 - y0)) * tall;
   const colour = (i: number) => lineColour(i, scheme);
@@ -61,19 +66,19 @@ export function LineField(props: LineFieldProps) {
       onPointerMove={({ nativeEvent: { offsetX, offsetY } }) => onRead?.(nearest(lines, px, py, offsetX, offsetY))}
       onPointerLeave={() => onRead?.(undefined)}
     >
-      {linearTicks(x0, x1, wide / 70).map((t) => (
+      {columns.map((t, i) => (
         <g key={`x${t}`}>
           <path d={`M${px(t)} ${TOP}V${TOP + tall}`} className={styles.grid} />
           <text x={px(t)} y={TOP + tall + 15} textAnchor="middle">
-            {say(t)}
+            {columnLabels[i]}
           </text>
         </g>
       ))}
-      {rows.map((t) => (
+      {rows.map((t, i) => (
         <g key={`y${t}`}>
           <path d={`M${left} ${py(t)}H${left + wide}`} className={styles.grid} />
           <text x={left - 6} y={py(t) + 4} textAnchor="end">
-            {say(t)}
+            {rowLabels[i]}
           </text>
         </g>
       ))}
@@ -108,13 +113,11 @@ export function LineField(props: LineFieldProps) {
   );
 }
 
-const say = (value: number) => String(Number(value.toPrecision(6))).replace("-", "−");
-
 function pathOf(line: ChartLine, px: (x: number) => number, py: (y: number) => number): string {
   return line.x
     .map((x, i) => {
-      const X = px(x).toFixed(1);
-      const Y = py(line.y[i]).toFixed(1);
+      const X = roundTo(px(x), 5);
+      const Y = roundTo(py(line.y[i]), 5);
       return i === 0 ? `M${X} ${Y}` : line.isStepped ? `H${X}V${Y}` : `L${X} ${Y}`;
     })
     .join("");
@@ -150,8 +153,8 @@ function nearest(
       const far = Math.hypot(px(x) - atX, py(line.y[i]) - atY);
       if (far >= best) return;
       best = far;
-      const spread = line.spread?.[i] ? ` ± ${say(Number(line.spread[i].toPrecision(3)))}` : "";
-      found = `${line.name ? `${line.name}: ` : ""}${say(Number(x.toPrecision(4)))}, ${say(Number(line.y[i].toPrecision(4)))}${spread}`;
+      const spread = line.spread?.[i] ? ` ± ${formatShort(line.spread[i], "", 3)}` : "";
+      found = `${line.name ? `${line.name}: ` : ""}${formatShort(x, "")}, ${formatShort(line.y[i], "")}${spread}`;
     });
   return found;
 }

@@ -1,4 +1,5 @@
 import { useEffect, useState } from "react";
+import { formatEntry } from "./format";
 import styles from "./number-field.module.css";
 import { nudge, parseNumber } from "./parse-number";
 
@@ -24,7 +25,7 @@ export function NumberField({
   disabled = false,
   onCommit,
 }: NumberFieldProps) {
-  const shown = value === undefined ? "" : String(Number(value.toPrecision(8)));
+  const shown = value === undefined ? "" : formatEntry(value);
   const [text, setText] = useState(shown);
   const [wrong, setWrong] = useState<string | undefined>(undefined);
   useEffect(() => {
@@ -59,7 +60,7 @@ export function NumberField({
           }
           if ((event.key === "ArrowUp" || event.key === "ArrowDown") && value !== undefined) {
             event.preventDefault();
-            const next = String(nudge(Number(text), event.key === "ArrowUp" ? 1 : -1, integer));
+            const next = formatEntry(nudge(Number(text), event.key === "ArrowUp" ? 1 : -1, integer));
             setText(next);
             take(next);
           }

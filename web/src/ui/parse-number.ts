@@ -1,3 +1,6 @@
+import { formatShort } from "./format";
+import { roundTo } from "./unit-scale";
+
 interface Limits {
   minimum: number | null;
   maximum: number | null;
@@ -9,8 +12,8 @@ export function parseNumber(text: string, { minimum, maximum, integer }: Limits)
   const value = Number(text.trim().replace(",", ".").replace("−", "-"));
   if (text.trim() === "" || !Number.isFinite(value)) return "not a number";
   if (integer && !Number.isInteger(value)) return "whole numbers only";
-  if (minimum !== null && value < minimum) return `at least ${minimum}`;
-  if (maximum !== null && value > maximum) return `at most ${maximum}`;
+  if (minimum !== null && value < minimum) return `at least ${formatShort(minimum, "", 6)}`;
+  if (maximum !== null && value > maximum) return `at most ${formatShort(maximum, "", 6)}`;
   return value;
 }
 
@@ -19,5 +22,5 @@ export function nudge(value: number, direction: 1 | -1, integer: boolean): numbe
   if (!Number.isFinite(value)) return value;
   const power = value === 0 ? 0.1 : 10 ** (Math.floor(Math.log10(Math.abs(value))) - 1);
   const step = integer ? Math.max(1, Math.round(power)) : power;
-  return Number((value + direction * step).toPrecision(8));
+  return roundTo(value + direction * step, 8);
 }

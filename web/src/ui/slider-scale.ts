@@ -1,3 +1,5 @@
+import { roundTo } from "./unit-scale";
+
 export interface SliderScale {
   low: number;
   high: number;
@@ -13,5 +15,5 @@ export function positionOf(value: number, { low, high, log }: SliderScale): numb
 /** Value at a place, on steps; on a logarithmic scale in three digits. */
 export function valueAt(position: number, { low, high, log }: SliderScale, step: number): number {
   const value = log ? low * (high / low) ** position : low + (high - low) * position;
-  return step > 0 ? Number((Math.round(value / step) * step).toPrecision(8)) : Number(value.toPrecision(3));
+  return step > 0 ? roundTo(Math.round(value / step) * step, 8) : roundTo(value, 3);
 }

@@ -1,3 +1,5 @@
+import { roundTo } from "./unit-scale";
+
 /** Round values across a range, about `count` of them. */
 export function linearTicks(low: number, high: number, count: number): number[] {
   const raw = (high - low) / Math.max(1, count);
@@ -6,7 +8,7 @@ export function linearTicks(low: number, high: number, count: number): number[] 
   const step = ([1, 2, 5, 10].find((m) => m * power >= raw * 0.999) ?? 10) * power;
   const first = Math.ceil(low / step - 1e-9);
   const last = Math.floor(high / step + 1e-9);
-  return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+  return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => roundTo((first + i) * step, 12));
 }
 
 /** 1, 2 and 5 of every decade within a range. */
@@ -14,7 +16,7 @@ export function decadeTicks(low: number, high: number): number[] {
   const found: number[] = [];
   for (let power = Math.floor(Math.log10(low)); 10 ** power <= high; power += 1)
     for (const m of [1, 2, 5]) {
-      const tick = Number((m * 10 ** power).toPrecision(3));
+      const tick = roundTo(m * 10 ** power, 3);
       if (tick >= low * 0.9999 && tick <= high * 1.0001) found.push(tick);
     }
   return found;

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { formatDeviceTime, timeLabels, timeSplits, timeUnit } from "./time-axis";
+import { timeLabels, timeSplits, timeUnit } from "./time-axis";
 
 it("picks µs, ms or s by the span", () => {
   expect([0.1, 4, 180, 5000].map((s) => timeUnit(s).unit)).toEqual(["µs", "ms", "ms", "s"]);
@@ -15,9 +15,4 @@ it("labels with the decimals the steps need", () => {
   expect(timeLabels([1, 1.5, 2], 2)).toEqual(["1.0", "1.5", "2.0"]);
   expect(timeLabels([184000, 185000], 4000)).toEqual(["184", "185"]);
   expect(timeLabels([10.02, 10.03], 0.04)).toEqual(["10\u2009020", "10\u2009030"]);
-});
-
-it("shows device time in seconds with microseconds", () => {
-  expect(formatDeviceTime(184.32)).toBe("0.184\u2009320");
-  expect(formatDeviceTime(1234567.8901)).toBe("1\u2009234.567\u2009890");
 });

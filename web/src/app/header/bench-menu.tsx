@@ -4,6 +4,7 @@ import { useState } from "react";
 import { api } from "../../api/api";
 import type { Bench } from "../../api/types";
 import { useBench } from "../../stream/bench-store";
+import { formatShort } from "../../ui/format";
 import { actions } from "../actions";
 import { openBench } from "../open-bench";
 import { showError } from "../send";
@@ -28,7 +29,7 @@ export function BenchMenu() {
         <UnstyledButton className={styles.bench} title={`${title ?? "No bench"}: change bench`}>
           <span>{title ?? "No bench"} </span>
           <small data-slow={slow}>
-            {rate ? `${rate} kHz board · ${now}` : closed ? "not connected" : "connecting"}
+            {rate ? `${formatShort(rate, "kHz")} board · ${now}` : closed ? "not connected" : "connecting"}
             <IconChevronDown size={12} style={{ verticalAlign: -2 }} />
           </small>
         </UnstyledButton>

@@ -1,7 +1,7 @@
 import { useEffect, useRef } from "react";
 import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
-import { formatDeviceTime } from "../../ui/time-axis";
+import { formatClock, formatTick } from "../../ui/format";
 import styles from "./header.module.css";
 
 /** Device time and tick, straight from the frames. */
@@ -17,9 +17,9 @@ export function DeviceClock() {
         // Without a panel that streams there are no frames; the status is a little behind but never still.
         const framed = bench?.state === "running" && stream.client.feeds.size > 0;
         const tick = Math.max(head.dtMs ? head.tick : 0, framed ? 0 : (bench?.tick ?? 0));
-        const text = formatDeviceTime(tick * dt);
+        const text = formatClock(tick * dt);
         if (time.current && time.current.textContent !== text) time.current.textContent = text;
-        const ticks = `tick ${tick.toLocaleString("en-US").replaceAll(",", "\u2009")}`;
+        const ticks = formatTick(tick);
         if (tickText.current && tickText.current.textContent !== ticks) tickText.current.textContent = ticks;
       }),
     [],

@@ -11,7 +11,7 @@ import { Tools } from "./tools";
 export function Header() {
   return (
     <header className={styles.header}>
-      <img src="/comb.svg" alt="" width="26" height="26" />
+      <img src="./comb.svg" alt="" width="26" height="26" />
       <h1 className={styles.title}>CombBench</h1>
       <BenchMenu />
       <ControllerSelect />

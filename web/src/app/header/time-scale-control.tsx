@@ -2,7 +2,15 @@ import { ActionIcon, Button, Group, Popover, Slider, Stack, Text, Tooltip } from
 import { useState } from "react";
 import { useBench } from "../../stream/bench-store";
 import { send } from "../send";
-import { formatTimeScale, sliderToTimeScale, stepTimeScale, timeScaleToSlider } from "../time-scale";
+import {
+  formatTimeScale,
+  PRESETS,
+  presetLabel,
+  scaleMarks,
+  sliderToTimeScale,
+  stepTimeScale,
+  timeScaleToSlider,
+} from "../time-scale";
 import styles from "./header.module.css";
 
 const set = (value: number | null) => send({ kind: "time_scale", value }, `Time scale ${formatTimeScale(value)}`);
@@ -57,23 +65,21 @@ export function TimeScaleControl() {
                 setDraft(undefined);
                 set(sliderToTimeScale(position));
               }}
-              marks={[
-                { value: 0, label: "1 µs/s" },
-                { value: 0.5, label: "1 ms/s" },
-                { value: 1, label: "real time" },
-              ]}
+              marks={scaleMarks()}
               mb="lg"
+              mx="xl"
             />
-            <Group grow gap="sm">
-              <Button size="xs" variant="default" onClick={() => set(0.002)}>
-                2 ms/s
-              </Button>
-              <Button size="xs" variant="default" onClick={() => set(1)}>
-                Real time
-              </Button>
-              <Button size="xs" variant={target === null ? "filled" : "default"} onClick={() => set(null)}>
-                As fast as possible
-              </Button>
+            <Group grow preventGrowOverflow={false} wrap="nowrap" gap="sm">
+              {PRESETS.map((scale) => (
+                <Button
+                  key={presetLabel(scale)}
+                  size="xs"
+                  variant={target === scale ? "filled" : "default"}
+                  onClick={() => set(scale)}
+                >
+                  {presetLabel(scale)}
+                </Button>
+              ))}
             </Group>
           </Stack>
         </Popover.Dropdown>

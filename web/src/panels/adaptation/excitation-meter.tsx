@@ -4,6 +4,7 @@ import { openVariant } from "../../app/open-variant";
 import { showError } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
+import { formatShort, formatSi } from "../../ui/format";
 import styles from "./adaptation.module.css";
 import { meterShare } from "./meter-share";
 
@@ -41,7 +42,7 @@ export function ExcitationMeter() {
       const [relative, , identifiable] = frame.latest;
       fill.current.style.setProperty("--share", `${100 * meterShare(relative)}%`);
       fill.current.dataset.enough = String(identifiable > 0);
-      words.current.textContent = `${relative > 0 ? relative.toExponential(1).replace("-", "−") : "0"}: ${
+      words.current.textContent = `${formatSi(Math.max(0, relative), "", 2)}: ${
         identifiable > 0 ? "tells all parameters apart" : "the parameters cannot be told apart from this input"
       }`;
     },
@@ -75,7 +76,7 @@ export function ExcitationMeter() {
         className={styles.gauge}
         style={{ "--least": `${100 * meterShare(least)}%` } as React.CSSProperties}
       >
-        <i title={`least that will do: ${least}`} />
+        <i title={`least that will do: ${formatShort(least, "")}`} />
       </div>
       <b ref={words} />
     </div>

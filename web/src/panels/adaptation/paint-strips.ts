@@ -1,9 +1,8 @@
 import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
-import { formatNumber, formatSi } from "../../ui/format";
+import { formatSi } from "../../ui/format";
 import { CANVAS, type Scheme, TRACE_COLOURS } from "../../ui/palette";
 import { timeLabels, timeSplits, timeUnit } from "../../ui/time-axis";
-import { unitText } from "../../ui/unit-scale";
 import type { LanePainting } from "../lanes/lane-canvas";
 import { columnAt } from "../scope/column-at";
 import type { Strip } from "./adaptation-strips";
@@ -94,8 +93,8 @@ export function paintStrips(
     ctx.textAlign = "left";
     ctx.font = fontFor(fontSize - 2, 1, 450);
     ctx.fillStyle = colours.muted;
-    ctx.fillText(inWords(high, strip.unit), right + 6, top + 3);
-    ctx.fillText(inWords(low, strip.unit), right + 6, top + tall - 3);
+    ctx.fillText(formatSi(high, strip.unit, 3), right + 6, top + 3);
+    ctx.fillText(formatSi(low, strip.unit, 3), right + 6, top + tall - 3);
 
     const middle = top + tall / 2;
     ctx.textAlign = "left";
@@ -105,9 +104,9 @@ export function paintStrips(
     ctx.font = fontFor(fontSize, 1, 450);
     ctx.fillStyle = colours.muted;
     if (rivals.length > 0) return;
-    const now = inWords(reading(own), strip.unit);
+    const now = formatSi(reading(own), strip.unit, 3);
     ctx.fillText(
-      ideal === undefined ? now : `${now} · ideal ${inWords(reading(ideal), strip.unit)}`,
+      ideal === undefined ? now : `${now} · ideal ${formatSi(reading(ideal), strip.unit, 3)}`,
       4,
       middle + fontSize * 0.75,
       left - 12,
@@ -117,13 +116,6 @@ export function paintStrips(
 
 function* joined(parts: readonly Float32Array[]): Generator<number> {
   for (const part of parts) yield* part;
-}
-
-/** Numbers of mixed units have none that could be written. */
-function inWords(value: number, unit: string): string {
-  if (unitText(unit) === "" && Math.abs(value) >= 1e-3 && Math.abs(value) < 1e4)
-    return formatNumber(value, Math.abs(value) < 10 ? 3 : Math.abs(value) < 100 ? 2 : 1);
-  return formatSi(value, unit, 3);
 }
 
 function envelope(

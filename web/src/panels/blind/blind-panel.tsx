@@ -2,7 +2,7 @@ import { Button, Radio, Slider } from "@mantine/core";
 import { useState } from "react";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatNumber, formatPercent } from "../../ui/format";
+import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { jump } from "../../ui/jump";
 import { NumberField } from "../../ui/number-field";
 import type { Hypothesis } from "../hypotheses/draft";
@@ -31,8 +31,8 @@ export function BlindPanel() {
       {last && <Outcome />}
       {hidden && <p className={styles.advice}>A game waits on another bench; hiding a fault here ends it.</p>}
       <p className={styles.advice}>
-        A fault is hidden, or none. Truth, faults, log and 3D keep it to themselves until you commit an answer with your
-        confidence. The same seed hides the same fault.
+        A fault is hidden, or none. Faults, log, 3D and the diagnosers keep it to themselves until you commit an answer
+        with your confidence. The same seed hides the same fault.
       </p>
       <div className={styles.bar}>
         <span className={styles.field}>
@@ -55,16 +55,9 @@ export function BlindPanel() {
 }
 
 function Answer({ list, dtMs }: { list: Hypothesis[]; dtMs: number }) {
-  const diagnosers = useBench((s) => s.bench?.diagnosers);
   const [said, setSaid] = useState<string | undefined>(undefined);
   const [confidence, setConfidence] = useState(70);
-  const take = () => {
-    const { scores } = useBench.getState();
-    const verdicts = Object.fromEntries(
-      Object.entries(scores).map(([id, score]) => [id, diagnosers?.[id]?.names[score.winner] ?? "–"]),
-    );
-    if (said) commit({ said, confidence: confidence / 100, verdicts }, list, dtMs);
-  };
+  const take = () => said && commit({ said, confidence: confidence / 100 }, list, dtMs);
   return (
     <section className={styles.panel} aria-label="Blind diagnosis">
       <Radio.Group label="What is the device now?" value={said ?? ""} onChange={setSaid}>
@@ -75,7 +68,7 @@ function Answer({ list, dtMs }: { list: Hypothesis[]; dtMs: number }) {
         </div>
       </Radio.Group>
       <label className={styles.confidence} htmlFor="confidence">
-        How sure are you? <strong>{confidence} %</strong>
+        How sure are you? <strong>{formatPercent(confidence / 100, 0)}</strong>
       </label>
       <Slider
         id="confidence"
@@ -105,12 +98,12 @@ function Outcome() {
   return (
     <div className={styles.outcome} role="status">
       <p className={styles.verdict} data-right={right}>
-        {right ? "Right" : "Wrong"}: it is {last.truth}. {formatNumber(last.points, 0)} points
+        {right ? "Right" : "Wrong"}: it is {last.truth}. {formatCount(last.points, "point")}
       </p>
       <p className={styles.advice}>
         You said {last.said} with {formatPercent(last.confidence, 0)}
         {last.tookMs !== null
-          ? `, ${formatNumber(last.tookMs, 1)} ms of device time after the fault`
+          ? `, ${formatSi(last.tookMs, "ms", 3)} of device time after the fault`
           : ", and no fault had come"}
         .{" "}
         {Object.entries(last.verdicts)
@@ -133,7 +126,7 @@ function Attempts() {
   return (
     <table className={styles.table}>
       <caption>
-        {attempts.length} {attempts.length === 1 ? "answer" : "answers"}, {formatNumber(mean, 0)} points on average
+        {formatCount(attempts.length, "answer")}, {formatCount(mean, "point")} on average
       </caption>
       <thead>
         <tr>

@@ -1,4 +1,5 @@
 import type { Command } from "../../api/types";
+import { roundTo } from "../../ui/unit-scale";
 import type { Hypothesis } from "../hypotheses/draft";
 
 /** What is hidden: one of the hypotheses, and how long after the start it comes. */
@@ -22,7 +23,7 @@ export function hiddenFault(seed: number, names: readonly string[], dtMs: number
 /** The commands that make a hypothesis true. */
 export function faultsOf(hypothesis: Hypothesis): Command[] {
   return (Object.keys(FAULT_OF) as (keyof typeof FAULT_OF)[]).flatMap((factor): Command[] => {
-    const severity = Number(((hypothesis[factor] ?? 1) - 1).toPrecision(10));
+    const severity = roundTo((hypothesis[factor] ?? 1) - 1, 10);
     if (severity === 0) return [];
     return [{ kind: "inject", fault: FAULT_OF[factor], severity } as Command];
   });

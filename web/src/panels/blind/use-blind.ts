@@ -2,7 +2,7 @@ import { create } from "zustand";
 import { send } from "../../app/send";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
-import { liftVeil, stream } from "../../stream/stream";
+import { dropVeil, liftVeil, stream } from "../../stream/stream";
 import { veil } from "../../stream/veil";
 import { jump } from "../../ui/jump";
 import type { Hypothesis } from "../hypotheses/draft";
@@ -55,8 +55,8 @@ export async function hide(bench: string, seed: number, hypotheses: Hypothesis[]
 }
 
 function begin(hidden: Hidden): void {
-  veil.drop(hidden.bench);
-  useView.setState({ blind: veil.on, sample: undefined });
+  dropVeil(hidden.bench);
+  useView.setState({ sample: undefined });
   useGame.setState({ hidden, last: undefined, faultTick: undefined });
   sessionStorage.setItem(STORED, JSON.stringify(hidden));
   clearInterval(waiting);
@@ -78,13 +78,15 @@ async function come(hidden: Hidden): Promise<void> {
 
 /** Take an answer, lift the veil and count. */
 export function commit(
-  { said, confidence, verdicts }: Pick<Attempt, "said" | "confidence" | "verdicts">,
+  { said, confidence }: Pick<Attempt, "said" | "confidence">,
   hypotheses: Hypothesis[],
   dtMs: number,
 ): void {
   const { hidden, attempts } = useGame.getState();
   if (!hidden) return;
   const { came } = hidden;
+  const { tick } = stream.client.head;
+  reveal();
   const healthy = hypotheses.find((h) => faultsOf(h).length === 0)?.name ?? "none of these";
   const truth = came === undefined ? healthy : hidden.hypothesis.name;
   const attempt: Attempt = {
@@ -93,8 +95,8 @@ export function commit(
     confidence,
     truth,
     points: points(said === truth, confidence, hypotheses.length),
-    tookMs: came === undefined || truth === healthy ? null : (stream.client.head.tick - came) * dtMs,
-    verdicts,
+    tookMs: came === undefined || truth === healthy ? null : (tick - came) * dtMs,
+    verdicts: verdicts(),
   };
   useGame.setState({
     hidden: undefined,
@@ -102,7 +104,14 @@ export function commit(
     attempts: [...attempts, attempt],
     faultTick: truth === healthy ? undefined : came,
   });
-  reveal();
+}
+
+/** What the diagnosers say now. */
+function verdicts(): Record<string, string> {
+  const { bench, scores } = useBench.getState();
+  return Object.fromEntries(
+    Object.entries(scores).map(([id, score]) => [id, bench?.diagnosers[id]?.names[score.winner] ?? "–"]),
+  );
 }
 
 /** End the game without an answer. */
@@ -114,13 +123,8 @@ export function giveUp(): void {
 function reveal(): void {
   clearInterval(waiting);
   sessionStorage.removeItem(STORED);
-  useView.setState({ blind: false });
   liftVeil();
 }
 
 const stored = sessionStorage.getItem(STORED);
 if (stored) begin(JSON.parse(stored) as Hidden);
-// The game stays with its bench: another shows all it has, and coming back goes on with the search.
-useBench.subscribe(() => {
-  if (useView.getState().blind !== veil.on) useView.setState({ blind: veil.on });
-});

@@ -5,6 +5,7 @@ import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { Prose } from "../../ui/prose";
+import { Weaknesses } from "../../ui/weaknesses";
 import { BlockEquation } from "./block-equation";
 import styles from "./card.module.css";
 import { instances } from "./instances";
@@ -52,6 +53,7 @@ export function CardPanel() {
           <p className={styles.summary}>
             <Prose text={found.summary} />
           </p>
+          <Weaknesses of={found} />
           {found.equations.length > 0 && (
             <div className={styles.equations}>
               {found.equations.map((equation) => (

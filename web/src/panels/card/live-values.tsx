@@ -3,7 +3,6 @@ import { IconWaveSine } from "@tabler/icons-react";
 import { useMemo } from "react";
 import type { Signal } from "../../api/types";
 import { addScope } from "../../app/layouts";
-import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { useLiveValues } from "../schematic/use-live-values";
 import styles from "./card.module.css";
@@ -16,14 +15,7 @@ const MOST = 24;
 /** What a block puts out and what goes on inside it, as numbers now. */
 export function LiveValues({ instance }: { instance: Instance }) {
   const signals = useBench((s) => s.bench?.signals);
-  const blind = useView((s) => s.blind);
-  const own = useMemo(
-    () =>
-      ownSignals(instance, signals ?? [])
-        .filter(({ block }) => !(blind && block.endsWith(".score")))
-        .slice(0, MOST),
-    [instance, signals, blind],
-  );
+  const own = useMemo(() => ownSignals(instance, signals ?? []).slice(0, MOST), [instance, signals]);
   const shown = useMemo(() => Object.fromEntries(own.map((s) => [s.name, s.name])), [own]);
   const names = useBench((s) => s.bench?.diagnosers[instance.id.split(".").at(-1) ?? ""]?.names);
   const scored = useMemo(() => new Set(own.filter((s) => s.block.endsWith(".score")).map((s) => s.name)), [own]);

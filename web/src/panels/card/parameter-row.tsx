@@ -1,6 +1,7 @@
 import { ActionIcon, NativeSelect, Switch, Tooltip } from "@mantine/core";
 import { IconArrowBackUp, IconLock } from "@tabler/icons-react";
 import type { Parameter } from "../../api/types";
+import { formatShort } from "../../ui/format";
 import { NumberField } from "../../ui/number-field";
 import { unitText } from "../../ui/unit-scale";
 import styles from "./card.module.css";
@@ -37,7 +38,9 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
       </div>
       <div className={styles.entry}>
         {!isDefault && live && parameter.default !== null && type !== "list" && (
-          <Tooltip label={`Back to the default ${String(parameter.default)}`}>
+          <Tooltip
+            label={`Back to the default ${typeof parameter.default === "number" ? formatShort(parameter.default, parameter.unit, 6) : String(parameter.default)}`}
+          >
             <ActionIcon
               size={22}
               variant="subtle"
@@ -85,8 +88,9 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
   );
 }
 
-function limits({ minimum, maximum }: Parameter): string {
-  if (minimum !== null && maximum !== null) return `${minimum} to ${maximum}`;
-  if (minimum !== null) return `at least ${minimum}`;
-  return maximum === null ? "" : `at most ${maximum}`;
+function limits({ minimum, maximum, unit }: Parameter): string {
+  const say = (bound: number) => formatShort(bound, unit, 6);
+  if (minimum !== null && maximum !== null) return `${say(minimum)} to ${say(maximum)}`;
+  if (minimum !== null) return `at least ${say(minimum)}`;
+  return maximum === null ? "" : `at most ${say(maximum)}`;
 }

@@ -1,3 +1,5 @@
+import { formatNumber } from "../../ui/format";
+
 const COUNTS = ["false_switches", "delay"];
 
 /**
@@ -8,6 +10,6 @@ export function scoreWords(signal: string, value: number, names: readonly string
   const port = signal.slice(signal.lastIndexOf(".") + 1);
   if (port === "winner" || port === "truth") return names[value] ?? "none of these";
   if (port === "delay" && value < 0) return "not found";
-  if (COUNTS.includes(port)) return value.toFixed(0);
+  if (COUNTS.includes(port)) return formatNumber(value, 0);
   return undefined;
 }

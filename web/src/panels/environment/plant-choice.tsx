@@ -5,8 +5,9 @@ import type { MeasuredPlant } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
-import { formatNumber } from "../../ui/format";
+import { formatSi } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";
+import { Weaknesses } from "../../ui/weaknesses";
 import styles from "./environment.module.css";
 
 /** How much of the physics is computed, live, and what a tick of this bench costs with it. */
@@ -17,7 +18,7 @@ export function PlantChoice() {
   );
   const dtMs = useBench((s) => s.bench?.dt_ms ?? 0);
   const visible = usePanelVisible();
-  const { blocks } = useCatalog();
+  const { blocks, block } = useCatalog();
   const [costs, setCosts] = useState<MeasuredPlant[]>([]);
   useEffect(() => {
     if (!id || !visible) return;
@@ -33,27 +34,30 @@ export function PlantChoice() {
   const tickNs = dtMs * 1e6;
 
   return (
-    <Radio.Group
-      aria-label="Plant"
-      value={model}
-      onChange={(name) => void send({ kind: "set", values: { "plant.model": name } }, `Plant ${name}`)}
-    >
-      {blocks
-        .filter((b) => b.family === "plant")
-        .map((b) => {
-          const cost = costs.find((c) => c.name === b.name);
-          return (
-            <Radio
-              key={b.name}
-              className={styles.plant}
-              size="sm"
-              value={b.name}
-              label={b.title}
-              description={describe(cost, tickNs)}
-            />
-          );
-        })}
-    </Radio.Group>
+    <>
+      <Radio.Group
+        aria-label="Plant"
+        value={model}
+        onChange={(name) => void send({ kind: "set", values: { "plant.model": name } }, `Plant ${name}`)}
+      >
+        {blocks
+          .filter((b) => b.family === "plant")
+          .map((b) => {
+            const cost = costs.find((c) => c.name === b.name);
+            return (
+              <Radio
+                key={b.name}
+                className={styles.plant}
+                size="sm"
+                value={b.name}
+                label={b.title}
+                description={describe(cost, tickNs)}
+              />
+            );
+          })}
+      </Radio.Group>
+      <Weaknesses of={block("plant", model)} />
+    </>
   );
 }
 
@@ -61,5 +65,5 @@ function describe(cost: MeasuredPlant | undefined, tickNs: number): string {
   if (!cost) return "measuring its cost";
   if (cost.ns_per_tick === null) return `not on this bench: ${cost.refused}`;
   const times = tickNs / cost.ns_per_tick;
-  return `${formatNumber(cost.ns_per_tick, 0)} ns per tick of the whole bench, ${formatNumber(times, times < 10 ? 1 : 0)} times as fast as real time`;
+  return `${formatSi(cost.ns_per_tick, "ns", 3)} per tick of the whole bench, ${formatSi(times, "", 3)} times as fast as real time`;
 }

@@ -5,6 +5,7 @@ import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
 import { Prose } from "../../ui/prose";
+import { Weaknesses } from "../../ui/weaknesses";
 import styles from "./environment.module.css";
 
 const BYPASS = "ideal";
@@ -50,9 +51,12 @@ export function SensorChoice() {
         </Button>
       </div>
       {chosen && (
-        <p className={styles.note}>
-          <Prose text={chosen.summary} />
-        </p>
+        <>
+          <p className={styles.note}>
+            <Prose text={chosen.summary} />
+          </p>
+          <Weaknesses of={chosen} />
+        </>
       )}
       {optical.length > 0 && (
         <>

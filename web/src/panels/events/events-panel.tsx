@@ -1,6 +1,6 @@
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatNumber } from "../../ui/format";
+import { formatMoment } from "../../ui/format";
 import { jump } from "../../ui/jump";
 import { eventTone } from "./event-tone";
 import styles from "./events.module.css";
@@ -32,7 +32,7 @@ export function EventsPanel() {
               title={`Tick ${event.tick}: show it on the scopes`}
             >
               <span className={styles.number}>{event.seq}</span>
-              <span className={styles.time}>{formatNumber(event.tick * dtMs, 2)} ms</span>
+              <span className={styles.time}>{formatMoment(event.tick * dtMs)}</span>
               <span className={styles.text}>{event.text}</span>
               <span className={styles.actor}>{event.actor}</span>
             </button>

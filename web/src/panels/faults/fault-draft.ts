@@ -1,4 +1,5 @@
 import type { BlockCard, Command, FaultProfile, Parameter } from "../../api/types";
+import { roundTo } from "../../ui/unit-scale";
 
 /** A number, or what stands in a field that holds none. */
 export type Entry = number | string;
@@ -55,7 +56,7 @@ const isNumber = (entry: Entry): entry is number => typeof entry === "number" &&
 
 /** An entry in another unit; what is no number stays as it was typed. */
 export const scaled = (entry: Entry, factor: number): Entry =>
-  typeof entry === "number" ? Number((entry * factor).toPrecision(10)) : entry;
+  typeof entry === "number" ? roundTo(entry * factor, 10) : entry;
 
 /** The command that does what the form says; ask first what keeps it from being sent. */
 export function injectCommand(fault: string, draft: FaultDraft): Command {

@@ -4,8 +4,7 @@ import { useState } from "react";
 import type { ActiveFault, BlockCard } from "../../api/types";
 import { send } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
-import { formatNumber } from "../../ui/format";
-import { unitText } from "../../ui/unit-scale";
+import { formatMoment, formatShort } from "../../ui/format";
 import { parameterTitle } from "../card/parameter-title";
 import { injectCommand, newDraft, ownParameters, refusals } from "./fault-draft";
 import { FaultForm } from "./fault-form";
@@ -49,7 +48,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
           <>
             <b className={styles.acting}>
               {severityText(active.severity, scale, unit)}
-              {active.since_tick !== undefined && <small> since {formatNumber(active.since_tick * dtMs, 1)} ms</small>}
+              {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}
             </b>
             <Button
               size="compact-sm"
@@ -93,8 +92,7 @@ function Chosen({ fault, active }: { fault: BlockCard; active: ActiveFault }) {
     .filter((p) => values[p.name] !== undefined && values[p.name] !== null)
     .map((p) => {
       const value = values[p.name];
-      const unit = unitText(p.unit);
-      return `${parameterTitle(p).toLowerCase()}: ${typeof value === "number" ? Number(value.toPrecision(4)) : String(value)}${unit && `\u00a0${unit}`}`;
+      return `${parameterTitle(p).toLowerCase()}: ${typeof value === "number" ? formatShort(value, p.unit) : String(value)}`;
     });
   return words.length > 0 && <p className={styles.chosen}>{words.join(", ")}</p>;
 }

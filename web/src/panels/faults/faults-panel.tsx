@@ -2,10 +2,9 @@ import { Button } from "@mantine/core";
 import { useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../app/actions";
-import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatNumber } from "../../ui/format";
+import { formatMoment } from "../../ui/format";
 import { FaultRow } from "./fault-row";
 import styles from "./faults.module.css";
 
@@ -15,15 +14,8 @@ export function FaultsPanel() {
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const active = useBench((s) => s.bench?.faults);
   const pending = useBench((s) => s.bench?.pending);
-  const blind = useView((s) => s.blind);
   const [open, setOpen] = useState<string | undefined>(undefined);
   const faults = blocks.filter((b) => b.family === "faults");
-  if (blind)
-    return (
-      <EmptyState title="A fault may be hidden">
-        What acts on the device is shown again once you have committed your answer under Blind diagnosis.
-      </EmptyState>
-    );
   if (faults.length === 0)
     return (
       <EmptyState
@@ -55,9 +47,7 @@ export function FaultsPanel() {
       {pending?.map((waiting) => (
         <p key={`${waiting.text} ${waiting.tick} ${waiting.when}`} className={styles.pending}>
           Waiting: {waiting.text}{" "}
-          {waiting.when
-            ? `when ${waiting.when}`
-            : waiting.tick !== null && `at ${formatNumber(waiting.tick * dtMs, 2)} ms`}
+          {waiting.when ? `when ${waiting.when}` : waiting.tick !== null && `at ${formatMoment(waiting.tick * dtMs)}`}
         </p>
       ))}
       <ul className={styles.list}>

@@ -6,7 +6,7 @@ const scale = { percent: false, low: 0, high: 1, minimum: 0, maximum: 1 };
 
 it("writes severities with their sign and unit as people do", () => {
   expect(severityText(0.05, { ...scale, percent: true }, "1")).toBe("+5\u00a0%");
-  expect(severityText(0.5, scale, "um")).toBe("+0.5\u00a0µm");
+  expect(severityText(0.5, scale, "um")).toBe("+500\u00a0nm");
   expect(severityText(4, scale, "week")).toBe("+4\u00a0weeks");
   expect(severityText(1, scale, "week")).toBe("+1\u00a0week");
 });

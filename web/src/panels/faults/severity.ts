@@ -1,6 +1,5 @@
 import type { Parameter } from "../../api/types";
-import { formatNumber } from "../../ui/format";
-import { unitText } from "../../ui/unit-scale";
+import { formatCount, formatShort } from "../../ui/format";
 import type { FaultDraft } from "./fault-draft";
 
 export interface SeverityScale {
@@ -30,8 +29,8 @@ export function severityScale(parameter: Parameter | undefined, suggested: numbe
 
 export function severityText(value: number, scale: SeverityScale, unit: string): string {
   const shown = scale.percent ? value * 100 : value;
-  const text = formatNumber(shown, Math.abs(shown) < 10 && shown % 1 !== 0 ? 1 : 0);
-  return `${value > 0 ? "+" : ""}${text}\u00a0${scale.percent ? "%" : plural(unitText(unit), shown)}`;
+  const text = /^[a-z]{4,}$/.test(unit) ? formatCount(shown, unit) : formatShort(shown, scale.percent ? "%" : unit, 3);
+  return value > 0 ? `+${text}` : text;
 }
 
 /** The severity a draft asks for; a dash while its field holds no number. */
@@ -40,6 +39,3 @@ export const draftSeverity = (
   scale: SeverityScale,
   unit: string,
 ): string => (typeof severity === "number" ? severityText(severity, scale, unit) : "–");
-
-/** Units that are words have a plural. */
-const plural = (unit: string, count: number) => (/^[a-z]{4,}$/.test(unit) && Math.abs(count) !== 1 ? `${unit}s` : unit);

@@ -1,6 +1,7 @@
 import type { AliasReport } from "../../api/types";
 import { formatSi } from "../../ui/format";
 import { decadeTicks } from "../../ui/ticks";
+import { roundTo } from "../../ui/unit-scale";
 import styles from "./hypotheses.module.css";
 
 const FEET = 30;
@@ -58,7 +59,7 @@ export function AliasSweep({ report, width, height, isFramed }: AliasPartProps) 
         f₀
       </text>
       <path
-        d={hertz.map((f, i) => `${i ? "L" : "M"}${x(f).toFixed(1)} ${y(logs[i]).toFixed(1)}`).join("")}
+        d={hertz.map((f, i) => `${i ? "L" : "M"}${roundTo(x(f), 5)} ${roundTo(y(logs[i]), 5)}`).join("")}
         className={styles.curve}
       />
       {tone > hertz[0] && (

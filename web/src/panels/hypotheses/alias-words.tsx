@@ -1,5 +1,5 @@
 import type { AliasReport } from "../../api/types";
-import { formatNumber, formatSi } from "../../ui/format";
+import { formatIn, formatSi } from "../../ui/format";
 import styles from "./hypotheses.module.css";
 
 const SHOWN = 4;
@@ -22,19 +22,19 @@ export function AliasWords({ report }: { report: AliasReport }) {
                 {first} and {second}
               </th>
               <td>{formatSi(distance, "um", 3)}</td>
-              <td>{coincident ? "aliases" : noise > 0 ? `${formatNumber(distance / noise, 1)} × noise` : ""}</td>
+              <td>{coincident ? "aliases" : noise > 0 ? `${formatSi(distance / noise, "×", 3)} noise` : ""}</td>
             </tr>
           ))}
         </tbody>
       </table>
       <p>
         {tones.length === 1
-          ? `At this one tone 1 % of mass moves like ${formatNumber(worth, 2)} % of stiffness; a second tone parts them.`
+          ? `At this one tone 1 % of mass moves like ${formatIn(worth, "%", 2)} of stiffness; a second tone parts them.`
           : "Several tones: mass and stiffness cannot stand for one another at all of them."}
       </p>
       {likenesses.slice(0, SHOWN).map(({ name, factor, value }) => (
         <p key={`${name} ${factor}`}>
-          {name} moves exactly like a device with {formatNumber((value - 1) * 100, 1)} % of {factor} alone.
+          {name} moves exactly like a device with {formatIn((value - 1) * 100, "%", 1)} of {factor} alone.
         </p>
       ))}
     </div>

@@ -1,3 +1,5 @@
+import { roundTo } from "../../ui/unit-scale";
+
 /** One hypothesis as a scenario has it: factors on the nominal device, those left out are 1. */
 export interface Hypothesis {
   name: string;
@@ -17,7 +19,7 @@ const LETTER: Record<Factor, string> = { mass: "m", stiffness: "k", damping: "b"
 /** The name people give a hypothesis by what it changes: m+5, k-10b+30, healthy. */
 export function usualName(hypothesis: Omit<Hypothesis, "name">): string {
   const parts = FACTORS.flatMap((factor) => {
-    const percent = Number((((hypothesis[factor] ?? 1) - 1) * 100).toPrecision(6));
+    const percent = roundTo(((hypothesis[factor] ?? 1) - 1) * 100, 6);
     return percent === 0 ? [] : [`${LETTER[factor]}${percent > 0 ? "+" : ""}${percent}`.replace(".", ",")];
   });
   return parts.join("") || "healthy";
@@ -25,7 +27,7 @@ export function usualName(hypothesis: Omit<Hypothesis, "name">): string {
 
 /** Change a factor; a name that said what it was follows. */
 export function withFactor(hypothesis: Hypothesis, factor: Factor, percent: number): Hypothesis {
-  const next = { ...hypothesis, [factor]: Number((1 + percent / 100).toPrecision(10)) };
+  const next = { ...hypothesis, [factor]: roundTo(1 + percent / 100, 10) };
   return { ...next, name: hypothesis.name === usualName(hypothesis) ? usualName(next) : hypothesis.name };
 }
 

@@ -3,6 +3,7 @@ import { IconX } from "@tabler/icons-react";
 import { useScheme } from "../../app/use-scheme";
 import { NumberField } from "../../ui/number-field";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
+import { roundTo } from "../../ui/unit-scale";
 import { FACTORS, type Hypothesis, LEAST, withFactor } from "./draft";
 import styles from "./hypotheses.module.css";
 
@@ -45,7 +46,7 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
                   <NumberField
                     label={`${factor} of ${hypothesis.name}`}
                     unit="%"
-                    value={Number((((hypothesis[factor] ?? 1) - 1) * 100).toPrecision(6))}
+                    value={roundTo(((hypothesis[factor] ?? 1) - 1) * 100, 6)}
                     minimum={-99}
                     maximum={9900}
                     onCommit={(percent) => put(i, withFactor(hypothesis, factor, percent))}

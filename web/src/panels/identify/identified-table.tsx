@@ -1,5 +1,5 @@
 import type { Identification } from "../../api/types";
-import { formatNumber, formatSi } from "../../ui/format";
+import { formatChange, formatSi, formatTick } from "../../ui/format";
 import styles from "./identify.module.css";
 
 type Found = Identification["found"];
@@ -38,7 +38,7 @@ export function IdentifiedTable({ result }: { result: Identification }) {
     <table className={styles.table}>
       <thead>
         <tr>
-          <th scope="col">At tick {result.tick}</th>
+          <th scope="col">At {formatTick(result.tick)}</th>
           <th scope="col">Measured</th>
           <th scope="col">Standard error</th>
           <th scope="col">From nominal</th>
@@ -57,7 +57,7 @@ export function IdentifiedTable({ result }: { result: Identification }) {
                 <b>{formatSi(found, unit, 6)}</b>
               </td>
               <td>{formatSi(sigma, unit, 2)}</td>
-              <td data-sure={sure}>{`${change > 0 ? "+" : ""}${formatNumber(change, 2)} %`}</td>
+              <td data-sure={sure}>{formatChange(change, "%", 2)}</td>
             </tr>
           );
         })}

@@ -2,10 +2,9 @@ import { Button, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
-import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatNumber, formatPercent } from "../../ui/format";
+import { formatNumber, formatPercent, formatShort, formatSi } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { type Lab, type LabKnob, labsOf, memorySamples } from "./lab-knobs";
 import styles from "./labs.module.css";
@@ -81,7 +80,9 @@ function Turn({ knob, original }: { knob: LabKnob; original: number }) {
       original={original}
       {...(memory === undefined
         ? {}
-        : { note: Number.isFinite(memory) ? `remembers ${formatNumber(memory, 1)} samples` : "remembers everything" })}
+        : {
+            note: Number.isFinite(memory) ? `remembers ${formatShort(memory, "sample", 3)}s` : "remembers everything",
+          })}
       onChange={(next) => void send({ kind: "set", values: { [path]: next } }, `Set ${rest.label}`)}
     />
   );
@@ -91,8 +92,7 @@ function Turn({ knob, original }: { knob: LabKnob; original: number }) {
 function Outcome({ id }: { id: string }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
-  const blind = useView((s) => s.blind);
-  if (!score || blind) return null;
+  if (!score) return null;
   const found = score.delays.filter((d) => d !== null);
   const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
   return (
@@ -103,11 +103,11 @@ function Outcome({ id }: { id: string }) {
       </div>
       <div>
         <dt>mean delay</dt>
-        <dd>{found.length ? `${formatNumber(mean * dtMs, 2)}\u00a0ms` : "–"}</dd>
+        <dd>{found.length ? formatSi(mean * dtMs, "ms", 3) : "–"}</dd>
       </div>
       <div>
         <dt>false switches</dt>
-        <dd>{score.false_switches}</dd>
+        <dd>{formatNumber(score.false_switches, 0)}</dd>
       </div>
       <div>
         <dt>residuals against assumed</dt>

@@ -25,11 +25,10 @@ interface DiagnoserLanesProps {
 export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProps) {
   const scheme = useScheme();
   const large = useView((s) => s.large);
-  const blind = useView((s) => s.blind);
   const picked = useView((s) => (s.sample?.diagnoser === id ? s.sample.tick : undefined));
   const events = useBench((s) => s.events);
   const fontSize = large ? 15 : 12;
-  const switches = useMemo(() => (blind ? [] : truthSwitches(currentEvents(events), id)), [blind, events, id]);
+  const switches = useMemo(() => truthSwitches(currentEvents(events), id), [events, id]);
   const signals = useMemo(
     () => [...names.map((name) => `${id}.probability.${name}`), `${id}.winner`, `${id}.truth`],
     [id, names],
@@ -48,11 +47,10 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
           switches,
           hover,
           picked,
-          blind,
         };
         paintLanes(ctx, shown.current);
       },
-    [names, fontSize, scheme, switches, picked, blind],
+    [names, fontSize, scheme, switches, picked],
   );
   const edges = lanesLayout(1000, 400, names.length, fontSize);
 

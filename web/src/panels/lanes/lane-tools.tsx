@@ -1,9 +1,8 @@
 import { NativeSelect } from "@mantine/core";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
 import scopeStyles from "../scope/scope.module.css";
 import type { LaneTime } from "./use-lane-time";
-
-export const WINDOWS_MS = [2, 4, 10, 20, 50, 100, 200, 500];
 
 interface LaneToolsProps {
   time: LaneTime;
@@ -20,7 +19,7 @@ export function LaneTools({ time, onWindow, take }: LaneToolsProps) {
         w={84}
         aria-label="Time window"
         value={String(time.windowMs)}
-        data={WINDOWS_MS.map((ms) => ({ value: String(ms), label: `${ms}\u00a0ms` }))}
+        data={windowItems(TIME_WINDOWS_MS.lanes, time.windowMs)}
         onChange={(e) => onWindow(Number(e.currentTarget.value))}
       />
       <PictureMenu take={take} />

@@ -1,6 +1,6 @@
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
-import { formatNumber, formatPercent } from "../../ui/format";
+import { formatCount, formatPercent, formatSi } from "../../ui/format";
 import type { TruthSwitch } from "./delays";
 import styles from "./lanes.module.css";
 
@@ -8,10 +8,9 @@ import styles from "./lanes.module.css";
 export function LanesHeadline({ id, names, switches }: { id: string; names: string[]; switches: TruthSwitch[] }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
-  const blind = useView((s) => s.blind);
   const last = switches.at(-1);
   const winner = typeof score?.winner === "number" ? names[score.winner] : score?.winner;
-  const right = !blind && score !== undefined && score.winner === score.truth;
+  const right = score !== undefined && score.winner === score.truth;
   return (
     <dl className={styles.headline}>
       <div>
@@ -26,15 +25,15 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       </div>
       <div>
         <dt>delay</dt>
-        <dd>{blind ? "hidden" : delayText(last, dtMs)}</dd>
+        <dd>{delayText(last, dtMs)}</dd>
       </div>
       <div>
         <dt>correct</dt>
-        <dd>{blind ? "hidden" : score ? formatPercent(score.correct_fraction) : "–"}</dd>
+        <dd>{score ? formatPercent(score.correct_fraction) : "–"}</dd>
       </div>
       <div>
         <dt>false switches</dt>
-        <dd>{blind ? "hidden" : (score?.false_switches ?? "–")}</dd>
+        <dd>{score?.false_switches ?? "–"}</dd>
       </div>
     </dl>
   );
@@ -44,5 +43,5 @@ function delayText(last: TruthSwitch | undefined, dtMs: number): string {
   if (!last) return "–";
   if (!last.findable) return "nothing to find";
   if (last.delay === undefined) return "not found yet";
-  return `${last.delay} samples · ${formatNumber(last.delay * dtMs, 2)} ms`;
+  return `${formatCount(last.delay, "sample")} · ${formatSi(last.delay * dtMs, "ms", 3)}`;
 }

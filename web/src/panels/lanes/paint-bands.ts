@@ -2,7 +2,7 @@ import type { Pen } from "../../picture/pen";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
 import { inkOn } from "../../ui/contrast";
-import { formatNumber } from "../../ui/format";
+import { formatCount, formatNumber, formatSi } from "../../ui/format";
 import { fillHatched } from "../../ui/hatch";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { timeLabels, timeSplits, timeUnit } from "../../ui/time-axis";
@@ -127,6 +127,11 @@ export function paintTime(
 function delayWords({ delay, findable }: TruthSwitch, dtMs: number): string[] {
   if (!findable) return ["not among the hypotheses", "not among them", "none"];
   if (delay === undefined) return ["not found yet", "not yet"];
-  const ms = `${formatNumber(delay * dtMs, 2)} ms`;
-  return [`${delay} samples · ${ms}`, `${delay} · ${ms}`, ms, String(delay)];
+  const time = formatSi(delay * dtMs, "ms", 3);
+  return [
+    `${formatCount(delay, "sample")} · ${time}`,
+    `${formatNumber(delay, 0)} · ${time}`,
+    time,
+    formatNumber(delay, 0),
+  ];
 }

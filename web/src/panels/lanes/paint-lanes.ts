@@ -1,6 +1,6 @@
 import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
-import { formatNumber } from "../../ui/format";
+import { formatPercent } from "../../ui/format";
 import { CANVAS } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { columnAt } from "../scope/column-at";
@@ -12,8 +12,6 @@ export interface LanesPicture extends LanesGround {
   hover: number | undefined;
   /** The sample that is being explained. */
   picked: number | undefined;
-  /** The truth is a secret. */
-  blind: boolean;
 }
 
 /** Paint a bank: one filled lane per hypothesis, the guess hatched, the truth solid, the delay between them. */
@@ -30,7 +28,7 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
   const reading = (signal: number) =>
     picture.hover === undefined ? frame.latest[signal] : columnAt(frame, signal, picture.hover);
   const winnerNow = reading(names.length);
-  const truthNow = picture.blind ? -1 : reading(names.length + 1);
+  const truthNow = reading(names.length + 1);
 
   ctx.textBaseline = "middle";
   paintTime(ctx, picture, x);
@@ -67,26 +65,9 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
     fontSize,
     false,
   );
-  if (picture.blind) {
-    ctx.font = fontFor(fontSize, 1, 600);
-    ctx.textAlign = "left";
-    ctx.fillStyle = colours.muted;
-    ctx.fillText("hidden until you answer", layout.left + 6, layout.truth + layout.band / 2 + 0.5);
-  } else {
-    paintBand(
-      ctx,
-      runs(column(names.length + 1, 1)),
-      columnX,
-      layout.truth,
-      layout.band,
-      colour,
-      names,
-      colours,
-      fontSize,
-      true,
-    );
-    paintDelays(ctx, picture, x, column(names.length, 0));
-  }
+  const truth = runs(column(names.length + 1, 1));
+  paintBand(ctx, truth, columnX, layout.truth, layout.band, colour, names, colours, fontSize, true);
+  paintDelays(ctx, picture, x, column(names.length, 0));
   paintPicked(ctx, picture.picked, x, layout.axis, colours);
   if (picture.hover !== undefined) {
     ctx.fillStyle = colours.accent;
@@ -102,7 +83,7 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
     ctx.textAlign = "right";
     ctx.fillText(name, layout.left - 10, y);
     ctx.font = fontFor(fontSize, 1, i === winnerNow ? 700 : 450);
-    ctx.fillText(`${formatNumber(reading(i) * 100, 1)} %`, layout.right + fontSize * 4.4, y);
+    ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 4.4, y);
   });
   ctx.font = fontFor(fontSize, 1, 450);
   ctx.fillStyle = colours.muted;

@@ -1,5 +1,4 @@
 import type { Pen } from "../../picture/pen";
-import { fontFor } from "../../ui/canvas-font";
 import { CANVAS } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import type { LanesLayout } from "./lanes-layout";
@@ -15,7 +14,6 @@ export interface RacePicture extends LanesGround {
   probabilities: number;
   hover: number | undefined;
   picked: number | undefined;
-  blind: boolean;
 }
 
 /** Where the parts of one row of the race lie: probabilities, verdict, delay, truth. */
@@ -62,15 +60,13 @@ export function paintRow(ctx: Pen, picture: RacePicture): void {
     picture.fontSize,
     false,
   );
-  if (!picture.blind) {
-    if (picture.withTruth) {
-      for (const run of runs(high(probabilities + 1))) {
-        ctx.fillStyle = run.value < 0 ? colours.axis : colour(run.value);
-        ctx.fillRect(columnX(run.from), layout.truth, columnX(run.to) - columnX(run.from), 6);
-      }
+  if (picture.withTruth) {
+    for (const run of runs(high(probabilities + 1))) {
+      ctx.fillStyle = run.value < 0 ? colours.axis : colour(run.value);
+      ctx.fillRect(columnX(run.from), layout.truth, columnX(run.to) - columnX(run.from), 6);
     }
-    paintDelays(ctx, picture, x, winner);
   }
+  paintDelays(ctx, picture, x, winner);
   paintPicked(ctx, picture.picked, x, layout.axis, colours);
   if (picture.hover !== undefined) {
     ctx.fillStyle = colours.accent;
@@ -94,13 +90,6 @@ export function paintTruth(ctx: Pen, picture: RacePicture): void {
   const x = (tick: number) => ((tick - span.start) / (span.end - span.start)) * layout.right;
   const perColumn = (frame.endTick - frame.startTick) / frame.columns;
   ctx.textBaseline = "middle";
-  if (picture.blind) {
-    ctx.font = fontFor(fontSize, 1, 600);
-    ctx.textAlign = "left";
-    ctx.fillStyle = colours.muted;
-    ctx.fillText("the truth is hidden until you answer", 6, layout.truth + layout.band / 2);
-    return;
-  }
   paintBand(
     ctx,
     runs(column(picture, 0, 1)),

@@ -3,7 +3,7 @@ import { useCatalog } from "../../api/use-catalog";
 import { useScheme } from "../../app/use-scheme";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
-import { formatNumber, formatPercent } from "../../ui/format";
+import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import type { Contestant } from "./contestants";
 import type { TruthSwitch } from "./delays";
 import { LaneCanvas, type LanePainting } from "./lane-canvas";
@@ -27,7 +27,6 @@ const ORDINAL = ["", "1st", "2nd", "3rd"];
 export function RaceRow({ contestant, time, switches, place, fontSize, onPainted }: RaceRowProps) {
   const { id, names, probabilities, verdict, truth } = contestant;
   const scheme = useScheme();
-  const blind = useView((s) => s.blind);
   const picked = useView((s) => s.sample?.tick);
   const kind = useBench((s) => s.bench?.diagnosers[id]?.kind ?? "");
   const { block } = useCatalog();
@@ -47,12 +46,11 @@ export function RaceRow({ contestant, time, switches, place, fontSize, onPainted
         withTruth: truth,
         probabilities: probabilities.length,
         picked,
-        blind,
       };
       paintRow(ctx, shown);
       onPainted(id, shown);
     },
-    [fontSize, scheme, names, switches, truth, probabilities, picked, blind, id, onPainted],
+    [fontSize, scheme, names, switches, truth, probabilities, picked, id, onPainted],
   );
   return (
     <section className={styles.row} aria-label={`Diagnosis by ${id}`}>
@@ -86,10 +84,9 @@ export function RaceRow({ contestant, time, switches, place, fontSize, onPainted
 
 function Verdict({ contestant: { id, names } }: { contestant: Contestant }) {
   const score = useBench((s) => s.scores[id]);
-  const blind = useView((s) => s.blind);
   if (!score) return null;
   return (
-    <strong className={styles.verdict} data-right={!blind && score.winner === score.truth}>
+    <strong className={styles.verdict} data-right={score.winner === score.truth}>
       {names[score.winner] ?? "–"}
     </strong>
   );
@@ -99,8 +96,7 @@ function Verdict({ contestant: { id, names } }: { contestant: Contestant }) {
 function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[]; place: number | undefined }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
-  const blind = useView((s) => s.blind);
-  if (!score || blind) return <dl className={styles.figures} />;
+  if (!score) return <dl className={styles.figures} />;
   const last = switches.at(-1);
   const found = score.delays.filter((d) => d !== null);
   const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
@@ -113,21 +109,17 @@ function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[];
       <div>
         <dt>last delay</dt>
         <dd data-place={place}>
-          {last?.delay === undefined
-            ? last?.findable
-              ? "not yet"
-              : "–"
-            : `${formatNumber(last.delay * dtMs, 2)}\u00a0ms`}
+          {last?.delay === undefined ? (last?.findable ? "not yet" : "–") : formatSi(last.delay * dtMs, "ms", 3)}
           {place !== undefined && <b>{ORDINAL[place] ?? `${place}th`}</b>}
         </dd>
       </div>
       <div>
         <dt>mean delay</dt>
-        <dd>{found.length ? `${formatNumber(mean * dtMs, 2)}\u00a0ms` : "–"}</dd>
+        <dd>{found.length ? formatSi(mean * dtMs, "ms", 3) : "–"}</dd>
       </div>
       <div>
         <dt>false switches</dt>
-        <dd>{score.false_switches}</dd>
+        <dd>{formatNumber(score.false_switches, 0)}</dd>
       </div>
     </dl>
   );

@@ -26,13 +26,12 @@ interface RaceProps {
 /** All diagnosers of the bench on one axis of time, under the truth: who finds it first, and who is right longest. */
 export function Race({ contestants, time, picture }: RaceProps) {
   const scheme = useScheme();
-  const blind = useView((s) => s.blind);
   const fontSize = useView((s) => (s.large ? 15 : 12));
   const events = useBench((s) => s.events);
   const switches = useMemo(() => {
-    const current = blind ? [] : currentEvents(events);
+    const current = currentEvents(events);
     return Object.fromEntries(contestants.map(({ id }) => [id, truthSwitches(current, id)]));
-  }, [blind, events, contestants]);
+  }, [events, contestants]);
   const places = useMemo(() => racePlaces(switches), [switches]);
   const first = contestants.find((c) => c.truth);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
@@ -65,11 +64,10 @@ export function Race({ contestants, time, picture }: RaceProps) {
         withTruth: true,
         probabilities: 0,
         picked: undefined,
-        blind,
       };
       paintHead(ctx, head.current);
     },
-    [scheme, fontSize, first, blind],
+    [scheme, fontSize, first],
   );
   return (
     <div className={styles.race} style={{ "--row": `${fontSize * 6.6}px` } as React.CSSProperties}>

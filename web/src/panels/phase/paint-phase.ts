@@ -1,6 +1,7 @@
 import type { UnstableRegion } from "../../api/types";
 import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
+import { labelsOn } from "../../ui/format";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { linearTicks } from "../../ui/ticks";
 import type { UnitScale } from "../../ui/unit-scale";
@@ -61,16 +62,18 @@ export function paintPhase(ctx: Pen, picture: PhasePicture): void {
   ctx.lineWidth = 1;
   ctx.textAlign = "center";
   ctx.textBaseline = "top";
-  for (const tick of scaled(picture.x, (right - LEFT) / 80)) {
-    line(ctx, px(tick), TOP, px(tick), bottom);
-    ctx.fillText(label(tick * picture.x.scale.factor), px(tick), bottom + 4);
-  }
+  const across = scaled(picture.x, (right - LEFT) / 80);
+  labelsOn(picture.x.scale, across).forEach((label, i) => {
+    line(ctx, px(across[i]), TOP, px(across[i]), bottom);
+    ctx.fillText(label, px(across[i]), bottom + 4);
+  });
   ctx.textAlign = "right";
   ctx.textBaseline = "middle";
-  for (const tick of scaled(picture.y, (bottom - TOP) / 30)) {
-    line(ctx, LEFT, py(tick), right, py(tick));
-    ctx.fillText(label(tick * picture.y.scale.factor), LEFT - 6, py(tick));
-  }
+  const up = scaled(picture.y, (bottom - TOP) / 30);
+  labelsOn(picture.y.scale, up).forEach((label, i) => {
+    line(ctx, LEFT, py(up[i]), right, py(up[i]));
+    ctx.fillText(label, LEFT - 6, py(up[i]));
+  });
   if (!picture.isFramed) {
     ctx.textBaseline = "bottom";
     ctx.fillText(phaseTitle(picture.x), right, height - 2);
@@ -168,7 +171,6 @@ function scaled({ range, scale }: PhaseAxis, count: number): number[] {
   return linearTicks(range[0] * scale.factor, range[1] * scale.factor, Math.max(2, count)).map((t) => t / scale.factor);
 }
 
-const label = (value: number) => String(Number(value.toPrecision(6))).replace("-", "−");
 const span = ([low, high]: Range) => high - low;
 
 function loop(ctx: Pen, points: readonly (readonly [number, number])[]): void {

@@ -5,12 +5,11 @@ import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { NumberField } from "../../ui/number-field";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
 import styles from "./phase.module.css";
 import { PhasePlot } from "./phase-plot";
 import { mapFits, mapWords } from "./unstable-map";
 import { useUnstableRegion } from "./use-unstable-region";
-
-const WINDOWS_MS = [1, 2, 4, 10, 20, 40];
 
 /** One signal over another, with the map of the unstable region beneath travel and velocity. */
 export function PhasePanel() {
@@ -48,7 +47,7 @@ export function PhasePanel() {
           w={84}
           aria-label="Length of the trail"
           value={String(windowMs)}
-          data={WINDOWS_MS.map((ms) => ({ value: String(ms), label: `${ms}\u00a0ms` }))}
+          data={windowItems(TIME_WINDOWS_MS.phase, windowMs)}
           onChange={(e) => setWindowMs(Number(e.currentTarget.value))}
         />
         {!flat && fits.boundary && (

@@ -28,7 +28,7 @@ it("asks for room for the boundary, else for the folds", () => {
 });
 
 it("says what it shows", () => {
-  expect(mapWords(slaved)).toMatch(/1\.66 µm and 3\.91 V.*Shaded/);
-  expect(mapWords({ ...slaved, boundary: null })).toMatch(/held at 0 V nothing/);
+  expect(mapWords(slaved)).toMatch(/1\.66\u00a0µm and 3\.91\u00a0V.*Shaded/);
+  expect(mapWords({ ...slaved, boundary: null })).toMatch(/held at 0\u00a0V nothing/);
   expect(mapWords({ ...slaved, plant: "linear", folds: [], boundary: null })).toBe("");
 });

@@ -1,4 +1,5 @@
 import type { UnstableRegion } from "../../api/types";
+import { formatShort, formatSi } from "../../ui/format";
 import type { Range } from "./phase-range";
 
 const DISPLACEMENTS = ["plant.displacement", "sensor.displacement", "model.displacement"];
@@ -27,11 +28,11 @@ export function mapWords(map: UnstableRegion): string {
   if (map.folds.some((f) => f.x_um === 0)) return "The rest itself is unstable: less bias is needed.";
   const fold = map.folds[0];
   const text = fold
-    ? `Dashed: a slow drive folds at ${Math.abs(fold.x_um).toFixed(2)} µm and ${Math.abs(fold.volts).toFixed(2)} V.`
+    ? `Dashed: a slow drive folds at ${formatSi(Math.abs(fold.x_um), "um", 3)} and ${formatSi(Math.abs(fold.volts), "V", 3)}.`
     : "";
   if (map.boundary) return `${text} Shaded: the energy suffices to pull in.`.trim();
   if (fold)
-    return `${text} Shaded: beyond it. With the drive held at ${map.drive_v} V nothing within the travel pulls in.`;
+    return `${text} Shaded: beyond it. With the drive held at ${formatShort(map.drive_v, "V")} nothing within the travel pulls in.`;
   if (map.plant === "planar" || map.plant === "slaved_lateral") return "Nothing within the travel pulls in.";
   return "";
 }

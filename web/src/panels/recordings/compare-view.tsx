@@ -3,7 +3,7 @@ import { useState } from "react";
 import { api } from "../../api/api";
 import type { Comparison, Recording } from "../../api/types";
 import { showError } from "../../app/send";
-import { formatSi } from "../../ui/format";
+import { formatCount, formatNumber, formatShort, formatSi } from "../../ui/format";
 import styles from "./recordings.module.css";
 
 const SHOWN = 60;
@@ -71,7 +71,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
         <>
           <p className={styles.verdict} data-ok={found.ok} role="status">
             {found.ok ? "Pass" : "Fail"}: {found.signals.length - failed} of {found.signals.length} signals within{" "}
-            {percent} % over {found.ticks} ticks
+            {formatShort(percent, "%")} over {formatCount(found.ticks, "tick")}
             {found.only_in_first.length + found.only_in_second.length > 0 &&
               `; ${found.only_in_first.length + found.only_in_second.length} are in one recording alone`}
           </p>
@@ -91,7 +91,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
                 <tr key={row.signal} data-ok={row.ok}>
                   <th scope="row">{row.signal}</th>
                   <td>{formatSi(row.max_difference, row.unit)}</td>
-                  <td>{row.at_tick}</td>
+                  <td>{formatNumber(row.at_tick, 0)}</td>
                   <td>{formatSi(row.rms_difference, row.unit)}</td>
                   <td>{formatSi(row.tolerance, row.unit)}</td>
                   <td>{row.ok ? "pass" : "fail"}</td>

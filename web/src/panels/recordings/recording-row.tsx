@@ -6,8 +6,15 @@ import type { Recording } from "../../api/types";
 import { openReplay } from "../../app/replay-bar";
 import { showError } from "../../app/send";
 import { Downloads, TRACE_FORMATS } from "../../ui/downloads";
-import { formatNumber } from "../../ui/format";
+import { formatCount, formatMoment, formatSi } from "../../ui/format";
 import styles from "./recordings.module.css";
+
+/** How a recording ended that did not end as it was meant to. */
+const ENDED: Partial<Record<Recording["state"], string>> = {
+  cut_short: "was cut short",
+  failed: "holds nothing",
+  aborted: "was interrupted",
+};
 
 interface RecordingRowProps {
   recording: Recording;
@@ -28,7 +35,7 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
     setBusy(false);
   };
   const remove = () => {
-    if (window.confirm(`Delete the recording ${name} of ${formatNumber(ticks * dt_ms, 2)} ms for good?`))
+    if (window.confirm(`Delete the recording ${name} of ${formatSi(ticks * dt_ms, "ms")} for good?`))
       api.removeRecording(id).then(onChanged, showError);
   };
   return (
@@ -40,24 +47,24 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
             ? `waits for ${condition}`
             : open
               ? "is being recorded"
-              : `${formatNumber(ticks * dt_ms, 2)} ms from ${formatNumber(start_tick * dt_ms, 2)} ms`}
-          {!open && ` · ${signals.length} signals · ${formatNumber(bytes / 1e6, 1)} MB`}
+              : `${formatSi(ticks * dt_ms, "ms")} from ${formatMoment(start_tick * dt_ms)}`}
+          {!open && ` · ${formatCount(signals.length, "signal")} · ${formatSi(bytes, "B", 3)}`}
           {condition && state !== "armed" && ` · ${condition}`}
         </span>
         <span>
           {isHere ? "this bench" : "another bench"},{" "}
           {new Date(created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
-          {state === "aborted" || state === "failed" ? (
+          {ENDED[state] && (
             <em>
               {" "}
-              · {state}: {reason}
+              · {ENDED[state]}: {reason}
             </em>
-          ) : null}
+          )}
         </span>
       </div>
       {!open && (
         <div className={styles.do}>
-          <Downloads href={(format) => `/api/v1/recordings/${id}/trace?format=${format}`} formats={TRACE_FORMATS} />
+          <Downloads href={(format) => `./api/v1/recordings/${id}/trace?format=${format}`} formats={TRACE_FORMATS} />
           <Button
             size="compact-xs"
             variant="light"

@@ -4,6 +4,7 @@ import { showPanel } from "../../app/layouts";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { formatShort } from "../../ui/format";
 import { instances } from "../card/instances";
 import { BOX, boxOf, FAULT_ARROWS, faultLines, LOOP, type LoopBox, WIRES } from "./loop";
 import styles from "./schematic.module.css";
@@ -151,7 +152,8 @@ export function SchematicPanel() {
         ))}
       </svg>
       <p className={styles.device}>
-        {String((parameters.device as { id?: string } | undefined)?.id ?? "device")} · {rate} kHz
+        {String((parameters.device as { id?: string } | undefined)?.id ?? "device")} ·{" "}
+        {rate === undefined ? "" : formatShort(rate, "kHz")}
       </p>
     </section>
   );

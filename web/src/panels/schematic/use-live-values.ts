@@ -53,7 +53,7 @@ export function useLiveValues(shown: Record<string, string>, say?: (key: string,
         const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
         peaks.current.set(key, peak);
         const scale = unitScale(unit, peak, 3);
-        element.textContent = `${formatOn(scale, value)} ${scale.unit}`;
+        element.textContent = formatOn(scale, value);
       });
     },
     EVERY_MS,

@@ -22,7 +22,7 @@ export function ExportMenu({ plot }: { plot: RefObject<ScopePlot | undefined> })
       start_tick: String(Math.max(bench.first_tick, Math.floor(picture.span.start))),
       end_tick: String(Math.ceil(picture.span.end)),
     });
-    window.location.assign(`/api/v1/benches/${bench.id}/trace?${query}`);
+    window.location.assign(`./api/v1/benches/${bench.id}/trace?${query}`);
   };
   return (
     <PictureMenu take={take}>

@@ -2,7 +2,7 @@ import { type RefObject, useEffect, useState } from "react";
 import { api } from "../../api/api";
 import { ApiError } from "../../api/api-error";
 import { useBench } from "../../stream/bench-store";
-import { formatNumber, formatPercent, formatSi } from "../../ui/format";
+import { formatCount, formatIn, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { SignalName } from "../../ui/signal-name";
 import { TraceSwatch } from "../../ui/trace-swatch";
@@ -106,14 +106,16 @@ export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
                 <td>{figures?.frequency === undefined ? "–" : formatSi(figures.frequency, "kHz")}</td>
                 <td>{figures?.overshoot === undefined ? "–" : formatPercent(figures.overshoot)}</td>
                 <td>{figures?.settling === undefined ? "–" : formatSi(figures.settling, "ms", 3)}</td>
-                <td>{figures?.phaseLag === undefined ? "–" : `${formatNumber(figures.phaseLag, 1)}°`}</td>
+                <td>{figures?.phaseLag === undefined ? "–" : formatIn(figures.phaseLag, "°", 1)}</td>
                 <td>{figures?.ratio === undefined ? "–" : formatNumber(figures.ratio, 3)}</td>
               </tr>
             );
           })}
         </tbody>
       </table>
-      {!exact && <small>Figures from minima and maxima: the span is longer than {MOST_COLUMNS} ticks.</small>}
+      {!exact && (
+        <small>Figures from minima and maxima: the span is longer than {formatCount(MOST_COLUMNS, "tick")}.</small>
+      )}
     </section>
   );
 }

@@ -8,7 +8,7 @@ import type { ScopePicture } from "./scope-picture";
 vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 
 const flat = (values: number[]) => ({ low: Float32Array.from(values), high: Float32Array.from(values) });
-const MICRO = { factor: 1, unit: "µm", decimals: 3 };
+const MICRO = { factor: 1, unit: "µm", decimals: 3, exponent: "" };
 
 const PICTURE: ScopePicture = {
   traces: [
@@ -18,7 +18,7 @@ const PICTURE: ScopePicture = {
   envelopes: [flat([-1, 0, 1]), { low: Float32Array.of(0, -5, 0), high: Float32Array.of(0, 5, 0) }],
   times: Float64Array.of(1, 1.5, 2),
   units: ["um", "V"],
-  scales: [MICRO, { factor: 1, unit: "V", decimals: 2 }],
+  scales: [MICRO, { factor: 1, unit: "V", decimals: 2, exponent: "" }],
   ranges: [
     { min: -1, max: 1 },
     { min: -5, max: 5 },
@@ -60,7 +60,7 @@ it("marks and tells the events in sight that speak, and bands the faults", () =>
   const document = drawn("t");
   const texts = [...document.querySelectorAll("text")].map((node) => node.textContent ?? "");
   expect(texts.filter((text) => text === "7")).toHaveLength(2); // at its line and in the list
-  expect(texts).toContain("at 1.500 ms: mass < 5 % & more");
+  expect(texts).toContain("at 1.500\u00a0ms: mass < 5 % & more");
   expect(texts.some((text) => /out of sight|quiet/.test(text))).toBe(false);
   const band = document.querySelector("rect[height='4']");
   // from the middle of the field to its right edge

@@ -2,7 +2,7 @@ import type { EventAxis, Field } from "../../picture/event-marks";
 import type { Pen } from "../../picture/pen";
 import type { Box, Picture } from "../../picture/picture";
 import { fontFor } from "../../ui/canvas-font";
-import { formatNumber } from "../../ui/format";
+import { labelsOn } from "../../ui/format";
 import { CANVAS, DASHES, onWhite } from "../../ui/palette";
 import { linearTicks } from "../../ui/ticks";
 import { timeLabels, timeSplits } from "../../ui/time-axis";
@@ -104,12 +104,12 @@ function paintAxis(
   const onLeft = axis === 0;
   const edge = onLeft ? left : right + (axis - 1) * AXIS;
   const ticks = linearTicks(ranges[axis].min, ranges[axis].max, 8);
-  const decimals = decimalsOf(ticks, scales[axis].factor);
+  const labels = labelsOn(scales[axis], ticks);
   pen.fillStyle = INK.text;
   pen.textAlign = onLeft ? "right" : "left";
-  for (const value of ticks) {
+  for (const [i, value] of ticks.entries()) {
     if (onLeft) stroke(pen, INK.grid, [left, y(value)], [right, y(value)]);
-    pen.fillText(formatNumber(value * scales[axis].factor, decimals), edge + (onLeft ? -7 : 7), y(value));
+    pen.fillText(labels[i], edge + (onLeft ? -7 : 7), y(value));
   }
   pen.save();
   pen.translate(onLeft ? 6 : edge + AXIS - 12, (top + bottom) / 2);
@@ -126,9 +126,4 @@ function stroke(pen: Pen, colour: string, ...points: [number, number][]): void {
   pen.beginPath();
   for (const [x, y] of points) pen.lineTo(x, y);
   pen.stroke();
-}
-
-function decimalsOf(steps: readonly number[], factor: number): number {
-  const step = steps.length > 1 ? Math.abs(steps[1] - steps[0]) * factor : 1;
-  return Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-6)));
 }

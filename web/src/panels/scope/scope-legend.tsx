@@ -32,9 +32,7 @@ export function ScopeLegend({ traces, plot, onRemove }: ScopeLegendProps) {
         if (!element) return;
         const scale = shown.scaleOf(trace.unit);
         const value = shown.reading(i);
-        const text = scale
-          ? `${formatOn(scale, value)} ${scale.unit}`
-          : `${formatSi(value, trace.unit)} (no axis left)`;
+        const text = scale ? formatOn(scale, value) : `${formatSi(value, trace.unit)} (no axis left)`;
         if (element.textContent !== text) element.textContent = text;
       });
     });

@@ -1,6 +1,6 @@
 import type uPlot from "uplot";
 import { fontFor } from "../../ui/canvas-font";
-import { formatNumber } from "../../ui/format";
+import { labelsOn } from "../../ui/format";
 import { CANVAS, DASHES, type Scheme } from "../../ui/palette";
 import { timeLabels, timeSplits } from "../../ui/time-axis";
 import type { UnitScale } from "../../ui/unit-scale";
@@ -75,7 +75,7 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
           gap: 6,
           space: (_u, _axis, _min, _max, height) => Math.max(fontSize * 1.2, height / 9),
           grid: { show: i === 0, stroke: colours.grid, width: 1 },
-          values: (_u, splits) => valueLabels(splits, model.scale(i)),
+          values: (_u, splits) => labelsOn(model.scale(i), splits),
         }),
       ),
     ],
@@ -96,10 +96,4 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
     ],
     hooks: { draw: [(u) => model.drawn(u)] },
   };
-}
-
-function valueLabels(splits: number[], scale: UnitScale): string[] {
-  const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) * scale.factor : 1;
-  const decimals = Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-6)));
-  return splits.map((v) => formatNumber(v * scale.factor, decimals));
 }

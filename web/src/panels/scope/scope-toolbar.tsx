@@ -1,14 +1,12 @@
 import { ActionIcon, NativeSelect } from "@mantine/core";
 import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
-import { formatSi } from "../../ui/format";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
 import styles from "./scope.module.css";
 import type { ScopeConfig } from "./scope-config";
 import { TriggerMenu } from "./trigger-menu";
 
 export type TriggerState = "none" | "waiting" | "triggered";
-
-const WINDOWS_MS = [0.2, 0.5, 1, 2, 4, 10, 20, 50, 100, 200, 500, 1000];
 
 interface ScopeToolbarProps {
   config: ScopeConfig;
@@ -22,9 +20,6 @@ interface ScopeToolbarProps {
 
 /** What a scope shows and how: signals, roll or trigger, window, live. */
 export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter, children }: ScopeToolbarProps) {
-  const windows = WINDOWS_MS.includes(config.windowMs)
-    ? WINDOWS_MS
-    : [...WINDOWS_MS, config.windowMs].sort((a, b) => a - b);
   return (
     <div className={styles.toolbar}>
       <div className={styles.signals}>{children}</div>
@@ -52,10 +47,7 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
           aria-label="Time window"
           w={78}
           value={String(config.windowMs)}
-          data={windows.map((ms) => ({
-            value: String(ms),
-            label: formatSi(ms, "ms", 3).replace(/\.?0+(?=\u00a0)/, ""),
-          }))}
+          data={windowItems(TIME_WINDOWS_MS.scope, config.windowMs)}
           onChange={(event) => onChange({ ...config, windowMs: Number(event.currentTarget.value) })}
         />
         <ActionIcon

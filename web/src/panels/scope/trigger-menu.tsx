@@ -2,6 +2,7 @@ import { Button, Group, NativeSelect, NumberInput, Popover, SegmentedControl, St
 import { useContext } from "react";
 import { useBench } from "../../stream/bench-store";
 import type { Trigger } from "../../stream/wire";
+import { formatShort } from "../../ui/format";
 import { unitText } from "../../ui/unit-scale";
 import { RearmContext } from "./rearm-context";
 import type { TriggerState } from "./scope-toolbar";
@@ -16,14 +17,15 @@ interface TriggerMenuProps {
 export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
   const signals = useBench((s) => s.bench?.signals) ?? [];
   const rearm = useContext(RearmContext);
-  const unit = unitText(signals.find((s) => s.name === trigger.signal)?.unit ?? "");
+  const signalUnit = signals.find((s) => s.name === trigger.signal)?.unit ?? "";
+  const unit = unitText(signalUnit);
   const set = (part: Partial<Trigger>) => onChange({ ...trigger, ...part });
   return (
     <Popover position="bottom-end" width={280}>
       <Popover.Target>
         <Button size="compact-xs" variant="default" h={26}>
           {state === "triggered" ? "● " : state === "waiting" ? "○ waiting " : ""}
-          {trigger.edge === "rising" ? "↗" : "↘"} {trigger.level} {unit}
+          {trigger.edge === "rising" ? "↗" : "↘"} {formatShort(trigger.level, signalUnit)}
         </Button>
       </Popover.Target>
       <Popover.Dropdown>

@@ -1,4 +1,4 @@
-import { formatNumber } from "../../ui/format";
+import { formatCount, formatNumber } from "../../ui/format";
 import styles from "./scoreboard.module.css";
 
 interface ConfusionProps {
@@ -35,7 +35,7 @@ export function Confusion({ id, names, counts }: ConfusionProps) {
                   <td
                     key={names[column]}
                     data-right={row === column}
-                    title={`${count} of ${total} samples`}
+                    title={`${formatNumber(count, 0)} of ${formatCount(total, "sample")}`}
                     style={{ "--share": `${Math.round(share * 55)}%` } as React.CSSProperties}
                   >
                     {total ? (count ? formatNumber(share * 100, 1) : "") : "·"}

@@ -1,7 +1,6 @@
-import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatNumber, formatPercent } from "../../ui/format";
+import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { Confusion } from "./confusion";
 import styles from "./scoreboard.module.css";
 
@@ -10,14 +9,7 @@ export function ScoreboardPanel() {
   const scores = useBench((s) => s.scores);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
-  const blind = useView((s) => s.blind);
   const entries = Object.entries(scores);
-  if (blind)
-    return (
-      <EmptyState title="Hidden while you look for the fault">
-        Scores tell the truth; they come back with your answer.
-      </EmptyState>
-    );
   if (entries.length === 0)
     return (
       <EmptyState title="No score yet">A diagnoser is scored from its first sample on; this bench has none.</EmptyState>
@@ -44,12 +36,12 @@ export function ScoreboardPanel() {
                 <td>{formatPercent(score.correct_fraction, 2)}</td>
                 <td>
                   {found.length ? formatNumber(mean, 1) : "–"}
-                  {found.length > 0 && <small>samples, {formatNumber(mean * dtMs, 2)} ms</small>}
+                  {found.length > 0 && <small>samples, {formatSi(mean * dtMs, "ms", 3)}</small>}
                 </td>
                 <td>
                   {score.delays.length - found.length} of {score.delays.length}
                 </td>
-                <td>{score.false_switches}</td>
+                <td>{formatNumber(score.false_switches, 0)}</td>
               </tr>
             );
           })}

@@ -1,7 +1,9 @@
 import type { Pen } from "../../picture/pen";
 import { fontFor } from "../../ui/canvas-font";
+import { formatShort, tickLabels } from "../../ui/format";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { linearTicks } from "../../ui/ticks";
+import { UNITS, unitText } from "../../ui/unit-scale";
 import type { Spectrum } from "./fourier";
 
 export interface SpectrumPicture {
@@ -12,6 +14,7 @@ export interface SpectrumPicture {
   highest: number;
   /** Decades of amplitude: exponents of the lowest and the highest shown. */
   decades: [number, number];
+  /** As the server writes it. */
   unit: string;
   colour: string;
   scheme: Scheme;
@@ -25,7 +28,11 @@ const RIGHT = 14;
 const TOP = 8;
 const BOTTOM = 36;
 
-export const amplitudeTitle = (unit: string) => (unit ? `amplitude, ${unit}` : "amplitude");
+/** Decades say their unit where it takes a prefix: "1 µm, 100 nm"; else the title says it. */
+const takesPrefix = (unit: string) => unit in UNITS;
+
+export const amplitudeTitle = (unit: string) =>
+  unitText(unit) === "" || takesPrefix(unit) ? "amplitude" : `amplitude, ${unitText(unit)}`;
 
 /** Amplitude over frequency, logarithmic upwards; the largest of the bins that share a pixel is drawn. */
 export function paintSpectrum(ctx: Pen, picture: SpectrumPicture): void {
@@ -44,17 +51,18 @@ export function paintSpectrum(ctx: Pen, picture: SpectrumPicture): void {
   ctx.lineWidth = 1;
   ctx.textAlign = "center";
   ctx.textBaseline = "top";
-  for (const tick of linearTicks(0, highest, (right - LEFT) / 90)) {
-    line(ctx, px(tick), TOP, px(tick), bottom);
-    ctx.fillText(String(tick), px(tick), bottom + 4);
-  }
+  const across = linearTicks(0, highest, (right - LEFT) / 90);
+  tickLabels(across).forEach((label, i) => {
+    line(ctx, px(across[i]), TOP, px(across[i]), bottom);
+    ctx.fillText(label, px(across[i]), bottom + 4);
+  });
   ctx.textAlign = "right";
   if (!picture.isFramed) ctx.fillText("kHz", right, bottom + 4 + fontSize);
   ctx.textBaseline = "middle";
   for (let power = decades[0]; power <= decades[1]; power += 1) {
     const y = py(10 ** power);
     line(ctx, LEFT, y, right, y);
-    ctx.fillText(power >= -3 && power <= 3 ? String(Number((10 ** power).toPrecision(1))) : `1e${power}`, LEFT - 6, y);
+    ctx.fillText(formatShort(10 ** power, takesPrefix(picture.unit) ? picture.unit : ""), LEFT - 6, y);
   }
   if (!picture.isFramed) {
     ctx.textAlign = "left";

@@ -5,11 +5,8 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import styles from "../phase/phase.module.css";
+import { bandItems, tickItems } from "./spectrum-menus";
 import { SpectrumPlot } from "./spectrum-plot";
-
-const TICKS = [512, 1024, 2048, 4096];
-/** Shares of the whole band, which ends at half the sample rate. */
-const BANDS = [20, 5, 1];
 
 /** The tones in a signal, live: every tick of the window counts, so nothing beyond the band folds back into it. */
 export function SpectrumPanel() {
@@ -35,14 +32,14 @@ export function SpectrumPanel() {
           size="xs"
           aria-label="Length of the record"
           value={String(ticks)}
-          data={TICKS.map((n) => ({ value: String(n), label: `${n} ticks` }))}
+          data={tickItems()}
           onChange={(e) => setTicks(Number(e.currentTarget.value))}
         />
         <NativeSelect
           size="xs"
           aria-label="Band"
           value={String(share)}
-          data={BANDS.map((n) => ({ value: String(n), label: `to ${formatSi(0.5 / dtMs / n, "kHz", 3)}` }))}
+          data={bandItems(dtMs)}
           onChange={(e) => setShare(Number(e.currentTarget.value))}
         />
         <span className={styles.held}>bins of {formatSi(1 / (ticks * dtMs), "kHz", 3)}, Hann window</span>

@@ -8,7 +8,6 @@ import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
 import { formatSi } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";
-import { unitText } from "../../ui/unit-scale";
 import { useCanvas } from "../../ui/use-canvas";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
@@ -85,7 +84,7 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
         spectrum: found,
         highest,
         decades: [upper - DECADES, upper],
-        unit: unitText(trace.unit),
+        unit: trace.unit,
         colour: trace.colour,
         scheme,
         fontSize: large ? 15 : 12,

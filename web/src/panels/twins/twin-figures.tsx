@@ -3,7 +3,7 @@ import { useCatalog } from "../../api/use-catalog";
 import { useScheme } from "../../app/use-scheme";
 import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
-import { formatNumber, formatSi } from "../../ui/format";
+import { formatSi } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";
 import type { Board } from "./boards";
 import { type TrackingFigures, trackingFigures } from "./tracking-figures";
@@ -45,7 +45,7 @@ export function TwinFigures({ boards }: { boards: Board[] }) {
   return (
     <div className={styles.scroll}>
       <table className={styles.table}>
-        <caption>Against the reference model, over the last {formatNumber(ticks * dtMs, 2)} ms</caption>
+        <caption>Against the reference model, over the last {formatSi(ticks * dtMs, "ms")}</caption>
         <thead>
           <tr>
             <th scope="col">Board</th>

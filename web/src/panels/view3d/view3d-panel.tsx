@@ -1,4 +1,3 @@
-import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { View3dFrame } from "./view3d-frame";
@@ -6,15 +5,8 @@ import { View3dFrame } from "./view3d-frame";
 /** The shuttle in 3D, if this server draws it. */
 export function View3dPanel() {
   const path = useBench((s) => s.bench?.view3d);
-  const blind = useView((s) => s.blind);
-  if (blind)
-    return (
-      <EmptyState title="Hidden while you look for the fault">
-        The 3D view marks faults on the device; it comes back with your answer.
-      </EmptyState>
-    );
   if (path === undefined) return <EmptyState title="No bench yet">The device appears here in 3D.</EmptyState>;
   if (path === null)
     return <EmptyState title="No 3D view">This server runs without it; everything else works.</EmptyState>;
-  return <View3dFrame key={path} path={path} />;
+  return <View3dFrame key={path} path={`.${path}`} />;
 }

@@ -24,7 +24,7 @@ const account: Account = {
 it.each([
   [0.12345, "0.1235"],
   [-3, "-3.000"],
-  [2.5e-7, "2.500\\cdot10^{-7}"],
+  [2.5e-7, "250.0\\cdot10^{-9}"],
   [Number.NEGATIVE_INFINITY, "-\\infty"],
 ])("%s is set as %s", (value, tex) => expect(texNumber(value)).toBe(tex));
 

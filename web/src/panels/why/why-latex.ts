@@ -1,14 +1,10 @@
 import type { Account, ModelAccount } from "../../api/types";
+import { formatSi, inTex } from "../../ui/format";
 
 /** A number for an equation: four digits, a power of ten where it needs one. */
 export function texNumber(value: number, digits = 4): string {
   if (!Number.isFinite(value)) return value < 0 ? "-\\infty" : "\\infty";
-  const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e5)) {
-    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
-    return `${mantissa}\\cdot10^{${Number(exponent)}}`;
-  }
-  return value.toPrecision(digits);
+  return inTex(formatSi(value, "", digits));
 }
 
 const bracketed = (value: number) => (value < 0 ? `(${texNumber(value)})` : texNumber(value));

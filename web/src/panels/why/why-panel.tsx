@@ -8,9 +8,9 @@ import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
 import { EmptyState } from "../../ui/empty-state";
+import { formatClock } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { NumberField } from "../../ui/number-field";
-import { formatDeviceTime } from "../../ui/time-axis";
 import { ModelTable } from "./model-table";
 import styles from "./why.module.css";
 import { densityLatex, floorLatex, posteriorLatex } from "./why-latex";
@@ -87,7 +87,7 @@ export function WhyPanel() {
             <IconChevronRight size={16} />
           </ActionIcon>
         </span>
-        {account && !refusal && <span className={styles.time}>{formatDeviceTime(account.time_ms)} s</span>}
+        {account && !refusal && <span className={styles.time}>{formatClock(account.time_ms)} s</span>}
         <Button size="compact-sm" variant="default" onClick={() => pick(sample.diagnoser, stream.client.head.tick - 1)}>
           Latest
         </Button>

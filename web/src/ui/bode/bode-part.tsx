@@ -1,4 +1,5 @@
-import { formatSi } from "../format";
+import { formatShort } from "../format";
+import { roundTo } from "../unit-scale";
 import styles from "./bode.module.css";
 
 interface BodePartProps {
@@ -32,7 +33,7 @@ export function BodePart(props: BodePartProps) {
     return height - ((clipped - range[0]) / (range[1] - range[0])) * height;
   };
   const path = (hertz: number[], values: number[]) =>
-    hertz.map((f, i) => `${i ? "L" : "M"}${x(f).toFixed(1)} ${y(values[i]).toFixed(1)}`).join("");
+    hertz.map((f, i) => `${i ? "L" : "M"}${roundTo(x(f), 5)} ${roundTo(y(values[i]), 5)}`).join("");
   return (
     <g transform={`translate(${left} ${top})`}>
       {frequencies.map((f) => (
@@ -42,7 +43,7 @@ export function BodePart(props: BodePartProps) {
         <g key={tick}>
           <path d={`M0 ${y(tick)} H${width}`} className={styles.grid} />
           <text x={-6} y={y(tick) + 4} textAnchor="end" className={styles.tick}>
-            {String(tick).replace("-", "−")}
+            {formatShort(tick, "")}
           </text>
         </g>
       ))}
@@ -86,7 +87,7 @@ export function BodePart(props: BodePartProps) {
       {labelled &&
         spaced(frequencies, x).map((f) => (
           <text key={f} x={x(f)} y={height + 16} textAnchor="middle" className={styles.tick}>
-            {formatSi(f, "Hz", 1)}
+            {formatShort(f, "Hz")}
           </text>
         ))}
     </g>

@@ -1,6 +1,6 @@
 import { useState } from "react";
 import { PictureMenu } from "../../picture/picture-menu";
-import { formatSi } from "../format";
+import { formatIn, formatSi } from "../format";
 import { useSize } from "../use-size";
 import styles from "./bode.module.css";
 import { BodeField, type BodeFieldProps } from "./bode-field";
@@ -41,7 +41,7 @@ export function BodePlot({ label, ...shown }: BodePlotProps) {
         )}
         <li className={styles.reading}>
           {read !== undefined &&
-            `${formatSi(hertz[read], "Hz")}: ${curves[0].db[read].toFixed(1)} dB, ${curves[0].deg[read].toFixed(0)}°`}
+            `${formatSi(hertz[read], "Hz")}: ${formatIn(curves[0].db[read], "dB", 1)}, ${formatIn(curves[0].deg[read], "°", 0)}`}
         </li>
         <li>
           <PictureMenu name={label} take={() => printBode(label, shown)} />

@@ -1,0 +1,158 @@
+"""How numbers are written for people, in reports, pictures, 3D and events.
+
+The page writes them the same way (``web/src/ui/format.ts``); ``web/src/ui/format-cases.json`` holds both to one text
+for one value.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from decimal import ROUND_HALF_UP, Context, Decimal
+
+MINUS, THIN, SPACE, NOTHING = "−", "\u2009", "\u00a0", "–"
+IMMENSE = 1e15
+"""From here on a number with fixed decimals would be a row of digits that mean nothing."""
+LEAST_PLAIN, MOST_PLAIN = 1e-3, 1e6
+"""Numbers without a prefix are written out between these."""
+
+UNITS = {
+    **{"m": (1.0, "m"), "mm": (1e-3, "m"), "um": (1e-6, "m"), "nm": (1e-9, "m")},
+    **{"s": (1.0, "s"), "ms": (1e-3, "s"), "us": (1e-6, "s"), "ns": (1e-9, "s"), "s/s": (1.0, "s/s")},
+    **{"m/s": (1.0, "m/s"), "um/ms": (1e-3, "m/s")},
+    **{"V": (1.0, "V"), "mV": (1e-3, "V"), "Hz": (1.0, "Hz"), "kHz": (1e3, "Hz")},
+    **{"rad": (1.0, "rad"), "mrad": (1e-3, "rad")},
+    **{"N": (1.0, "N"), "uN": (1e-6, "N"), "nN": (1e-9, "N"), "N/m": (1.0, "N/m"), "uN/um": (1.0, "N/m")},
+    **{"N/V": (1.0, "N/V"), "uN/V": (1e-6, "N/V"), "N s/m": (1.0, "N·s/m"), "um/V": (1e-6, "m/V")},
+    **{"kg": (1e3, "g"), "mg": (1e-3, "g"), "F": (1.0, "F"), "fF": (1e-15, "F"), "Pa": (1.0, "Pa")},
+    **{"A": (1.0, "A"), "W": (1.0, "W"), "B": (1.0, "B")},
+}
+"""Units that take prefixes: the factor to the base unit, and its name."""
+
+PREFIXES = tuple(zip((1e12, 1e9, 1e6, 1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-18), "TGMk mµnpfa", strict=True))
+_EXACT = Context(prec=100, rounding=ROUND_HALF_UP)
+
+
+@dataclass(frozen=True)
+class UnitScale:
+    """How numbers of one unit are shown: shown value = value times factor, with so many decimals."""
+
+    factor: float
+    unit: str
+    decimals: int
+    exponent: str = ""
+
+
+def unit_scale(unit: str, magnitude: float, digits: int = 4) -> UnitScale:
+    """Return the scale on which the largest value to be shown reads as 1 to 999 of a prefixed unit."""
+    to_base, name = UNITS.get(unit, (1.0, unit_text(unit)))
+    size = round_to(abs(magnitude) * to_base, digits)  # what rounds up to 1000 takes the next prefix
+    found = _prefix(size or to_base) if unit in UNITS else _plain(size)
+    if found is not None:
+        scale, prefix = found
+        return UnitScale(to_base / scale, prefix.strip() + name, _decimals_for(size / scale, digits))
+    power = 3 * (_power(size) // 3)
+    exponent = f"e{MINUS if power < 0 else ''}{abs(power)}" if power else ""
+    return UnitScale(to_base / 10.0**power, name, _decimals_for(size / 10.0**power, digits), exponent)
+
+
+def format_number(value: float, decimals: int) -> str:
+    """Write a number with fixed decimals, a real minus sign and grouped thousands."""
+    if not math.isfinite(value):
+        return NOTHING
+    if abs(value) >= IMMENSE:
+        return format_si(value, "")
+    text = _fixed(abs(value), decimals)
+    whole, _, fraction = text.partition(".")
+    grouped = f"{int(whole):,}".replace(",", THIN) if len(whole) > 4 else whole
+    sign = MINUS if value < 0.0 and float(text) != 0.0 else ""
+    return sign + grouped + (f".{fraction}" if fraction else "")
+
+
+def format_si(value: float, unit: str, digits: int = 4) -> str:
+    """Write a value with an SI-prefixed unit and all its significant digits: what is measured."""
+    return format_on(unit_scale(unit, value, digits), value) if math.isfinite(value) else NOTHING
+
+
+def format_short(value: float, unit: str, digits: int = 4) -> str:
+    """Write a value with an SI-prefixed unit in as few digits as it needs: what was chosen."""
+    if not math.isfinite(value):
+        return NOTHING
+    scale = unit_scale(unit, value, digits)
+    shown = float(_fixed(value * scale.factor, scale.decimals))
+    return format_on(replace(scale, decimals=_decimals_of(shown, scale.decimals)), value)
+
+
+def format_on(scale: UnitScale, value: float) -> str:
+    """Write a value on a scale chosen beforehand."""
+    if not math.isfinite(value):
+        return NOTHING
+    return _with_unit(format_number(value * scale.factor, scale.decimals) + scale.exponent, scale.unit)
+
+
+def format_in(value: float, unit: str, decimals: int) -> str:
+    """Write a value in its own unit with fixed decimals."""
+    return _with_unit(format_number(value, decimals), unit_text(unit)) if math.isfinite(value) else NOTHING
+
+
+def format_count(count: float, noun: str) -> str:
+    """Say how many of something."""
+    return _with_unit(format_number(count, 0), noun if abs(count) == 1 else f"{noun}s")
+
+
+def tick_labels(ticks: Sequence[float]) -> list[str]:
+    """Label the ticks of an axis: as many decimals as its steps need, and no more."""
+    scale = unit_scale("", max(map(abs, ticks), default=0.0))
+    shown = [round_to(tick * scale.factor, 12) for tick in ticks]
+    decimals = max((_decimals_of(tick, 9) for tick in shown), default=0)
+    return [format_number(tick, decimals) + (scale.exponent if tick else "") for tick in shown]
+
+
+def unit_text(unit: str) -> str:
+    """Return a unit the way people write it; numbers without one, and mixed vectors, have none."""
+    if unit in ("", "1", "mixed"):
+        return ""
+    parts = unit.replace("*", "·").replace(" ", "·").replace("^2", "²").replace("^3", "³")
+    for micro in ("um", "us", "uN", "uV"):
+        parts = parts.replace(micro, "µ" + micro[1:])
+    return parts
+
+
+def round_to(value: float, digits: int) -> float:
+    """Return a value in so many significant digits; a half goes away from zero."""
+    return float(Context(prec=digits, rounding=ROUND_HALF_UP).create_decimal(Decimal(value)))
+
+
+def _plain(size: float) -> tuple[float, str] | None:
+    return (1.0, "") if size == 0.0 or LEAST_PLAIN <= size < MOST_PLAIN else None
+
+
+def _prefix(size: float) -> tuple[float, str] | None:
+    if size >= 1e3 * PREFIXES[0][0]:
+        return None
+    return next((found for found in PREFIXES if size >= found[0]), None)
+
+
+def _decimals_for(shown: float, digits: int) -> int:
+    return max(0, digits - 1 - _power(round_to(shown, digits))) if shown > 0.0 else digits - 1
+
+
+def _decimals_of(value: float, most: int) -> int:
+    """Return the fewest decimals that show a value as it is."""
+    full = float(_fixed(value, most))
+    return next((decimals for decimals in range(most) if float(_fixed(value, decimals)) == full), most)
+
+
+def _power(size: float) -> int:
+    return Decimal(repr(float(size))).adjusted() if size else 0
+
+
+def _fixed(value: float, decimals: int) -> str:
+    return str(_EXACT.quantize(Decimal(value), Decimal(1).scaleb(-decimals)))
+
+
+def _with_unit(text: str, unit: str) -> str:
+    if not unit:
+        return text
+    return text + unit if unit == "°" else text + SPACE + unit

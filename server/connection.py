@@ -1,0 +1,108 @@
+"""A connection of HTTP that is not kept for a client that sends or reads nothing."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+HEAD_S = 10.0
+"""Time for the head of a request, from the connection or its first byte."""
+BODY_S = 60.0
+"""Time for its body: the largest at 20 kB/s."""
+STALL_S = 30.0
+"""Time for taking something of an answer that fills its buffers."""
+MOST_WAITING = 16
+"""Requests sent before the answer to the first; what a chunk of them makes us keep is a hundred times its size."""
+
+
+class Connection(HttpToolsProtocol):
+    """Closes what waits for too long; when there is no room left, what has waited longest."""
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self._deadline: asyncio.TimerHandle | None = None
+        self._stalled: asyncio.TimerHandle | None = None
+        self._since = self.loop.time()
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether there is no request to be answered."""
+        return self.cycle is None or self.cycle.response_complete
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Wait for a request; make room for it."""
+        if self.limit_concurrency is not None and len(self.connections) >= self.limit_concurrency - 1:
+            idle = [one for one in self.connections if isinstance(one, Connection) and one.is_idle]
+            if idle:
+                longest = min(idle, key=lambda one: one._since)
+                self.connections.discard(longest)
+                longest.transport.abort()
+        super().connection_made(transport)
+        self._wait(HEAD_S)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Wait no more."""
+        self._wait(None)
+        self.resume_writing()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Read on; what is no request yet has to become one."""
+        super().data_received(data)
+        is_ours = not self.transport.is_closing() and self.transport.get_protocol() is self
+        if is_ours and self.is_idle and self._deadline is None:
+            self._wait(HEAD_S)
+
+    def on_message_begin(self) -> None:
+        """Wait for the head, from the first byte on."""
+        super().on_message_begin()
+        if self._deadline is None:
+            self._wait(HEAD_S)
+
+    def on_headers_complete(self) -> None:
+        """Wait for the body; to ask on without waiting for answers is no way to ask.
+
+        Raises
+        ------
+        ValueError
+            Which the parser takes for a malformed request.
+        """
+        if len(self.pipeline) >= MOST_WAITING:
+            raise ValueError("too many requests at once")
+        self._wait(BODY_S)
+        super().on_headers_complete()
+
+    def on_message_complete(self) -> None:
+        """Wait no more: it is for us to answer."""
+        self._wait(None)
+        super().on_message_complete()
+
+    def on_response_complete(self) -> None:
+        """Note since when it is idle."""
+        self._since = self.loop.time()
+        super().on_response_complete()
+
+    def handle_websocket_upgrade(self) -> None:
+        """Leave the connection to the WebSocket."""
+        self._wait(None)
+        super().handle_websocket_upgrade()
+
+    def pause_writing(self) -> None:
+        """Give a client that does not read a while."""
+        self._stalled = self.loop.call_later(STALL_S, self.transport.abort)
+        super().pause_writing()
+
+    def resume_writing(self) -> None:
+        """Go on with a client that reads."""
+        if self._stalled is not None:
+            self._stalled.cancel()
+            self._stalled = None
+        super().resume_writing()
+
+    def _wait(self, seconds: float | None) -> None:
+        """Close the connection after some time, unless something comes."""
+        if self._deadline is not None:
+            self._deadline.cancel()
+        self._deadline = None if seconds is None else self.loop.call_later(seconds, self.transport.abort)

@@ -1,0 +1,33 @@
+"""Keeps the files of the service readable by its own user alone."""
+
+from __future__ import annotations
+
+import logging
+import os
+from pathlib import Path
+
+log = logging.getLogger(__name__)
+
+KEPT = ("token*", "combbench.sqlite3*", "recordings", "runs")
+OTHERS = 0o077
+
+
+def keep_private(data: Path) -> None:
+    """Make the data folder if there is none, and let nobody else read what is kept in it, from before or from now on.
+
+    An existing folder keeps its mode, because it may also hold files of others.
+
+    Parameters
+    ----------
+    data : Path
+        The data folder.
+    """
+    os.umask(OTHERS)
+    data.mkdir(parents=True, exist_ok=True)
+    for path in (found for pattern in KEPT for found in data.glob(pattern)):
+        mode = path.stat().st_mode
+        if mode & OTHERS:
+            try:
+                path.chmod(mode & ~OTHERS & 0o7777)
+            except PermissionError:  # as on a volume that belongs to somebody else
+                log.warning("%s may be read by others, and is not this user's to change", path)

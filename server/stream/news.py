@@ -1,0 +1,78 @@
+"""Status and events of a bench as messages, framed once for all its pages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from server.bench.portrait import document_now
+from server.bench.session import Session
+from server.stream.line import text_message
+from server.stream.wire import Events, Notice, Status
+
+EVENTS_AT_ONCE = 100
+UNTOLD = '"dropped_frames":-1'
+
+
+class News:
+    """The words on one bench.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    around : callable
+        Returns the fields of a status that the bench itself does not know.
+    """
+
+    def __init__(self, session: Session, around: Callable[[], dict[str, Any]]) -> None:
+        self._session, self._around = session, around
+        self._document = document_now(session)
+        self.edition = 1
+        """Changes whenever the parameters do."""
+        self._status: object = None
+        self._texts: dict[bool, str] = {}
+        self._statuses: dict[tuple[bool, int], bytes] = {}
+        self._events: dict[int, tuple[list[bytes], int]] = {}
+        self._last = -1
+
+    def status(self, known_edition: int, dropped: int) -> bytes:
+        """Return the status for a page that knows some edition of the parameters and had some frames dropped."""
+        if self._session.status is not self._status:
+            self._status = self._session.status
+            self._texts, self._statuses = {}, {}
+            document = document_now(self._session)
+            if document != self._document:
+                self._document = document
+                self.edition += 1
+        key = (known_edition != self.edition, dropped)
+        if key not in self._statuses:
+            told = f'"dropped_frames":{dropped}'
+            self._statuses[key] = text_message(self._text(key[0]).replace(UNTOLD, told))
+        return self._statuses[key]
+
+    def events(self, after: int) -> tuple[list[bytes], int]:
+        """Return the messages with the oldest events after one, and the number of the last event in them."""
+        if self._session.events.last != self._last:
+            self._last = self._session.events.last
+            self._events = {}
+        if after not in self._events:
+            lost, events = self._session.events.after(after, EVENTS_AT_ONCE)
+            said = (
+                [Notice(code="events_lost", message=f"{lost} events are older than this bench keeps")] if lost else []
+            )
+            messages = [*said, Events(events=events)] if events else said
+            last = events[-1].seq if events else after
+            self._events[after] = ([text_message(one.model_dump_json()) for one in messages], last)
+        return self._events[after]
+
+    def _text(self, with_parameters: bool) -> str:
+        """Return the status but for one number that differs from page to page."""
+        if with_parameters not in self._texts:
+            message = Status(
+                **{**dict(self._session.status), **self._around()},
+                parameters=self._document if with_parameters else None,
+                dropped_frames=-1,
+            )
+            self._texts[with_parameters] = message.model_dump_json()
+        return self._texts[with_parameters]

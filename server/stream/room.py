@@ -1,0 +1,52 @@
+"""All pages of one bench, and what is new to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from server.bench.session import Session
+from server.stream.client import Client
+from server.stream.cuts import SharedCuts
+from server.stream.news import News
+
+STATUS_S = 0.05
+"""After an event the status follows at once, but not more often than this."""
+
+
+PAGES_AT_ONCE = 25
+"""Pages served before the event loop may do something else; each takes it some 20 us."""
+
+
+class Room:
+    """The pages that watch a bench.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    around : callable
+        Returns the fields of a status that the bench itself does not know.
+    """
+
+    def __init__(self, session: Session, around: Callable[[], dict[str, Any]]) -> None:
+        self.session = session
+        self.clients: set[Client] = set()
+        self.cuts = SharedCuts(session)
+        self.news = News(session, around)
+        self._head = self._last = self._told = -1
+        self._told_at = 0.0
+
+    def publish(self, now: float) -> Iterator[None]:
+        """Offer every page what is new, with breaks."""
+        head, last = self.cuts.refresh(), self.session.events.last
+        status = last != self._told and now - self._told_at >= STATUS_S
+        if status:
+            self._told, self._told_at = last, now
+        new = {"events": last != self._last, "frame": head != self._head, "status": status}
+        self._head, self._last = head, last
+        if any(new.values()):
+            for served, client in enumerate(list(self.clients), 1):
+                client.offer(**new)
+                if served % PAGES_AT_ONCE == 0:
+                    yield

@@ -1,0 +1,212 @@
+"""Pictures of panels: which ticks they cover, and when they change; pages that show the same share one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.board.history import FACTOR
+from server.stream.codec import FROZEN, TRIGGERED, WAITING, Picture
+from server.stream.trigger import Samples, Trigger, crossing_time
+from server.stream.wire import Subscribe
+
+
+class History(Samples, Protocol):
+    """The full-rate past of a bench."""
+
+    def columns(self, signals: list[int], start: int, stop: int, columns: int) -> NDArray[np.float32]:
+        """Return ``(n, 2, columns)`` minima and maxima."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """Columns of whole ticks.
+
+    They begin at multiples of their width, so a column keeps its samples while the picture moves and
+    nothing shimmers.
+    """
+
+    start: int
+    end: int
+    columns: int
+
+    @classmethod
+    def ending(cls, head: int, window: int, width: int) -> Span:
+        """Cover the last ``window`` ticks before ``head``."""
+        step = column_step(window, width)
+        count = max(1, math.ceil(window / step))
+        end = math.ceil(head / step) * step
+        return cls(end - count * step, end, count)
+
+    @classmethod
+    def between(cls, start: int, end: int, width: int) -> Span:
+        """Cover at least ``start`` to ``end``."""
+        step = column_step(end - start, width)
+        first = start // step * step
+        count = max(1, math.ceil((end - first) / step))
+        return cls(first, first + count * step, count)
+
+
+def column_step(ticks: int, width: int) -> int:
+    """Return the ticks of one column, so that ``width`` columns cover ``ticks``.
+
+    Wide columns are whole buckets of the history, which is ten times cheaper; it costs a fifth of the
+    columns at most.
+    """
+    step = max(1, math.ceil(ticks / width))
+    for bucket in (FACTOR * FACTOR, FACTOR):
+        if step >= 4 * bucket:
+            return math.ceil(step / bucket) * bucket
+    return step
+
+
+class _State(NamedTuple):
+    """Identifies a picture: its kind, a tick that tells it from others of that kind, and its flags."""
+
+    kind: Literal["frozen", "rolling", "triggered", "empty"]
+    tick: int
+    flags: int
+
+
+class View:
+    """Cuts the pictures of a subscription.
+
+    Parameters
+    ----------
+    spec : Subscribe
+        The subscription.
+    indices : list of int
+        Columns of its signals in the history.
+    trigger_index : int or None
+        Column of the trigger's signal.
+    dt_ms : float
+        Device time of one tick.
+    head : int
+        First tick not computed yet.
+    """
+
+    def __init__(self, spec: Subscribe, indices: list[int], trigger_index: int | None, dt_ms: float, head: int) -> None:
+        self.spec, self.indices = spec, indices
+        self._window = max(2, round((spec.window_ms or 0.0) / dt_ms))
+        self._sweep = _Sweep(spec, trigger_index, self._window, head) if trigger_index is not None else None
+        self._frozen: Span | None = None
+        if spec.mode == "frozen" and spec.start_tick is not None and spec.end_tick is not None:
+            self._frozen = Span.between(spec.start_tick, spec.end_tick, spec.width)
+        self._state: _State | None = None
+        self._picture: Picture | None = None
+
+    def rearm(self, head: int) -> None:
+        """Take one more picture in single sweep."""
+        if self._sweep is not None:
+            self._sweep.rearm(head)
+
+    def forget(self) -> None:
+        """Take another picture even of the same ticks: they may hold something else now."""
+        self._state = None
+
+    def picture(self, history: History) -> Picture:
+        """Return the picture of now; the very same object while nothing in it changes."""
+        state = self._look(history)
+        if self._picture is None or state != self._state:
+            self._state = state
+            span, trigger = self._span(history, state)
+            self._picture = Picture(
+                start=span.start,
+                end=span.end,
+                trigger=trigger,
+                flags=state.flags,
+                columns=history.columns(self.indices, span.start, span.end, span.columns),
+                latest=_latest(history, self.indices),
+            )
+        return self._picture
+
+    def _look(self, history: History) -> _State:
+        """Say what there is to show: pictures differ if and only if this does."""
+        head = history.end_tick
+        if self._frozen is not None:
+            return _State("frozen", min(max(head, self._frozen.start), self._frozen.end), FROZEN)
+        if self._sweep is None:
+            return _State("rolling", head, 0)
+        tick, flags = self._sweep.update(history)
+        if tick is not None:
+            return _State("triggered", tick, flags)
+        return _State("rolling", head, flags) if self._sweep.is_auto else _State("empty", 0, flags)
+
+    def _span(self, history: History, state: _State) -> tuple[Span, float]:
+        """Return the columns of a picture, and where it was triggered."""
+        if self._frozen is not None:
+            return self._frozen, math.nan
+        if state.kind == "triggered":
+            assert self._sweep is not None
+            start = state.tick - self._sweep.before
+            step = column_step(self._window, self.spec.width)
+            count = max(1, math.ceil(self._window / step))
+            return Span(start, start + count * step, count), self._sweep.exact(history, state.tick)
+        span = Span.ending(history.end_tick, self._window, self.spec.width)
+        if state.kind == "empty":  # behind all there is
+            span = Span(history.end_tick, history.end_tick + span.end - span.start, span.columns)
+        return span, math.nan
+
+
+class _Sweep:
+    """The time base of a triggered panel: which crossing is on show."""
+
+    def __init__(self, spec: Subscribe, index: int, window: int, head: int) -> None:
+        assert spec.trigger is not None
+        self._spec, self._window = spec.trigger, window
+        self.before = round(spec.trigger.position * window)
+        # Begin where a whole window would still be in sight, so that a paused bench shows its last picture.
+        start = head - 4 * window if spec.trigger.sweep != "single" else head
+        self._trigger = Trigger(index, spec.trigger.edge, spec.trigger.level, spec.trigger.hysteresis, start)
+        self._waiting: list[int] = []
+        self._shown: int | None = None
+        self._armed = True
+
+    @property
+    def is_auto(self) -> bool:
+        """Whether the picture rolls while nothing triggers."""
+        return self._spec.sweep == "auto"
+
+    def rearm(self, head: int) -> None:
+        """Wait for the next crossing."""
+        if self._spec.sweep == "single":
+            self._trigger.restart(head)
+            self._waiting, self._armed = [], True
+
+    def update(self, history: History) -> tuple[int | None, int]:
+        """Return the crossing to show, if any, and the flags."""
+        after = self._window - self.before
+        if self._shown is not None and self._shown > history.end_tick:
+            self._shown, self._waiting = None, []  # the bench went back in time
+        if self._spec.sweep == "single":
+            if self._armed and not self._waiting:
+                self._waiting = self._trigger.scan(history, first_only=True)
+        else:
+            self._waiting += self._trigger.scan(history)
+        complete = [tick for tick in self._waiting if tick + after <= history.end_tick]
+        if complete:
+            self._waiting = self._waiting[len(complete) :]
+            self._shown = complete[-1]
+            self._armed = self._spec.sweep != "single"
+        if self._spec.sweep == "single":
+            return self._shown, (WAITING if self._armed else 0) | (TRIGGERED if self._shown is not None else 0)
+        late = self._shown is None or history.end_tick - self._shown > 2 * self._window + after
+        if late:
+            return (None if self._spec.sweep == "auto" else self._shown), WAITING
+        return self._shown, TRIGGERED
+
+    def exact(self, history: History, tick: int) -> float:
+        """Place the crossing between ticks."""
+        return crossing_time(history, self._trigger.index, tick, self._spec.level)
+
+
+def _latest(history: History, indices: list[int]) -> NDArray[np.float32]:
+    """Return the newest sample of each signal."""
+    head = history.end_tick
+    if head <= history.first_tick:
+        return np.full(len(indices), np.nan, np.float32)
+    return history.read(indices, head - 1, head)[:, 0]

@@ -1,0 +1,140 @@
+"""The digest of a run: every bit of what a bench puts out counts, and what only looks on does not."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as stn
+
+from core import registry
+from core.board import fold
+from core.board.board import Board
+from core.control.open_loop import OpenLoop
+from tests import lab
+
+WORDS = stn.arrays(np.uint64, st.tuples(st.integers(1, 6), st.integers(1, 4)))
+PRIME = 2**64
+
+
+def folded(rows: np.ndarray[Any, Any]) -> fold.Words:
+    """Fold rows of float64 or of words, as the compiled loop does."""
+    folds = fold.begin(rows.shape[1])
+    for row in rows:
+        fold.fold(folds, np.ascontiguousarray(row).view(np.uint64))
+    return folds
+
+
+@given(WORDS)
+def test_it_is_the_formula(rows: np.ndarray[Any, Any]) -> None:
+    """In whole numbers without a bound, taken modulo 2^64; the plain numpy of it gives the same."""
+    plain = fold.begin(rows.shape[1])
+    for row in rows:
+        fold.fold_uncompiled(plain, row)
+    np.testing.assert_array_equal(folded(rows), plain)
+    for column in range(rows.shape[1]):
+        a, b = 0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F
+        for x in map(int, rows[:, column]):
+            a = (a ^ x) * 0xFF51AFD7ED558CCD % PRIME
+            b = (b + x) % PRIME * 0xD6E8FEB86659FD93 % PRIME
+            a, b = a ^ a >> 32, b ^ b >> 29
+        assert tuple(map(int, plain[:, column])) == (a, b)
+
+
+@given(WORDS, st.integers(0, 10**6), st.integers(0, 63))
+def test_every_bit_counts(rows: np.ndarray[Any, Any], place: int, bit: int) -> None:
+    other = rows.copy()
+    other.flat[place % rows.size] ^= np.uint64(1 << bit)
+    changed = (folded(rows) != folded(other)).any(axis=0)
+    assert changed.sum() == 1 and changed[place % rows.size % rows.shape[1]]
+    # one-to-one: both words differ
+    assert (folded(rows) != folded(other)).sum() == 2
+
+
+def test_order_columns_signs_and_what_is_no_number_count() -> None:
+    rows = np.random.default_rng(1).normal(size=(50, 3))
+
+    def digest(values: np.ndarray[Any, Any]) -> str:
+        return fold.digest(folded(values), ["a"] * 3)
+
+    swapped, turned, later = rows.copy(), rows[:, [1, 0, 2]], rows.copy()
+    swapped[[10, 11]] = swapped[[11, 10]]
+    later[20, 0], later[20, 1] = rows[20, 1], rows[20, 0]
+    empty = [np.zeros((50, 3)), -np.zeros((50, 3)), np.zeros((51, 3))]
+    quiet, loud = rows.copy(), rows.copy()
+    quiet[7, 2] = np.array(0x7FF8000000000000, np.uint64).view(np.float64)
+    loud[7, 2] = np.array(0x7FF8000000000001, np.uint64).view(np.float64)
+    all_of_them = [rows, swapped, turned, later, *empty, quiet, loud]
+    assert len({digest(values) for values in all_of_them}) == len(all_of_them)
+
+
+def test_blocks_are_joined_by_name() -> None:
+    a, b = (folded(np.random.default_rng(seed).normal(size=(9, 2))) for seed in (1, 2))
+    both = np.hstack([a, b])
+    assert fold.digest(both, [*"aabb"]) == fold.digest(np.hstack([b, a]), [*"bbaa"])
+    assert fold.digest(both, [*"aabb"]) == fold.digest(both[:, [0, 2, 1, 3]], [*"abab"])
+    assert fold.digest(both, [*"aabb"]) != fold.digest(both, [*"bbaa"])
+    alone = hashlib.sha256(b"a\0" + fold.joined(a)).hexdigest()
+    assert fold.digest(a, [*"aa"]) == fold.digest(both, ["a", "a", "", ""]) == alone
+
+
+@pytest.mark.parametrize("base", [lab.QUIET, lab.RICH])
+def test_compiled_and_uncompiled_boards_agree(base: dict[str, Any]) -> None:
+    first, second = (lab.make(commands=lab.STORY, base=base, compiled=compiled) for compiled in (True, False))
+    assert lab.run_digest(first, 150) == lab.run_digest(second, 150)
+
+
+def test_the_digest_is_of_the_trace() -> None:
+    """Folded anew from the rows of the trace, by the definition."""
+    board = lab.make(base=lab.RICH)
+    traces = lab.play(board, 300)
+    outputs = [signal for signal in board.signals if signal.kind == "output"]
+    aside = set(board.spec.controllers) - {"open_loop"}
+    blocks = ["" if signal.block in aside else signal.block for signal in outputs]
+    assert board.digest() == fold.digest(folded(np.column_stack([traces[signal.name] for signal in outputs])), blocks)
+
+
+def test_chunks_and_copies_do_not_matter() -> None:
+    whole = lab.run_digest(lab.make(commands=lab.STORY, base=lab.RICH), 700)
+    board = lab.make(commands=lab.STORY, base=lab.RICH)
+    for ticks in (1, 99, 300):
+        lab.play(board, ticks)
+    kept = board.checkpoint()
+    lab.play(board, 300)
+    assert board.digest() == whole
+    assert lab.run_digest(Board.restore(kept), 300) == whole
+    assert lab.run_digest(Board.restore(kept), 299) != whole
+
+
+def test_a_controller_counts_once_it_drives() -> None:
+    """Its whole past counts then, so a controller that looks on otherwise changes nothing until it drives."""
+    other = {"controllers.pid.integral_v_um_ms": 0.01}
+    assert lab.run_digest(lab.make(), 200) == lab.run_digest(lab.make(other), 200)
+    switch = {"kind": "switch", "controller": "pid", "at_sample": 150}
+    later = {"kind": "switch", "controller": "pid", "at_sample": 201}
+    never = {"kind": "switch", "controller": "pid", "when": "plant.displacement > 1000"}
+    plain = lab.run_digest(lab.make(), 200)
+    assert lab.run_digest(lab.make(commands=[later]), 200) == plain
+    assert lab.run_digest(lab.make(commands=[never]), 200) == plain
+    assert lab.run_digest(lab.make(commands=[switch]), 200) != plain
+    assert lab.run_digest(lab.make(commands=[switch]), 150) == lab.run_digest(lab.make(), 150)
+    # back again at the same tick: it has not driven
+    back = {"kind": "switch", "controller": "open_loop", "at_sample": 150}
+    assert lab.run_digest(lab.make(commands=[switch, back]), 200) == plain
+
+
+def test_a_controller_more_in_the_catalogue_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = [lab.run_digest(lab.make(base=base), 300) for base in (lab.QUIET, lab.RICH)]
+
+    class DoNothing(OpenLoop):
+        """A controller that does nothing."""
+
+    DoNothing.name, DoNothing.family = "do_nothing", "control"
+    monkeypatch.setitem(registry.blocks("control"), "do_nothing", DoNothing)
+    boards = [lab.make(base=base) for base in (lab.QUIET, lab.RICH)]
+    assert all("do_nothing" in board.spec.controllers for board in boards)
+    assert [lab.run_digest(board, 300) for board in boards] == before

@@ -1,0 +1,68 @@
+"""Numbers as people read them; the page is held to the same texts by the same table."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.format import (
+    UNITS,
+    format_count,
+    format_in,
+    format_number,
+    format_on,
+    format_short,
+    format_si,
+    tick_labels,
+    unit_scale,
+)
+
+CASES: dict[str, Any] = json.loads(Path("web/src/ui/format-cases.json").read_text("utf-8"))
+FORMATS = {"si": format_si, "short": format_short, "in": format_in}
+PREFIX = {"T": 1e12, "G": 1e9, "M": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "µ": 1e-6}
+PREFIX |= {"n": 1e-9, "p": 1e-12, "f": 1e-15, "a": 1e-18}
+
+
+@pytest.mark.parametrize(("name", "case"), [(name, case) for name in FORMATS for case in CASES[name]])
+def test_texts_are_those_of_the_page(name: str, case: list[Any]) -> None:
+    """The page and Python write a value as the same text."""
+    *one, text = case
+    assert FORMATS[name](*one) == text
+
+
+def test_units_are_those_of_the_page() -> None:
+    """Each unit is written as itself."""
+    assert set(UNITS) == set(CASES["units"])
+    for unit, text in CASES["units"].items():
+        assert format_short(1.0, unit) == text
+    for ticks, texts in CASES["ticks"]:
+        assert tick_labels(ticks) == texts
+
+
+@pytest.mark.parametrize("digits", [2, 3, 4, 6])
+def test_what_is_written_reads_back(digits: int) -> None:
+    """A text read back is the value within half of its last digit, and below 1000 of its unit."""
+    random = np.random.default_rng(1)
+    for value in random.choice((-1.0, 1.0), 2000) * 10.0 ** random.uniform(-30, 30, 2000):
+        for text in (format_si(value, "V", digits), format_short(value, "V", digits)):
+            found = re.fullmatch(r"(−?)(\d{1,3}(?:\.\d+)?)(?:e(−?\d+))?\u00a0([TGMkmµnpfa]?)V", text)
+            assert found, text
+            sign, number, power, prefix = found.groups()
+            size = float(number) * 10.0 ** int((power or "0").replace("−", "-")) * PREFIX[prefix]
+            assert float(number) < 1000.0
+            assert (-size if sign else size) == pytest.approx(value, rel=0.5 * 10.0 ** (1 - digits) * 1.000001)
+
+
+def test_small_things() -> None:
+    """Missing values, zeros of whole numbers, one and many."""
+    assert [format_si(value, "V") for value in (math.nan, math.inf, -math.inf)] == ["–"] * 3
+    assert [format_short(float(whole), "V", 3) for whole in range(1000)] == [f"{whole}\u00a0V" for whole in range(1000)]
+    assert [format_count(n, "sample") for n in (1, 12345)] == ["1\u00a0sample", "12\u2009345\u00a0samples"]
+    assert format_number(-0.0001, 2) == "0.00"
+    assert format_on(unit_scale("um", 4.1), -0.003) == "−0.003\u00a0µm"

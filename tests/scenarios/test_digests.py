@@ -1,0 +1,39 @@
+"""No bit of any run changes unless it is meant to: `digests` says what to do when one is."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.scenarios import digests
+
+
+@pytest.mark.timeout(600)
+def test_every_run_gives_the_bits_it_gave() -> None:
+    before = digests.kept()
+    now = json.loads(digests.apart())
+    assert set(now["library"]) == set(before["library"])
+    changed = [name for name, digest in before["library"].items() if now["library"][name] != digest]
+    changed += [
+        f"bench {number}: {old['scenario']}"
+        for number, (old, new) in enumerate(zip(before["benches"], now["benches"], strict=True))
+        if old["digest"] != new["digest"]
+    ]
+    assert changed == []
+
+
+def test_the_benches_are_worth_it() -> None:
+    """Every controller, plant of a comb, fault and most diagnosers are on one of them; some have twins, some trip."""
+    benches = [one["scenario"] for one in digests.kept()["benches"]]
+    assert len(benches) == digests.BENCHES
+    assert len({one["digest"] for one in digests.kept()["benches"]}) == digests.BENCHES
+    assert {one["plant"]["model"] for one in benches} == {"linear", "nonlinear", "slaved_lateral", "planar"}
+    faults = {event["fault"] for one in benches for event in one["events"] if "fault" in event}
+    assert faults == set(digests.registry.blocks("faults"))
+    drives = {one["controller"]["kind"] for one in benches}
+    drives |= {event["switch"] for one in benches for event in one["events"] if "switch" in event}
+    assert drives >= {"pid", "mrac", "mrac_velocity", "indirect_mrac", "stvsc", "vsc", "vsmrc", "self_sliding"}
+    assert len({kind for one in benches for kind in one.get("diagnosers", {})}) >= 12
+    assert any("twins" in one for one in benches)
+    assert {one["plant"].get("drive", "held") for one in benches} == {"held", "analogue"}

@@ -1,0 +1,70 @@
+"""The short way of messages: the same messages as the parser of the library finds, however they are cut."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import time
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from websockets.frames import Frame, Opcode
+
+from server.stream.line import binary_head, ends_whole, short_text, text_message
+
+SIZES = st.one_of(st.integers(0, 130), st.sampled_from([65_535, 65_536]))
+OPCODES = st.sampled_from([Opcode.TEXT, Opcode.BINARY, Opcode.PING])
+
+
+def sent(text: bytes, opcode: Opcode = Opcode.TEXT) -> bytes:
+    """A message as a client frames it."""
+    return Frame(opcode, text).serialize(mask=True)
+
+
+@given(st.binary(max_size=200))
+def test_a_short_text_is_what_was_sent(text: bytes) -> None:
+    assert short_text(sent(text)) == (text if len(text) < 126 else None)
+    assert short_text(sent(text) + b"\x81") is None
+    assert short_text(sent(text)[:-1]) is None
+    assert short_text(sent(text, Opcode.BINARY)) is None
+    assert short_text(Frame(Opcode.TEXT, text).serialize(mask=False)) is None
+
+
+@given(st.lists(st.tuples(OPCODES, SIZES), min_size=1, max_size=4), st.data())
+def test_the_end_of_whole_messages_is_known(messages: list[tuple[Opcode, int]], data: st.DataObject) -> None:
+    whole = [sent(bytes(min(size, 125) if opcode is Opcode.PING else size), opcode) for opcode, size in messages]
+    joined = b"".join(whole)
+    edges = {sum(map(len, whole[: count + 1])) for count in range(len(whole))}
+    cut = data.draw(st.one_of(st.integers(1, len(joined)), st.sampled_from(sorted(edges))))
+    assert ends_whole(joined[:cut]) == (cut in edges)
+
+
+@given(SIZES)
+def test_messages_are_framed_as_the_library_frames_them(size: int) -> None:
+    body = b"x" * size
+    assert binary_head(size) + body == Frame(Opcode.BINARY, body).serialize(mask=False)
+    assert text_message(body.decode()) == Frame(Opcode.TEXT, body).serialize(mask=False)
+
+
+@pytest.mark.parametrize("pieces", [1, 2, 3, 7, 40])
+def test_messages_are_heard_however_they_are_cut(live: Any, pieces: int) -> None:
+    bench = live.bench(time_scale=0.01)
+    with live.stream(bench["id"]) as stream:
+        stream.acks = False
+        stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
+        last = stream.until_frame().frame
+        for number in range(12):
+            command = {"type": "command", "id": f"c{number}", "command": {"kind": "time_scale", "value": 0.01}}
+            ack = {"type": "ack", "frame": last}
+            data = sent(json.dumps(ack).encode()) + sent(json.dumps(command).encode())
+            at = [round(len(data) * piece / pieces) for piece in range(pieces + 1)]
+            for start, end in itertools.pairwise(at):
+                stream.connection.socket.sendall(data[start:end])
+                time.sleep(0.001)
+            assert stream.until_type("reply")["id"] == f"c{number}"
+            while stream.frames[-1].frame <= last:  # the acknowledgement made room for it
+                stream.step()
+            last = stream.frames[-1].frame
+        assert last > 12

@@ -1,0 +1,128 @@
+"""Log lines: all of one form, without secrets, and a line at most for a client that breaks the rules."""
+
+from __future__ import annotations
+
+import base64
+import json
+import socket
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.test_process import ROOT, TOKEN, client, process
+
+WORDS = """
+import gc, logging, sys, threading, warnings
+from server import logs
+from server.settings import Settings
+
+logs.configure(Settings(log_format="json"))
+logging.getLogger("a").warning("at %s", "postgresql://user:canary@host/name")
+logging.getLogger("a").warning("GET /?token=canary&a=1")
+logging.getLogger("a").error("no word of %s", "it", extra={"link": "http://127.0.0.1:1/?token=canary"})
+warnings.warn("take care", stacklevel=1)
+thread = threading.Thread(target=lambda: 1 / 0)
+thread.start()
+thread.join()
+
+class Odd:
+    def __del__(self):
+        raise KeyError("odd")
+
+Odd()
+gc.collect()
+raise ValueError("the end of http://user:canary@host/")
+"""
+
+
+def lines(text: str) -> list[dict[str, Any]]:
+    """Every line, each of which has to be a JSON object."""
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def test_whatever_python_has_to_say_is_json_and_keeps_secrets() -> None:
+    done = subprocess.run([sys.executable, "-c", WORDS], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and "canary" not in done.stderr and not done.stdout
+    said = lines(done.stderr)
+    assert [entry["message"].splitlines()[0][:22] for entry in said[:3]] == [
+        "at postgresql://user:.", "GET /?token=...&a=1", "no word of it",
+    ]  # fmt: skip
+    assert "take care" in said[3]["message"] and said[3]["logger"] == "py.warnings"
+    assert [entry["exception"].splitlines()[-1] for entry in said[4:]] == [
+        "ZeroDivisionError: division by zero", "KeyError: 'odd'", "ValueError: the end of http://user:...@host/",
+    ]  # fmt: skip
+
+
+def frame(code: int, data: bytes, mask: bool = True, reserved: int = 0) -> bytes:
+    """A WebSocket frame, whole; RFC 6455, section 5.2."""
+    size = bytes([len(data)]) if len(data) < 126 else b"\x7e" + struct.pack("!H", len(data))
+    head = bytes([0x80 | reserved << 4 | code, size[0] | 0x80 * mask]) + size[1:]
+    return head + (b"\0\0\0\0" if mask else b"") + data
+
+
+RUDE = {
+    "garbage": b"\x00\xff\x80",
+    "unknown kind": frame(5, b"x"),
+    "not masked": frame(1, b"{}", mask=False),
+    "reserved bit": frame(1, b"{}", reserved=4),
+    "not UTF-8": frame(1, b"\xff\xfe"),
+    "text": frame(1, b"hello"),
+    "binary": frame(2, b"\x81\xa4type\xa3abc"),
+    "not closing": frame(8, b"\0\1"),
+    "long ping": frame(9, b"x" * 200),
+    "end of nothing": frame(0, b"x"),
+}
+
+
+@contextmanager
+def opened(address: str, path: str, protocol: str) -> Iterator[socket.socket]:
+    """A WebSocket by hand, cut at the end."""
+    port = int(address.rpartition(":")[2])
+    key = base64.b64encode(b"0" * 16).decode()
+    with socket.create_connection(("127.0.0.1", port), 5) as line:
+        line.sendall(
+            f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nAuthorization: Bearer {TOKEN}\r\nConnection: Upgrade\r\n"
+            f"Upgrade: websocket\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
+            f"Sec-WebSocket-Protocol: {protocol}\r\n\r\n".encode()
+        )
+        yield line
+        line.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+
+
+@pytest.mark.parametrize("part", ["stream", "3d"])
+def test_a_client_that_breaks_the_rules_costs_a_line_and_no_traceback(tmp_path: Path, part: str) -> None:
+    with process(tmp_path, COMBBENCH_LOG_FORMAT="json", COMBBENCH_LOG_LEVEL="INFO") as running:
+        with client(running.address) as http:
+            address = str(http.base_url).rstrip("/")
+            bench = http.post("/api/v1/benches", json={"scenario": "first-look"}).json()["id"]
+            path = f"/api/v1/benches/{bench}/stream" if part == "stream" else f"/benches/{bench}/3d"
+            protocol = "combbench.v1" if part == "stream" else "viser-v1.1.1"
+            for said in RUDE.values():
+                for waits in (True, False):  # and one that does not even wait for the answer
+                    with opened(address, path, protocol) as line:
+                        if waits:
+                            assert line.recv(12) == b"HTTP/1.1 101"
+                        line.sendall(said)
+                        time.sleep(0.05)
+            for protocol in ("other", "viser-v0"):
+                with opened(address, path, protocol) as line:
+                    assert line.recv(12) == b"HTTP/1.1 101"
+            with socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2])), 5) as line:
+                line.sendall(b"\x16\x03\x01\x02\x00\x01")  # as one who speaks TLS begins
+                assert line.recv(12) == b"HTTP/1.1 400"
+            time.sleep(0.5)
+            assert http.get("/health/ready").status_code == 200
+        running.terminate()
+        assert running.wait(20) == 0 and running.stdout.read() == ""
+    said = lines((tmp_path / "stderr").read_text())
+    assert {"INFO", "WARNING"} >= {entry["level"] for entry in said}, said
+    assert not [entry for entry in said if "exception" in entry or "Traceback" in entry["message"]]
+    assert any("Invalid HTTP request" in entry["message"] for entry in said)
+    assert len(said) <= 2 * len(RUDE) + 3

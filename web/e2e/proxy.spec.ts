@@ -1,0 +1,48 @@
+import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
+import { ProxyServer } from "./proxy-server";
+
+test.use({
+  ignoreHTTPSErrors: true,
+  launchOptions: async ({ launchOptions }, use) => {
+    await use({
+      ...launchOptions,
+      args: [...(launchOptions.args ?? []), "--host-resolver-rules=MAP lab.example 127.0.0.1"],
+    });
+  },
+});
+
+for (const prefix of ["", "/bench"]) {
+  test(`behind a proxy with TLS, at ${prefix || "/"}, everything on the page works`, async ({ page }) => {
+    test.setTimeout(240_000);
+    const proxy = await ProxyServer.create(prefix);
+    const refused: string[] = [];
+    page.on("response", (answer) => answer.status() >= 400 && refused.push(`${answer.status()} ${answer.url()}`));
+    page.on("requestfailed", (request) => refused.push(`${request.failure()?.errorText} ${request.url()}`));
+    try {
+      const base = proxy.lab.url.replace(/\?.*/, "");
+      await page.goto(proxy.lab.url);
+      await expect(page).toHaveURL(new RegExp(`^${base}\\?bench=`));
+      await expect(page.getByTestId("bench-state")).toHaveText("running");
+      const cookies = await page.context().cookies();
+      expect(cookies.map(({ secure, path }) => ({ secure, path }))).toEqual([{ secure: true, path: `${prefix}/` }]);
+
+      const before = await pictureOf(page, SCOPE_CANVAS);
+      await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(before);
+
+      const frame = page.frameLocator("iframe[title='The device in 3D']");
+      const canvas = frame.locator("canvas").first();
+      await expect(canvas).toBeVisible({ timeout: 60_000 });
+      await expect(page.getByText("The 3D view is loading")).toBeHidden({ timeout: 60_000 });
+      const drawn = async () => (await canvas.screenshot()).toString("base64");
+      const first = await drawn();
+      await expect.poll(drawn, { timeout: 60_000 }).not.toBe(first);
+
+      expect(
+        await page.locator("img[src='./comb.svg']").evaluate((img) => (img as HTMLImageElement).naturalWidth),
+      ).toBeGreaterThan(0);
+      expect(refused.filter((line) => !line.includes("ERR_ABORTED"))).toEqual([]);
+    } finally {
+      await proxy.destroy();
+    }
+  });
+}
