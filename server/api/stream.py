@@ -195,7 +195,7 @@ class Conversation:
             raise rate_limited(self._service.settings)
 
         def done(event: Event) -> None:
-            self._client.post(Reply(id=message.id, ok=True, tick=event.tick))
+            self._client.answer(Reply(id=message.id, ok=True, tick=event.tick))
 
         found = await self._service.benches.begin(self._client.session, message.command, self._client.name)
         if isinstance(found, Event):

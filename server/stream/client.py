@@ -91,6 +91,13 @@ class Client:
         if len(self._outbox) > MOST_WAITING:
             self.close(CLOSE_SLOW, "answers were asked for and not read")
 
+    def answer(self, reply: Reply) -> None:
+        """Answer a command that was carried out, behind the status it led to: who reads the answer knows the rest."""
+        if self.closing is not None:
+            return
+        self._outbox += self._status()
+        self.post(reply)
+
     def acknowledge(self, frame: int) -> None:
         """Note that the client has taken every frame up to this one."""
         self._acked = max(self._acked, min(frame, self._frame))

@@ -10,8 +10,8 @@ test("assumed noise is turned away from the true one, and the residuals say so",
     .filter({ hasText: /^residuals against assumed/ })
     .locator("dd");
   const ratio = async () => Number.parseFloat((await residuals.textContent()) ?? "");
-  await expect.poll(ratio).toBeGreaterThan(0.7);
-  expect(await ratio()).toBeLessThan(1.4);
+  // a mean of few samples, as on a machine that has just begun, may still be anywhere
+  await expect.poll(async () => Math.abs(Math.log(await ratio()))).toBeLessThan(Math.log(1.4));
   const assumed = panel.getByRole("textbox", { name: "Assumed variance over true" });
   await assumed.fill("0.1");
   await assumed.press("Enter");

@@ -1,6 +1,14 @@
 import { expect, pictureOf, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
+interface Shown {
+  parameters: { environment: { pressure_pa: number } };
+}
+
+interface Happened {
+  events: { command: { values?: Record<string, unknown> } | null }[];
+}
+
 const CANVAS = "section[aria-label='Phase plane'] canvas";
 
 test("the phase plane moves, and has the unstable region beneath once the plant can pull in", async ({
@@ -22,16 +30,34 @@ test("the phase plane moves, and has the unstable region beneath once the plant 
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 });
 
-test("a swept sine says what the device is, and the environment changes live", async ({ page, openBench }) => {
+test("a swept sine says what the device is, and the environment changes live", async ({ page, openBench, server }) => {
   await openBench();
+  const id = new URL(page.url()).searchParams.get("bench");
+  // what the board has, not what the page shows: the sweep asks the board
+  const air = async () => {
+    const { parameters } = await server.ask<Shown>("GET", `/benches/${id}`);
+    return parameters.environment.pressure_pa;
+  };
+  const sensors = async () => {
+    const { events } = await server.ask<Happened>("GET", `/benches/${id}/events`);
+    return events.flatMap(({ command }) => command?.values?.["sensor.kind"] ?? []);
+  };
   await page.getByRole("tab", { name: "Environment" }).click();
   const pressure = page.getByRole("textbox", { name: "Pressure, Pa" });
   await pressure.fill("20000");
   await pressure.press("Enter");
-  await expect(page.getByText(/ns per tick of the whole bench/).first()).toBeVisible();
+  await expect.poll(air).toBe(20000);
+  // in ns or µs: how long a tick takes is the machine's affair
+  await expect(page.getByText(/^[\d.]+\s[nµm]?s per tick of the whole bench/).first()).toBeVisible();
+  // three choices faster than the board answers: each is meant from the one before
   await page.getByRole("combobox", { name: "Sensor that feeds the controllers" }).selectOption("capacitive");
-  await page.getByRole("button", { name: "Bypass" }).click();
-  await expect(page.getByRole("button", { name: "Bypass" })).toHaveAttribute("aria-pressed", "true");
+  const bypass = page.getByRole("button", { name: "Bypass" });
+  await bypass.dblclick();
+  await expect.poll(sensors).toEqual(["capacitive", "ideal", "capacitive"]);
+  await expect(bypass).toHaveAttribute("aria-pressed", "false");
+  await bypass.click();
+  await expect.poll(sensors).toEqual(["capacitive", "ideal", "capacitive", "ideal"]);
+  await expect(bypass).toHaveAttribute("aria-pressed", "true");
 
   await page.getByRole("tab", { name: "Swept sine" }).click();
   await page.getByRole("button", { name: "Sweep the device" }).click();

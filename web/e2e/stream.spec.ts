@@ -45,12 +45,18 @@ test("looking back does not stop the board, and LIVE returns", async ({ page, op
   await scope.getByLabel(/^Plot/).focus();
   await page.keyboard.press("ArrowLeft");
   await expect(scope.getByRole("button", { name: "LIVE" })).toHaveAttribute("aria-pressed", "false");
-  await page.waitForTimeout(700);
-  const still = await pictureOf(page, SCOPE_CANVAS);
+  // the picture of the past may take a while to come; once it is there it stays while the clock goes on
+  let still = "";
+  const stands = async () => {
+    const before = still;
+    still = await pictureOf(page, SCOPE_CANVAS);
+    return still === before;
+  };
+  await expect.poll(stands, { intervals: [700] }).toBe(true);
   const time = await clock.innerText();
   await page.waitForTimeout(700);
+  await expect.poll(() => clock.innerText()).not.toBe(time);
   expect(await pictureOf(page, SCOPE_CANVAS)).toBe(still);
-  expect(await clock.innerText()).not.toBe(time);
   await expect(page.getByTestId("bench-state")).toHaveText("running");
 
   const box = await scope.locator("canvas").boundingBox();

@@ -286,12 +286,23 @@ def test_a_command_is_answered_with_its_tick(live: Any) -> None:
         stream.send(type="command", id="mine", command={"kind": "switch", "controller": "mrac"})
         reply = stream.until_type("reply")
         assert reply["id"] == "mine" and reply["ok"] and reply["tick"] >= before
+        # who reads the answer has read before it what the command changed
+        said = [m for m in stream.messages if m["type"] == "status"]
+        assert said[-1]["controller"] == "mrac"
+        told = [m["parameters"] for m in said if m["parameters"]]
+        assert told[-1]["controller"]["kind"] == "mrac"
         event = stream.until_event(kind="switch")
         assert event["tick"] == reply["tick"]
         assert event["actor"].startswith("page ")
-        status = stream.until(lambda m: isinstance(m, dict) and m["type"] == "status" and m["parameters"])
-        assert status["controller"] == "mrac"
-        assert status["parameters"]["controller"]["kind"] == "mrac"
+
+
+def test_the_status_stands_before_every_answer_to_a_command(live: Any) -> None:
+    bench = live.bench(set={"events": []}, paused=True)
+    with live.stream(bench["id"]) as stream:
+        for number in range(1, 21):
+            assert stream.command("set", values={"plant.drive_noise_v": 0.01 * number})["ok"]
+            told = [m["parameters"] for m in stream.messages if m["type"] == "status" and m["parameters"]]
+            assert told[-1]["plant"]["drive_noise_v"] == 0.01 * number
 
 
 def test_from_a_command_to_its_effect_on_the_screen(live: Any) -> None:

@@ -4,7 +4,11 @@ import type { Command } from "../api/types";
 import { stream } from "../stream/stream";
 import { announce } from "./announce";
 
-/** Send a command to the bench; a refusal is shown where it happened, with what to do. Resolves to whether it took effect. */
+/**
+ * Send a command to the bench; a refusal is shown where it happened, with what to do.
+ *
+ * Resolves to whether it took effect. The status comes before the answer, so `useBench` has what the command changed.
+ */
 export async function send(command: Command, said?: string): Promise<boolean> {
   try {
     const tick = await stream.client.command(command);

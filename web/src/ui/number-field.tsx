@@ -1,4 +1,4 @@
-import { useEffect, useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { formatEntry } from "./format";
 import styles from "./number-field.module.css";
 import { nudge, parseNumber } from "./parse-number";
@@ -28,17 +28,25 @@ export function NumberField({
   const shown = value === undefined ? "" : formatEntry(value);
   const [text, setText] = useState(shown);
   const [wrong, setWrong] = useState<string | undefined>(undefined);
+  // An entry is its author's from the first key until it is taken or left: a value that comes late does not replace it.
+  const typing = useRef(false);
   useEffect(() => {
+    if (typing.current) return;
     setText(shown);
     setWrong(undefined);
   }, [shown]);
 
   const take = (entry: string) => {
-    if (entry === shown) return;
-    const parsed = parseNumber(entry, { minimum, maximum, integer });
+    const parsed = entry === shown ? undefined : parseNumber(entry, { minimum, maximum, integer });
     if (typeof parsed === "string") return setWrong(parsed);
+    typing.current = false;
     setWrong(undefined);
-    onCommit(parsed);
+    if (parsed !== undefined) onCommit(parsed);
+  };
+  const leave = () => {
+    if (!typing.current) return; // taken already
+    take(text);
+    typing.current = false;
   };
 
   return (
@@ -50,11 +58,15 @@ export function NumberField({
         placeholder="auto"
         value={text}
         disabled={disabled}
-        onChange={(event) => setText(event.currentTarget.value)}
-        onBlur={() => take(text)}
+        onChange={(event) => {
+          typing.current = true;
+          setText(event.currentTarget.value);
+        }}
+        onBlur={leave}
         onKeyDown={(event) => {
           if (event.key === "Enter") take(text);
           if (event.key === "Escape") {
+            typing.current = false;
             setText(shown);
             setWrong(undefined);
           }

@@ -1,5 +1,5 @@
 import { Button, NativeSelect, Switch } from "@mantine/core";
-import { useState } from "react";
+import { useRef, useState } from "react";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
@@ -18,16 +18,23 @@ export function SensorChoice() {
   const parameters = useBench((s) => s.bench?.parameters);
   const { blocks } = useCatalog();
   const [last, setLast] = useState("capacitive");
-  const kind = String((parameters?.sensor as Document | undefined)?.kind ?? BYPASS);
+  // What was chosen last counts until the board has answered: the next click is meant from there.
+  const [wanted, setWanted] = useState<string | undefined>(undefined);
+  const choice = useRef(0);
+  const kind = wanted ?? String((parameters?.sensor as Document | undefined)?.kind ?? BYPASS);
   const sensors = blocks.filter((b) => b.family === "sense");
   const choices = sensors.filter(feeds);
   const chosen = sensors.find((b) => b.name === kind);
   const optical = sensors.filter((b) => !feeds(b));
   const always = (name: string) =>
     Boolean(((parameters?.sensors as Document | undefined)?.[name] as Document | undefined)?.always);
-  const use = (name: string) => {
+  const use = async (name: string) => {
+    choice.current += 1;
+    const own = choice.current;
     if (kind !== BYPASS) setLast(kind);
-    void send({ kind: "set", values: { "sensor.kind": name } }, `Sensor ${name.replaceAll("_", " ")}`);
+    setWanted(name);
+    await send({ kind: "set", values: { "sensor.kind": name } }, `Sensor ${name.replaceAll("_", " ")}`);
+    if (own === choice.current) setWanted(undefined);
   };
   return (
     <>
@@ -38,14 +45,14 @@ export function SensorChoice() {
           aria-label="Sensor that feeds the controllers"
           value={kind}
           data={choices.map((b) => ({ value: b.name, label: b.title }))}
-          onChange={(event) => use(event.currentTarget.value)}
+          onChange={(event) => void use(event.currentTarget.value)}
         />
         <Button
           size="xs"
           variant={kind === BYPASS ? "filled" : "default"}
           aria-pressed={kind === BYPASS}
           title="Feed the controllers with the true displacement"
-          onClick={() => use(kind === BYPASS ? last : BYPASS)}
+          onClick={() => void use(kind === BYPASS ? last : BYPASS)}
         >
           Bypass
         </Button>

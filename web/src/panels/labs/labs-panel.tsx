@@ -15,6 +15,7 @@ export function LabsPanel() {
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const bench = useBench((s) => s.bench?.id);
   const { block } = useCatalog();
+  const turned = useRef<Promise<boolean>>(Promise.resolve(true));
   const began = useRef<{ bench: string | undefined; values: Record<string, number> }>({ bench, values: {} });
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const own = (parameters?.diagnosers ?? {}) as Record<string, unknown>;
@@ -29,6 +30,11 @@ export function LabsPanel() {
   const labs = labsOf({ parameters }, id, block);
   if (began.current.bench !== bench) began.current = { bench, values: {} };
   for (const { path, value } of labs.flatMap((lab) => lab.knobs)) began.current.values[path] ??= value;
+  const countAfresh = async () => {
+    await turned.current; // else a knob turned just now would go back
+    const now = useBench.getState().bench;
+    if (now && now.id === bench) await send({ kind: "reset", values: kept(labsOf(now, id, block)) }, "Counting afresh");
+  };
   return (
     <section className={styles.panel} aria-label="Labs">
       <div className={styles.bar}>
@@ -43,7 +49,7 @@ export function LabsPanel() {
           size="compact-sm"
           variant="default"
           title="Begin again at tick 0; what is set here stays"
-          onClick={() => void send({ kind: "reset", values: kept(labs) }, "Counting afresh")}
+          onClick={() => void countAfresh()}
         >
           Count afresh
         </Button>
@@ -55,7 +61,14 @@ export function LabsPanel() {
             <h2>{lab.name}</h2>
             <p>{lab.advice}</p>
             {lab.knobs.map((knob) => (
-              <Turn key={knob.path} knob={knob} original={began.current.values[knob.path]} />
+              <Turn
+                key={knob.path}
+                knob={knob}
+                original={began.current.values[knob.path]}
+                onChange={(value) => {
+                  turned.current = send({ kind: "set", values: { [knob.path]: value } }, `Set ${knob.label}`);
+                }}
+              />
             ))}
           </section>
         ))}
@@ -68,7 +81,7 @@ export function LabsPanel() {
 const kept = (labs: Lab[]): Record<string, number> =>
   Object.fromEntries(labs.flatMap((lab) => lab.knobs.map(({ path, value }) => [path, value])));
 
-function Turn({ knob, original }: { knob: LabKnob; original: number }) {
+function Turn({ knob, original, onChange }: { knob: LabKnob; original: number; onChange(value: number): void }) {
   const { path, log, value, ...rest } = knob;
   const memory = path.endsWith(".forgetting") ? memorySamples(value) : undefined;
   return (
@@ -83,7 +96,7 @@ function Turn({ knob, original }: { knob: LabKnob; original: number }) {
         : {
             note: Number.isFinite(memory) ? `remembers ${formatShort(memory, "sample", 3)}s` : "remembers everything",
           })}
-      onChange={(next) => void send({ kind: "set", values: { [path]: next } }, `Set ${rest.label}`)}
+      onChange={onChange}
     />
   );
 }
