@@ -22,9 +22,12 @@ from typing import Any
 
 import numpy as np
 
-from core.block import Context, Oscillator, Port, inlined, kernel
+from core.block import Context, Oscillator
 from core.device.oscillator import transition, within
 from core.format import format_short
+from core.kernel import flush_tiny, inlined, kernel
+from core.ports import BlockPorts, Port, reads
+from core.record import Record
 
 APPLIED_PORTS = (
     Port("applied", "V", "voltage applied at the start of the sample that ends now", source="drive.voltage"),
@@ -42,6 +45,127 @@ BEGUN, START, GAINED1, GAINED2, STATES = range(5)
 """State: whether the interval has begun, the voltage at its start, what motion the rest of it has made so far."""
 MOST_LOST = 1e-3
 """Share of the response to a tone that may be lost unsaid."""
+
+
+class AppliedPorts(BlockPorts):
+    """The voltage of the tick that ends now; a held voltage is the same in all of them."""
+
+    applied: float = reads("drive.voltage", "V", "voltage applied at the start of the sample that ends now")
+    middle: float = reads("drive.middle", "V", "the same in its middle")
+    end: float = reads("drive.end", "V", "the same at its end")
+
+
+class Tick(Record):
+    """A device over a tick: transition, effect of a held volt, and of a volt more in the middle and at the end."""
+
+    phi11: float
+    phi12: float
+    phi21: float
+    phi22: float
+    push1: float
+    push2: float
+    middle1: float
+    middle2: float
+    end1: float
+    end2: float
+
+
+class Interval(Tick):
+    r"""A device over a tick and over the interval: :math:`-\Phi_{22},\;\Phi_{12}`, inverses of b0 and b1 of a unit gain."""
+
+    later1: float
+    later2: float
+    first_share: float
+    second_share: float
+
+
+class Motion(Record):
+    """Displacement and velocity, or a filtered signal and its derivative."""
+
+    x: float
+    v: float
+
+
+class Gathered(Record):
+    """Whether an interval has begun, the voltage at its start, the motion made so far by what the voltage changed since."""
+
+    begun: float
+    start: float
+    gained1: float
+    gained2: float
+
+
+@inlined
+def moves(x: AppliedPorts) -> tuple[float, float, float]:
+    """Return the voltage at the start of the tick that ends now, and how much more it was in the middle and the end."""
+    u = x.applied
+    return u, x.middle - u, x.end - u
+
+
+def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
+    """Pack a device over a tick; its stiffness times its displacement at rest is the gain times the voltage."""
+    tick = Tick.blank()
+    tick.array[:] = pack_tick(device, gain, h, analogue)
+    return tick
+
+
+def interval_of(context: Context) -> Interval:
+    """Pack the nominal device over a tick and over the interval of the block, for a displacement at rest of 1 um/V."""
+    interval = Interval.blank()
+    interval.array[:] = pack_interval(context)
+    return interval
+
+
+@kernel
+def advance_motion(p: Tick, s: Motion, u: float) -> None:
+    """Advance a motion over an interval with a held voltage."""
+    x = s.x
+    v = s.v
+    s.x = flush_tiny(p.phi11 * x + p.phi12 * v + p.push1 * u)
+    s.v = flush_tiny(p.phi21 * x + p.phi22 * v + p.push2 * u)
+
+
+@kernel
+def add_moves(p: Tick, s: Motion, middle: float, end: float) -> None:
+    """Add to a motion the effect of a voltage that was more in the middle and at the end of the tick than at its start."""
+    s.x += p.middle1 * middle + p.end1 * end
+    s.v += p.middle2 * middle + p.end2 * end
+
+
+@kernel
+def gather(p: Tick, s: Gathered, u: float, middle: float, end: float) -> None:
+    """Take in a tick: its voltage at the start, in the middle and at the end.
+
+    The motion is gathered that comes of the voltage being more than at the start of the interval, so that a voltage held
+    over all of it adds nothing, to the bit.
+    """
+    if s.begun == 0.0:
+        s.begun = 1.0
+        s.start = u
+        s.gained1 = 0.0
+        s.gained2 = 0.0
+    x = s.gained1
+    v = s.gained2
+    if middle == u and end == u and u == s.start and x == 0.0 and v == 0.0:
+        return
+    more = u - s.start
+    middle -= u
+    end -= u
+    gain1 = p.push1 * more + p.middle1 * middle + p.end1 * end
+    gain2 = p.push2 * more + p.middle2 * middle + p.end2 * end
+    s.gained1 = p.phi11 * x + p.phi12 * v + gain1
+    s.gained2 = p.phi21 * x + p.phi22 * v + gain2
+
+
+@kernel
+def weighed_voltages(p: Interval, s: Gathered) -> tuple[float, float]:
+    r"""Return :math:`\alpha/b_0` and :math:`\beta/b_1` of the interval that ends now; the next tick begins another."""
+    s.begun = 0.0
+    x = s.gained1
+    if x == 0.0 and s.gained2 == 0.0:
+        return s.start, s.start
+    later = p.later1 * x + p.later2 * s.gained2
+    return s.start + p.first_share * x, s.start + p.second_share * later
 
 
 @inlined

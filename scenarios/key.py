@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from core.board.document import with_values
-from scenarios.kernel_cache import CORE
 
 SCENARIOS = Path(__file__).resolve().parent
+CORE = SCENARIOS.parent / "core"
 
 
 @cache

@@ -164,11 +164,13 @@ class Board:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
         wiring = self.wiring
         running = wiring.rest(self.spec)
-        self._steps = [wiring.instances[row].block.step for row in running]
         self._table = wiring.table[running]
         self._idle = wiring.idle(running)
         if self.compiled:
-            self._table[:, program.ADDRESS] = [program.compiled(step).address for step in self._steps]
+            blocks = [wiring.instances[row].block for row in running]
+            self._table[:, program.ADDRESS] = [program.compiled(block).address for block in blocks]
+        else:
+            self._steps = [wiring.bound(row) for row in running]
 
     def _allocate(self) -> None:
         """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""

@@ -147,7 +147,7 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
         board._note("board", "warning", f"{name} had run away in shadow, so it starts anew")
     if command.cold or ran_away:
         instance = board.wiring.instances[board.wiring.row(name)]
-        board.wiring.state_of(name)[:] = instance.block.state(instance.params, spec.context(instance.every))
+        board.wiring.state_of(name)[:] = instance.block.initial(instance.params, spec.context(instance.every))
     return old, name
 
 
@@ -279,7 +279,7 @@ def _repack(board: Board, key: str, params: BlockParams) -> None:
     old = wiring.instances[row]
     wiring.instances = [*wiring.instances]
     wiring.instances[row] = Instance(old.key, old.prefix, old.block, params, old.every)
-    packed = old.block.pack(params, board.spec.context(old.every))
+    packed = old.block.packed(params, board.spec.context(old.every))
     start = wiring.table[row, program.P_OFFSET]
     wiring.p[start : start + len(packed)] = packed
     board._link()

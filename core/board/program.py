@@ -18,8 +18,10 @@ from numba.core import cgutils
 from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
-from core.block import RESERVED, TICK, TIME_MS, FloatArray, IntArray, Step, kernel
+from core.block import Block, FloatArray, IntArray
 from core.board.fold import Words, fold, fold_uncompiled
+from core.kernel import compiled_step, kernel
+from core.ports import RESERVED, TICK, TIME_MS, BlockPorts
 
 ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 """Columns of the table, one row per block."""
@@ -27,6 +29,15 @@ ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 DONE, TRIPPED, WATCHED = range(3)
 """Why the loop returned."""
 
+@cache
+def compiled(block: type[Block]) -> Any:
+    """Compile the step of a block to its C function."""
+    if block.Ports is BlockPorts:  # OLD NOTATION
+        return _old(block.step)
+    return compiled_step(block.step, block.Packed, block.State, block.Ports)
+
+
+# OLD NOTATION from here
 _DOUBLES, _INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(_DOUBLES, _DOUBLES, _DOUBLES, _INTEGERS)
 
@@ -40,10 +51,15 @@ class _Apart(Compiler):
 
 
 @cache
-def compiled(step: Step) -> Any:
-    """Compile a step to its C function."""
+def _old(step: Any) -> Any:
+    from numba.core.ccallback import CFunc
+    from core.kernel_cache import KernelCache
     options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
-    return numba.cfunc(_SIGNATURE, cache=True, pipeline_class=_Apart, **options)(step)
+    f = CFunc(step, (_SIGNATURE.args, types.void), locals={}, options=options, pipeline_class=_Apart)
+    f._cache = KernelCache(step)
+    f.compile()
+    return f
+# OLD NOTATION to here
 
 
 def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:
@@ -115,7 +131,7 @@ def run(
 
 
 def run_uncompiled(
-    steps: list[Step],
+    steps: list[Callable[[], None]],
     n: int,
     first_tick: int,
     dt_ms: float,
@@ -130,7 +146,10 @@ def run_uncompiled(
     trip: int,
     watches: FloatArray,
 ) -> tuple[int, int]:
-    """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled."""
+    """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled.
+
+    ``steps`` are those of the rows of the table, bound to their arrays.
+    """
     first_tap = RESERVED + outputs.shape[1]
     for i in range(n):
         tick = first_tick + i
@@ -138,7 +157,7 @@ def run_uncompiled(
         w[TIME_MS] = tick * dt_ms
         for step, row in zip(steps, table, strict=True):
             if tick % row[EVERY] == 0:
-                step(p[row[P_OFFSET] :], s[row[S_OFFSET] :], w, io[row[IO_OFFSET] :])
+                step()
         outputs[i] = w[RESERVED:first_tap]
         taps[i] = w[first_tap : first_tap + taps.shape[1]]
         fold_uncompiled(folds, w.view(np.uint64)[RESERVED:])

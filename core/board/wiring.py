@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core import registry
 from core.block import RESERVED, Block, BlockParams, BoolArray, FloatArray, IntArray, Port
@@ -14,11 +17,15 @@ from core.board.effects import Effects
 from core.board.measurement import Measurement
 from core.board.score import Score
 from core.faults.fault import Fault, FaultParams
+from core.plain import plain
+from core.ports import BlockPorts
 from core.sense.sensor import Sensor
 from core.signals import Signal, SignalTable
 
 if TYPE_CHECKING:
     from core.board.spec import Spec
+
+N = TypeVar("N", np.float64, np.int64)
 
 OPEN_LOOP = "open_loop"
 """The controller that passes the reference on, so that the drive may follow it between samples."""
@@ -69,7 +76,28 @@ class Wiring:
         """Return the state of an instance, a view."""
         return self._part(self.s, self.rows[key], program.S_OFFSET)
 
-    def _part(self, whole: FloatArray, row: int, column: int) -> FloatArray:
+    def parameters(self, key: str) -> Any:
+        """Return what the step of an instance reads, a record."""
+        row = self.rows[key]
+        return self.instances[row].block.Packed(self.packed(row))
+
+    def state(self, key: str) -> Any:
+        """Return the state of an instance, a record."""
+        return self.instances[self.rows[key]].block.State(self.state_of(key))
+
+    def ports(self, row: int) -> IntArray:
+        """Return the places of the ports of a row, a view."""
+        return self._part(self.io, row, program.IO_OFFSET)
+
+    def bound(self, row: int) -> Callable[[], None]:
+        """Return the step of a row in plain Python, bound to its arrays."""
+        block = self.instances[row].block
+        p, s, io = self.packed(row), self._part(self.s, row, program.S_OFFSET), self.ports(row)
+        if block.Ports is BlockPorts:  # OLD NOTATION
+            return partial(block.step, p, s, self.w, io)  # type: ignore[call-arg]
+        return partial(plain(block.step), block.Packed(p), block.State(s), block.Ports(self.w, io))
+
+    def _part(self, whole: NDArray[N], row: int, column: int) -> NDArray[N]:
         end = self.table[row + 1, column] if row + 1 < len(self.instances) else len(whole)
         return whole[self.table[row, column] : end]
 
@@ -84,7 +112,7 @@ class Wiring:
             if row in self.resting:
                 continue
             self.resting.add(row)
-            self.state_of(instance.key)[:] = instance.block.state(instance.params, spec.context(instance.every))
+            self.state_of(instance.key)[:] = instance.block.initial(instance.params, spec.context(instance.every))
             for port in (*instance.block.outputs, *instance.block.taps):
                 start = self.index[signal_name(instance, port.name)]
                 self.w[start : start + len(port.names(instance.params))] = 0.0
@@ -172,8 +200,7 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Sp
             p, s = like.packed(row), like.state_of(instance.key)
         else:
             context = spec.context(instance.every)
-            p = np.ascontiguousarray(instance.block.pack(instance.params, context), dtype=np.float64)
-            s = np.ascontiguousarray(instance.block.state(instance.params, context), dtype=np.float64)
+            p, s = instance.block.packed(instance.params, context), instance.block.initial(instance.params, context)
         io = ports_of(spec, instance, index)
         every = 1 if instance.block.every_tick else instance.every
         table[row, 1:] = (p_size, s_size, io_size, every)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import SMALL, inlined
+from core.kernel import SMALL, inlined
+from core.record import Vector
 
 LEAST_LOG = math.log(SMALL)
 """Logarithm below which a share counts as nothing."""
@@ -83,3 +84,64 @@ def share_out(s: Any, likelihood: int, w: Any, probability: int, n: int, best: f
         total += share
     for i in range(n):
         w[probability + i] /= total
+
+
+@inlined
+def winner_of(probability: Vector, n: int) -> int:
+    """Return the hypothesis with the largest probability, the first of equals."""
+    winner = 0
+    for i in range(1, n):
+        if probability[i] > probability[winner]:
+            winner = i
+    return winner
+
+
+@inlined
+def take_floored_softmax(
+    log: Vector, likelihood: Vector, probability: Vector, n: int, best: float, floor: float, log_floor: float
+) -> None:
+    r"""Turn unnormalised logarithms into probabilities, :math:`p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})`.
+
+    Parameters
+    ----------
+    log, likelihood : vectors
+        Where the logarithms go, normalised as before the floor, and the logarithms of this sample.
+    probability : vector
+        Where the probabilities go.
+    n : int
+        Number of hypotheses.
+    best : float
+        Largest of the logarithms of this sample.
+    floor, log_floor : float
+        Smallest probability, 0 for none, and its logarithm.
+    """
+    total = 0.0
+    for i in range(n):
+        share = shrunk(likelihood[i] - best)
+        probability[i] = share
+        total += share
+    after = 0.0
+    inverse = 1.0 / total
+    for i in range(n):
+        share = max(probability[i] * inverse, floor)
+        probability[i] = share
+        after += share
+    shift = best + math.log(total)
+    inverse = 1.0 / after
+    for i in range(n):
+        share = probability[i]
+        floored = floor > 0.0 and share == floor
+        log[i] = log_floor if floored else likelihood[i] - shift
+        probability[i] = share * inverse
+
+
+@inlined
+def take_softmax(likelihood: Vector, probability: Vector, n: int, best: float) -> None:
+    """Turn unnormalised logarithms into probabilities that nothing remembers."""
+    total = 0.0
+    for i in range(n):
+        share = shrunk(likelihood[i] - best)
+        probability[i] = share
+        total += share
+    for i in range(n):
+        probability[i] /= total

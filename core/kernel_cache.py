@@ -1,0 +1,133 @@
+"""Keeps compiled kernels in files, so that each is compiled once.
+
+A kernel is known by a hash of its bytecode, of the constants, layouts and kernels it names, of numba and of the
+processor. An edit compiles again what it touches and nothing else; an edit of a comment compiles nothing.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dis
+import hashlib
+import os
+import pickle
+import tempfile
+from functools import cache
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numba
+import numpy as np
+from numba.core import serialize
+from numba.core.compiler import CompileResult
+
+
+class KernelCache:
+    """Compiled code of one kernel, in files; numba asks it before it compiles and tells it afterwards."""
+
+    compiled = 0
+    """Kernels compiled by this process because no file had them."""
+
+    def __init__(self, function: FunctionType, more: str = "") -> None:
+        self._function, self._more = function, more
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """Return what was compiled for a signature, or nothing."""
+        target.refresh()
+        path = self._path(signature, target)
+        if path is None:
+            return None
+        try:
+            return CompileResult._rebuild(target, *pickle.loads(path.read_bytes()))
+        except FileNotFoundError:
+            return None
+        except (OSError, EOFError, pickle.UnpicklingError, ValueError, TypeError, AttributeError):
+            return None  # a file that another version wrote, or half of one: compile again
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Keep what was compiled for a signature."""
+        KernelCache.compiled += 1
+        path = self._path(signature, result.target_context)
+        if path is None or result.library.has_dynamic_globals:
+            return
+        with contextlib.suppress(OSError):
+            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as part:
+                part.write(serialize.dumps(result._reduce()))
+            os.replace(part.name, path)
+
+    def _path(self, signature: Any, target: Any) -> Path | None:
+        if not _folder:
+            return None
+        parts = (key(self._function), self._more, signature, target.codegen().magic_tuple())
+        digest = hashlib.sha256("\n".join(map(str, parts)).encode())
+        return Path(_folder) / f"{self._function.__module__}.{self._function.__name__}-{digest.hexdigest()[:24]}"
+
+
+_folder = ""
+
+
+def keep_in(path: str) -> None:
+    """Name the folder of compiled kernels; without one nothing is kept."""
+    global _folder
+    _folder = path
+
+
+@cache
+def key(function: FunctionType) -> str:
+    """Return a hash of a function and of all it names, which another process would find too."""
+    digest = hashlib.sha256(f"{numba.__version__} {np.__version__}".encode())
+    _digest_function(function, digest, {})
+    return digest.hexdigest()
+
+
+def _digest_function(function: FunctionType, digest: Any, seen: dict[int, int]) -> None:
+    if id(function) in seen:
+        digest.update(f"seen {seen[id(function)]}".encode())
+        return
+    seen[id(function)] = len(seen)
+    _digest_code(function.__code__, digest)
+    names, globals_ = _names(function.__code__), _globals(function.__code__)
+    for name in globals_:
+        if name in function.__globals__:
+            _digest_value(name, function.__globals__[name], names, digest, seen)
+    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+        _digest_value(name, cell.cell_contents, names, digest, seen)
+
+
+def _digest_value(name: str, value: Any, names: tuple[str, ...], digest: Any, seen: dict[int, int]) -> None:
+    function = getattr(value, "py_func", value)
+    digest.update(f"\n{name}=".encode())
+    if isinstance(function, FunctionType):
+        _digest_function(function, digest, seen)
+    elif isinstance(value, ModuleType) and value.__name__.startswith("core."):
+        for attribute in names:
+            if attribute in vars(value):
+                _digest_value(attribute, vars(value)[attribute], names, digest, seen)
+    elif isinstance(value, np.ndarray):
+        digest.update(value.tobytes())
+    elif isinstance(value, int | float | str | tuple | np.generic):
+        digest.update(repr(value).encode())
+
+
+def _digest_code(code: CodeType, digest: Any) -> None:
+    digest.update(code.co_code)
+    digest.update(repr((code.co_names, code.co_varnames, code.co_freevars, code.co_argcount)).encode())
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            _digest_code(constant, digest)
+        else:
+            digest.update(repr(constant).encode())
+
+
+def _names(code: CodeType) -> tuple[str, ...]:
+    """Return every name and attribute that code uses."""
+    inner = [name for constant in code.co_consts if isinstance(constant, CodeType) for name in _names(constant)]
+    return tuple(dict.fromkeys([*code.co_names, *inner]))
+
+
+def _globals(code: CodeType) -> tuple[str, ...]:
+    """Return every global name that code uses."""
+    own = [step.argval for step in dis.get_instructions(code) if step.opname == "LOAD_GLOBAL"]
+    inner = [name for constant in code.co_consts if isinstance(constant, CodeType) for name in _globals(constant)]
+    return tuple(dict.fromkeys([*own, *inner]))
