@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from core.kernel import SMALL, Step, flush_tiny, inlined, kernel
+from core.kernel import SMALL, flush_tiny, inlined, kernel
 from core.ports import KINDS, RESERVED, TICK, TIME_MS, BlockPorts, Port
 from core.record import Record
 from core.table import Table
@@ -187,7 +187,6 @@ class Block:
     equations: ClassVar[tuple[Equation, ...]] = ()
     weaknesses: ClassVar[tuple[str, ...]] = ()
     """Where the block is known to be weak, in plain sentences with figures; read before it is trusted."""
-    step: ClassVar[Step]
     every_tick: ClassVar[bool] = False
     """Whether the step is called at every tick though the block runs every N, because it has to do between."""
 
@@ -200,6 +199,11 @@ class Block:
             cls.inputs, cls.outputs, cls.taps = (
                 tuple(port for port in cls.Ports.declared if port.kind == kind) for kind in KINDS
             )
+
+    @staticmethod
+    def step(p: Any, s: Any, x: Any) -> None:
+        """Compute one sample: read ``p``, read and write ``s`` and ``x``."""
+        raise NotImplementedError
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:  # noqa: ARG003 (most blocks suit every device)

@@ -12,7 +12,7 @@ from core.block import SMALL, kernel, settled
 from core.device.oscillator import transition, within
 from core.kernel import flush_tiny
 from core.record import Record, Vector
-from core.voltage import Motion, add_moved, add_moves
+from core.voltage import Motion, Moves, add_moved, add_moves
 
 FILTER_SIZE = 7
 """Packed numbers of a state filter."""
@@ -204,26 +204,29 @@ class StateFilter(Record):
     h: float
 
 
-class DrivenFilter(StateFilter):
+class DrivenFilter(StateFilter, Moves):
     """A state filter of a voltage, and the effect of a volt more in the middle and at the end of an interval."""
 
-    middle1: float
-    middle2: float
-    end1: float
-    end2: float
 
-
-def pack_filter(pole: float, h: float) -> StateFilter:
+def fill_filter(p: StateFilter, pole: float, h: float) -> None:
     """Pack a state filter."""
+    p.phi11, p.phi12, p.phi21, p.phi22 = transition(1.0, 2.0 * pole, pole * pole, h)
+    p.twice_pole, p.square, p.h = 2.0 * pole, pole * pole, h
+
+
+def filter_of(pole: float, h: float) -> StateFilter:
+    """Return a state filter."""
     packed = StateFilter.blank()
-    packed.array[:] = state_filter(pole, h)
+    fill_filter(packed, pole, h)
     return packed
 
 
-def pack_driven_filter(pole: float, h: float, analogue: bool) -> DrivenFilter:
-    """Pack a state filter of a voltage."""
+def driven_filter_of(pole: float, h: float, analogue: bool) -> DrivenFilter:
+    """Return a state filter of a voltage."""
     packed = DrivenFilter.blank()
-    packed.array[:] = driven_filter(pole, h, analogue)
+    fill_filter(packed, pole, h)
+    more = within(1.0, 2.0 * pole, pole * pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
+    packed.middle1, packed.middle2, packed.end1, packed.end2 = more
     return packed
 
 

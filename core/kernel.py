@@ -29,7 +29,7 @@ SMALL = 1e-100
 """Numbers smaller than this count as nothing."""
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-_SIGNATURE = ((DOUBLES, DOUBLES, DOUBLES, INTEGERS), types.void)
+_SIGNATURE: Any = ((DOUBLES, DOUBLES, DOUBLES, INTEGERS), types.void)
 
 
 def kernel(function: F) -> F:
@@ -44,7 +44,7 @@ def inlined(function: F) -> F:
 
 def _kept(function: F, compiled: Any) -> F:
     if isinstance(compiled, Dispatcher):  # numba gives the function back when it is told not to compile
-        compiled._cache = KernelCache(cast(FunctionType, function))
+        vars(compiled)["_cache"] = KernelCache(cast(FunctionType, function))
     return cast(F, compiled)
 
 
@@ -58,7 +58,7 @@ def flush_tiny(value: float) -> float:
     return 0.0 if abs(value) < SMALL else value
 
 
-class _Apart(Compiler):  # type: ignore[misc]
+class _Apart(Compiler):
     """Compiles a step knowing that its parameters, state, signals and ports lie apart, so that it may use vectors."""
 
     def __init__(self, typing: Any, target: Any, library: Any, args: Any, result: Any, flags: Any, local: Any) -> None:
@@ -80,7 +80,7 @@ def _compiled(step: Step, packed: Layout, state: Layout, ports: tuple[tuple[str,
         body(parameters_at(p), state_at(s), signals_at(w, io))
 
     options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
-    function = CFunc(entry, _SIGNATURE, locals={}, options=options, pipeline_class=_Apart)
+    function: Any = CFunc(entry, _SIGNATURE, locals={}, options=options, pipeline_class=_Apart)
     function._cache = KernelCache(cast(FunctionType, step), f"{packed}{state}{ports}")
     function.compile()
     return function

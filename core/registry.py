@@ -89,7 +89,7 @@ def blocks(family: str) -> dict[str, type[Block]]:
                 isinstance(value, type)
                 and issubclass(value, Block)
                 and value.__module__ == module.__name__
-                and hasattr(value, "step")
+                and hasattr(value, "title")  # the bases of families have none
             ):
                 found[value.name] = value
     for entry in entry_points(group=f"combbench.{family}"):

@@ -7,7 +7,6 @@ Only the way to an address differs. A number of a record is at ``base[offset]``,
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
@@ -30,11 +29,11 @@ from numba.extending import (
 from core.ports import TICK, TIME_MS
 from core.record import RECORD, RECORDS, SCALAR, Field, Layout, Record
 
-DOUBLES = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
-INTEGERS = types.CPointer(types.int64)  # type: ignore[no-untyped-call]
+DOUBLES = types.CPointer(types.float64)
+INTEGERS = types.CPointer(types.int64)
 
 
-class RecordType(types.Type):  # type: ignore[misc]
+class RecordType(types.Type):
     """A record of a layout."""
 
     def __init__(self, layout: Layout) -> None:
@@ -43,7 +42,7 @@ class RecordType(types.Type):  # type: ignore[misc]
         super().__init__(name=f"record({_text(layout)})")
 
 
-class RecordsType(types.Type):  # type: ignore[misc]
+class RecordsType(types.Type):
     """Several records of a layout, one after another."""
 
     def __init__(self, layout: Layout) -> None:
@@ -51,7 +50,7 @@ class RecordsType(types.Type):  # type: ignore[misc]
         super().__init__(name=f"records({_text(layout)})")
 
 
-class PortsType(types.Type):  # type: ignore[misc]
+class PortsType(types.Type):
     """Ports of a block."""
 
     def __init__(self, ports: tuple[tuple[str, bool], ...]) -> None:
@@ -72,22 +71,22 @@ def _text(layout: Layout) -> str:
 
 @register_model(RecordType)
 @register_model(RecordsType)
-class _RecordModel(models.StructModel):  # type: ignore[misc]
+class _RecordModel(models.StructModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, [("base", DOUBLES)])
 
 
 @register_model(PortsType)
-class _PortsModel(models.StructModel):  # type: ignore[misc]
+class _PortsModel(models.StructModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, [("signals", DOUBLES), ("places", INTEGERS)])
 
 
 @infer_getattr
-class _RecordAttributes(AttributeTemplate):  # type: ignore[misc]
+class _RecordAttributes(AttributeTemplate):
     key = RecordType
 
-    def generic_resolve(self, record: Any, name: str) -> Any:
+    def generic_resolve(self, record: Any, name: str) -> Any:  # type: ignore[override]
         field = record.fields.get(name)
         if field is None:
             return None
@@ -97,10 +96,10 @@ class _RecordAttributes(AttributeTemplate):  # type: ignore[misc]
 
 
 @infer_getattr
-class _PortAttributes(AttributeTemplate):  # type: ignore[misc]
+class _PortAttributes(AttributeTemplate):
     key = PortsType
 
-    def generic_resolve(self, ports: Any, name: str) -> Any:
+    def generic_resolve(self, ports: Any, name: str) -> Any:  # type: ignore[override]
         if name in ("tick", "time_ms"):
             return types.float64
         if name not in ports.places:
@@ -109,7 +108,7 @@ class _PortAttributes(AttributeTemplate):  # type: ignore[misc]
 
 
 @infer_global(operator.getitem)
-class _RecordAt(AbstractTemplate):  # type: ignore[misc]
+class _RecordAt(AbstractTemplate):
     def generic(self, args: Any, keywords: Any) -> Any:
         if isinstance(args[0], RecordsType):
             return signature(RecordType(args[0].layout), args[0], types.intp)
@@ -139,7 +138,7 @@ def _place(builder: Any, base: Any, layout: Layout, field: Field) -> Any:
     return builder.gep(behind, [builder.mul(length, _integer(field.offset))])
 
 
-@lower_getattr_generic(RecordType)  # type: ignore[untyped-decorator]
+@lower_getattr_generic(RecordType)
 def _read_field(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:
     base = cgutils.create_struct_proxy(kind)(context, builder, value=value).base
     field = kind.fields[name]
@@ -150,14 +149,14 @@ def _read_field(context: Any, builder: Any, kind: Any, value: Any, name: str) ->
     return builder.load(at) if field.kind == SCALAR else at
 
 
-@lower_setattr_generic(RecordType)  # type: ignore[untyped-decorator]
+@lower_setattr_generic(RecordType)
 def _write_field(context: Any, builder: Any, signature: Any, args: Any, name: str) -> None:
     kind = signature.args[0]
     base = cgutils.create_struct_proxy(kind)(context, builder, value=args[0]).base
     builder.store(args[1], _place(builder, base, kind.layout, kind.fields[name]))
 
 
-@lower_builtin(operator.getitem, RecordsType, types.intp)  # type: ignore[untyped-decorator]
+@lower_builtin(operator.getitem, RecordsType, types.intp)
 def _read_record(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     kind = signature.args[0]
     base = cgutils.create_struct_proxy(kind)(context, builder, value=args[0]).base
@@ -174,23 +173,23 @@ def _signal(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any
     return builder.gep(ports.signals, [place])
 
 
-@lower_getattr_generic(PortsType)  # type: ignore[untyped-decorator]
+@lower_getattr_generic(PortsType)
 def _read_port(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:
     at = _signal(context, builder, kind, value, name)
     return at if kind.places.get(name, (0, False))[1] else builder.load(at)
 
 
-@lower_setattr_generic(PortsType)  # type: ignore[untyped-decorator]
+@lower_setattr_generic(PortsType)
 def _write_port(context: Any, builder: Any, signature: Any, args: Any, name: str) -> None:
     builder.store(args[1], _signal(context, builder, signature.args[0], args[0], name))
 
 
-@typeof_impl.register(Record)  # type: ignore[untyped-decorator]
+@typeof_impl.register(Record)
 def _type_of(record: Record, context: Any) -> RecordType:
     return RecordType(record.layout)
 
 
-@unbox(RecordType)  # type: ignore[untyped-decorator]
+@unbox(RecordType)
 def _take(kind: Any, record: Any, c: Any) -> Any:
     """Let Python call kernels with its own records: what they write is written there."""
     number = c.pyapi.object_getattr_string(record, "address")
@@ -199,32 +198,30 @@ def _take(kind: Any, record: Any, c: Any) -> Any:
     return NativeValue(_view(c.context, c.builder, kind, base=base))
 
 
-def record_at(layout: Layout) -> Callable[[Any], Any]:
+def record_at(layout: Layout) -> Any:
     """Return what makes a view of a record from a pointer, for compiled code."""
     kind = RecordType(layout)
 
-    @intrinsic
     def view(typing: Any, base: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
             return _view(context, builder, kind, base=args[0])
 
         return kind(DOUBLES), generate
 
-    return view  # type: ignore[no-any-return]
+    return intrinsic(view)
 
 
-def ports_at(ports: tuple[tuple[str, bool], ...]) -> Callable[[Any, Any], Any]:
+def ports_at(ports: tuple[tuple[str, bool], ...]) -> Any:
     """Return what makes a view of ports from the signals and their places, for compiled code.
 
     Of every port its name, and whether it is a vector.
     """
     kind = PortsType(ports)
 
-    @intrinsic
     def view(typing: Any, signals: Any, places: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
             return _view(context, builder, kind, signals=args[0], places=args[1])
 
         return kind(DOUBLES, INTEGERS), generate
 
-    return view  # type: ignore[no-any-return]
+    return intrinsic(view)

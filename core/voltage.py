@@ -55,7 +55,16 @@ class AppliedPorts(BlockPorts):
     end: float = reads("drive.end", "V", "the same at its end")
 
 
-class Tick(Record):
+class Moves(Record):
+    """Effect of a volt more in the middle and at the end of a tick than at its start."""
+
+    middle1: float
+    middle2: float
+    end1: float
+    end2: float
+
+
+class Tick(Moves):
     """A device over a tick: transition, effect of a held volt, and of a volt more in the middle and at the end."""
 
     phi11: float
@@ -64,10 +73,6 @@ class Tick(Record):
     phi22: float
     push1: float
     push2: float
-    middle1: float
-    middle2: float
-    end1: float
-    end2: float
 
 
 class Interval(Tick):
@@ -102,17 +107,30 @@ def moves(x: AppliedPorts) -> tuple[float, float, float]:
     return u, x.middle - u, x.end - u
 
 
-def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
+def fill_tick(p: Tick, device: Oscillator, gain: float, h: float, analogue: bool) -> None:
     """Pack a device over a tick; its stiffness times its displacement at rest is the gain times the voltage."""
+    p.phi11, p.phi12, p.phi21, p.phi22 = transition(device.mass, device.damping, device.stiffness, h)
+    rest = gain / device.stiffness
+    p.push1, p.push2 = (1.0 - p.phi11) * rest, -p.phi21 * rest
+    more = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
+    p.middle1, p.middle2, p.end1, p.end2 = more
+
+
+def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
+    """Return a device over a tick."""
     tick = Tick.blank()
-    tick.array[:] = pack_tick(device, gain, h, analogue)
+    fill_tick(tick, device, gain, h, analogue)
     return tick
 
 
 def interval_of(context: Context) -> Interval:
-    """Pack the nominal device over a tick and over the interval of the block, for a displacement at rest of 1 um/V."""
-    interval = Interval.blank()
-    interval.array[:] = pack_interval(context)
+    """Return the nominal device over a tick and over the interval of the block, for a displacement at rest of 1 um/V."""
+    device, interval = context.device, Interval.blank()
+    fill_tick(interval, device, device.stiffness, context.dt_ms / context.every, context.analogue)
+    b0, b1, _, _ = difference_equation(device, 1.0, context.dt_ms)
+    _, phi12, _, phi22 = transition(device.mass, device.damping, device.stiffness, context.dt_ms)
+    interval.later1, interval.later2 = -phi22, phi12
+    interval.first_share, interval.second_share = 1.0 / b0 if b0 else 0.0, 1.0 / b1 if b1 else 0.0
     return interval
 
 
@@ -126,7 +144,7 @@ def advance_motion(p: Tick, s: Motion, u: float) -> None:
 
 
 @kernel
-def add_moves(p: Tick, s: Motion, middle: float, end: float) -> None:
+def add_moves(p: Moves, s: Motion, middle: float, end: float) -> None:
     """Add to a motion the effect of a voltage that was more in the middle and at the end of the tick than at its start."""
     s.x += p.middle1 * middle + p.end1 * end
     s.v += p.middle2 * middle + p.end2 * end

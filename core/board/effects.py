@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, FloatArray, Port
-
-STIFFNESS_IN, DAMPING_IN, FRICTION_IN, SQUEEZE_IN, OUTPUTS = range(5)
-STIFFNESS, DAMPING, FRICTION, OTHER, SQUEEZE, ELASTICITY = 1, 2, 7, 17, 22, 23
-"""Places among the outputs of the channels that start from the environment."""
+from core.block import Block, BlockParams
+from core.ports import OUTPUT, BlockPorts, Port, reads
+from core.record import Record
 
 
 @dataclass(frozen=True)
@@ -21,24 +17,12 @@ class Channel(Port):
     neutral: float = 1.0
 
 
-def _scale(name: str, meaning: str, *, hidden: bool = True) -> Channel:
-    return Channel(name, "1", meaning, hidden=hidden)
+def _scale(meaning: str, *, hidden: bool = True) -> Any:
+    return Channel("", "1", meaning, hidden=hidden, kind=OUTPUT)
 
 
-def _sum(name: str, unit: str, meaning: str) -> Channel:
-    return Channel(name, unit, meaning, hidden=True, neutral=0.0)
-
-
-def effects_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Start the tick without any fault."""
-    for i in range(int(p[0])):
-        w[io[OUTPUTS + i]] = p[1 + i]
-    w[io[OUTPUTS + STIFFNESS]] = w[io[STIFFNESS_IN]]
-    w[io[OUTPUTS + ELASTICITY]] = w[io[STIFFNESS_IN]]  # temperature and age change the material of every beam
-    w[io[OUTPUTS + DAMPING]] = w[io[DAMPING_IN]]
-    w[io[OUTPUTS + SQUEEZE]] = w[io[SQUEEZE_IN]]
-    w[io[OUTPUTS + FRICTION]] = w[io[FRICTION_IN]]
-    w[io[OUTPUTS + OTHER]] = w[io[FRICTION_IN]]  # no hypothesis says friction
+def _sum(unit: str, meaning: str) -> Any:
+    return Channel("", unit, meaning, hidden=True, neutral=0.0, kind=OUTPUT)
 
 
 class Effects(Block):
@@ -50,50 +34,73 @@ class Effects(Block):
     """
 
     title = "Effect channels"
-    inputs = (
-        Port("stiffness", "1", "stiffness over nominal in this environment", source="environment.stiffness_scale"),
-        Port("damping", "1", "damping over nominal in this environment", source="environment.damping_scale"),
-        Port("rubbing", "uN", "friction in this environment", source="environment.friction"),
-        Port("rarefied", "1", "squeeze film in this environment, over the damping", source="environment.squeeze"),
-    )
-    outputs = (
-        _scale("mass_scale", "true mass over nominal", hidden=False),
-        _scale("stiffness_scale", "true stiffness over nominal", hidden=False),
-        _scale("damping_scale", "true damping over nominal", hidden=False),
-        _scale("drive_gain", "voltage at the comb over the voltage applied"),
-        _sum("drive_offset", "V", "voltage at the comb that nobody applied"),
-        _sum("acceleration", "um/ms^2", "acceleration of the frame along x"),
-        _sum("acceleration_side", "um/ms^2", "acceleration of the frame along y"),
-        _sum("friction", "uN", "Coulomb friction"),
-        _sum("short", "1", "combs that are shorted: 1 at +x, 2 at -x, 3 both"),
-        _sum("cubic", "uN/um^3", "cubic stiffness along x"),
-        _scale("lateral_scale", "stiffness along y over nominal"),
-        _scale("lateral_reach", "travel over which the stiffness along y falls, over nominal"),
-        _scale("rotation_scale", "stiffness against rotation over nominal"),
-        _scale("rotation_reach", "travel over which the stiffness against rotation falls, over nominal"),
-        _sum("sideways", "1/um", "sideways shift per squared travel"),
-        _sum("turn", "rad/um", "rotation per travel"),
-        _sum("turn_cubic", "rad/um^3", "rotation per cubed travel"),
-        _sum("other", "1", "not zero while something is wrong that no hypothesis of a bank can say"),
-        _scale("vacuum", "share of the vacuum that is left"),
-        _sum("sensor_offset", "um", "added to what is measured"),
-        _sum("sensor_quantum", "um", "step what is measured is rounded to, 0 for none"),
-        _sum("sensor_held", "1", "not zero while the sample is lost"),
-        _scale("squeeze_scale", "squeeze film over that of a continuous gas at 300 K, over the damping"),
-        _scale("elasticity_scale", "stiffness of all beams alike over nominal: cubic, sideways and in rotation too"),
-    )
 
     class Params(BlockParams):
         """Nothing to choose."""
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Return the number of channels and what each is without any fault."""
-        return np.array([float(len(cls.outputs)), *cls.neutral()])
+    class Ports(BlockPorts):
+        """Factors of the environment in, channels out."""
+
+        stiffness: float = reads("environment.stiffness_scale", "1", "stiffness over nominal in this environment")
+        damping: float = reads("environment.damping_scale", "1", "damping over nominal in this environment")
+        rubbing: float = reads("environment.friction", "uN", "friction in this environment")
+        rarefied: float = reads("environment.squeeze", "1", "squeeze film in this environment, over the damping")
+        mass_scale: float = _scale("true mass over nominal", hidden=False)
+        stiffness_scale: float = _scale("true stiffness over nominal", hidden=False)
+        damping_scale: float = _scale("true damping over nominal", hidden=False)
+        drive_gain: float = _scale("voltage at the comb over the voltage applied")
+        drive_offset: float = _sum("V", "voltage at the comb that nobody applied")
+        acceleration: float = _sum("um/ms^2", "acceleration of the frame along x")
+        acceleration_side: float = _sum("um/ms^2", "acceleration of the frame along y")
+        friction: float = _sum("uN", "Coulomb friction")
+        short: float = _sum("1", "combs that are shorted: 1 at +x, 2 at -x, 3 both")
+        cubic: float = _sum("uN/um^3", "cubic stiffness along x")
+        lateral_scale: float = _scale("stiffness along y over nominal")
+        lateral_reach: float = _scale("travel over which the stiffness along y falls, over nominal")
+        rotation_scale: float = _scale("stiffness against rotation over nominal")
+        rotation_reach: float = _scale("travel over which the stiffness against rotation falls, over nominal")
+        sideways: float = _sum("1/um", "sideways shift per squared travel")
+        turn: float = _sum("rad/um", "rotation per travel")
+        turn_cubic: float = _sum("rad/um^3", "rotation per cubed travel")
+        other: float = _sum("1", "not zero while something is wrong that no hypothesis of a bank can say")
+        vacuum: float = _scale("share of the vacuum that is left")
+        sensor_offset: float = _sum("um", "added to what is measured")
+        sensor_quantum: float = _sum("um", "step what is measured is rounded to, 0 for none")
+        sensor_held: float = _sum("1", "not zero while the sample is lost")
+        squeeze_scale: float = _scale("squeeze film over that of a continuous gas at 300 K, over the damping")
+        elasticity_scale: float = _scale(
+            "stiffness of all beams alike over nominal: cubic, sideways and in rotation too"
+        )
 
     @classmethod
-    def neutral(cls) -> list[float]:
+    def neutral(cls) -> dict[str, float]:
         """Return the value of each channel without any fault."""
-        return [port.neutral for port in cls.outputs]
+        return {port.name: port.neutral for port in cls.Ports.declared if isinstance(port, Channel)}
 
-    step = effects_step
+    @staticmethod
+    def step(p: Record, s: Record, x: Ports) -> None:
+        """Start the tick without any fault."""
+        x.mass_scale = 1.0
+        x.drive_gain = 1.0
+        x.drive_offset = 0.0
+        x.acceleration = 0.0
+        x.acceleration_side = 0.0
+        x.short = 0.0
+        x.cubic = 0.0
+        x.lateral_scale = 1.0
+        x.lateral_reach = 1.0
+        x.rotation_scale = 1.0
+        x.rotation_reach = 1.0
+        x.sideways = 0.0
+        x.turn = 0.0
+        x.turn_cubic = 0.0
+        x.vacuum = 1.0
+        x.sensor_offset = 0.0
+        x.sensor_quantum = 0.0
+        x.sensor_held = 0.0
+        x.stiffness_scale = x.stiffness
+        x.elasticity_scale = x.stiffness  # temperature and age change the material of every beam
+        x.damping_scale = x.damping
+        x.squeeze_scale = x.rarefied
+        x.friction = x.rubbing
+        x.other = x.rubbing  # no hypothesis says friction

@@ -29,6 +29,7 @@ ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 DONE, TRIPPED, WATCHED = range(3)
 """Why the loop returned."""
 
+
 @cache
 def compiled(block: type[Block]) -> Any:
     """Compile the step of a block to its C function."""
@@ -54,11 +55,14 @@ class _Apart(Compiler):
 def _old(step: Any) -> Any:
     from numba.core.ccallback import CFunc
     from core.kernel_cache import KernelCache
+
     options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
     f = CFunc(step, (_SIGNATURE.args, types.void), locals={}, options=options, pipeline_class=_Apart)
-    f._cache = KernelCache(step)
+    vars(f)["_cache"] = KernelCache(step)
     f.compile()
     return f
+
+
 # OLD NOTATION to here
 
 

@@ -209,8 +209,8 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Sp
         io_parts.append(io)
         p_size, s_size, io_size = p_size + len(p), s_size + len(s), io_size + len(io)
     w = np.zeros(size)
-    for port in Effects.outputs:
-        w[index[f"effects.{port.name}"]] = port.neutral
+    for name, value in Effects.neutral().items():
+        w[index[f"effects.{name}"]] = value
     engage(spec, index, w)
     read = needed(spec)
     rows = {instance.key: row for row, instance in enumerate(order)}

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Oscillator, Port, kernel, settled
+from core.block import Block, Context, Oscillator, Port, kernel, settled
 from core.device.oscillator import held, within
-from core.voltage import APPLIED_PORTS
+from core.ports import BlockPorts, output, reads
+from core.record import Record
+from core.voltage import APPLIED_PORTS, AppliedPorts, Tick
 
 REFERENCE, MODEL, MEASURED, APPLIED = range(4)
 ENGAGED, VOLTAGE = APPLIED + len(APPLIED_PORTS), APPLIED + len(APPLIED_PORTS) + 1
@@ -23,6 +25,43 @@ INPUTS = (
     *APPLIED_PORTS,
     Port("engaged", "1", "1 while this controller drives", source="@engaged"),
 )
+
+
+class ReferencePorts(BlockPorts):
+    """Reference, model and measurement."""
+
+    reference: float = reads("reference.voltage", "V", "reference voltage")
+    model: float = reads("model.displacement", "um", "where the shuttle should be")
+    measured: float = reads("sensor.displacement", "um", "measured displacement")
+
+
+class EngagedPorts(BlockPorts):
+    """Whether the controller drives, and its own would-be voltage."""
+
+    engaged: float = reads("@engaged", "1", "1 while this controller drives")
+    voltage: float = output("V", "voltage this controller asks for")
+
+
+class ControllerPorts(ReferencePorts, AppliedPorts, EngagedPorts):
+    """Ports of every controller; ``applied`` is the voltage of whichever controller drives."""
+
+
+class TruthPorts(BlockPorts):
+    """Signals of the device that no controller may use: only ideal values for the taps are made of them."""
+
+    mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal, for the ideal values")
+    stiffness_scale: float = reads("effects.stiffness_scale", "1", "true stiffness over nominal")
+    damping_scale: float = reads("effects.damping_scale", "1", "true damping over nominal")
+    drive_gain: float = reads("effects.drive_gain", "1", "voltage at the comb over the voltage applied")
+
+
+class VelocityPorts(BlockPorts):
+    """Velocities, for controllers that are given one."""
+
+    velocity: float = reads("plant.velocity", "um/ms", "true velocity, for a source that measures it")
+    model_velocity: float = reads("model.velocity", "um/ms", "velocity of the model")
+
+
 OUTPUT = Port("voltage", "V", "voltage this controller asks for")
 FIRST_ORDER = "is for plants of second order, and this device is of first order"
 """Why many controllers cannot be on a bench with a plant that has no mass."""

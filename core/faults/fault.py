@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, FloatArray, Port, kernel, parameter
+from core.block import Block, BlockParams, Context, FloatArray, Port, parameter
+from core.kernel import kernel
+from core.ports import BlockPorts, output, reads
+from core.record import Record
 
 KIND, SEVERITY, START, LENGTH, ON = range(5)
 STEP, RAMP, INTERMITTENT = 0.0, 1.0, 2.0
@@ -31,6 +34,39 @@ class FaultParams(BlockParams):
     start_tick: int = parameter(0, "tick of the injection", ge=0, live=False)
 
 
+class PackedFault(Record):
+    """Profile, severity, tick of the injection, ticks of the ramp or the period, ticks of it that are on."""
+
+    kind: float
+    severity: float
+    start_tick: float
+    length: float
+    on: float
+
+
+@kernel
+def severity_now(p: PackedFault, tick: float) -> float:
+    """Return the severity at a tick."""
+    if p.severity == 0.0:
+        return 0.0
+    since = tick - p.start_tick
+    if p.kind == RAMP:
+        return float(p.severity * min(1.0, since / p.length))
+    if p.kind == INTERMITTENT:
+        return float(p.severity) if since - p.length * math.floor(since / p.length) < p.on else 0.0
+    return float(p.severity)
+
+
+def effect(channel: str) -> Any:
+    """Declare the effect channel a fault multiplies, or adds to."""
+    return reads(f"effects.{channel}", "1", f"effect channel {channel}")
+
+
+def severity(unit: str, meaning: str) -> Any:
+    """Declare the severity that is there now."""
+    return output(unit, meaning)
+
+
 class Fault(Block):
     """A fault multiplies effect channels, or adds to them; ``shows`` names the part it is seen on."""
 
@@ -38,14 +74,40 @@ class Fault(Block):
     changes: ClassVar[str]
     suggested: ClassVar[float] = 0.05
 
+    Packed: ClassVar[type[Record]] = PackedFault
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Any:
         """Pack severity and profile; the interval and its part that is on in whole ticks."""
         profile = params.profile
         length = profile.duration_ms if profile.kind == "ramp" else profile.period_ms
         ticks = max(1.0, round(length / context.dt_ms))
         on = max(1.0, round(profile.duty * ticks))
-        return np.array([KINDS[profile.kind], params.severity, float(params.start_tick), ticks, on])
+        if cls.Ports is BlockPorts:  # OLD NOTATION
+            return np.array([KINDS[profile.kind], params.severity, float(params.start_tick), ticks, on])
+        p: Any = cls.Packed.blank()
+        p.kind, p.length, p.on = KINDS[profile.kind], ticks, on
+        return p
+
+
+class Scales(Protocol):
+    """Ports of a fault that scales one channel."""
+
+    tick: float
+    effect: float
+    severity: float
+
+
+class ScaleFault(Fault):
+    """A fault that multiplies one effect channel by one plus the severity."""
+
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Scales) -> None:
+        """Multiply the effect channel by one plus the severity."""
+        now = severity_now(p, x.tick)
+        x.severity = now
+        if now != 0.0:
+            x.effect *= 1.0 + now
 
 
 def channel(name: str) -> tuple[Port, ...]:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from core.block import TICK, Block, BlockParams, Context, FloatArray, Port, Step, kernel, parameter
+from core.block import TICK, Block, BlockParams, Context, FloatArray, Port, kernel, parameter
 from core.errors import InputError
 
 DT, ANALOGUE, SCALE, OFFSET, FIRST = range(5)
@@ -88,7 +88,7 @@ def line(hz: float, phase_deg: float, share: float = 1.0) -> tuple[float, float]
     return hz, share if hz > 0.0 else share * math.sin(math.radians(phase_deg))
 
 
-def playing(shape: Callable[[Any, float], float]) -> Step:
+def playing(shape: Callable[[Any, float], float]) -> Any:
     """Return the step that plays ``shape``; a DAC holds it, an analogue generator does not."""
 
     def step(p: Any, s: Any, w: Any, io: Any) -> None:
