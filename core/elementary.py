@@ -6,6 +6,6 @@ instructions of the processor and stay with ``math``.
 
 from __future__ import annotations
 
-from math import atan2, cos, exp, floor, log, sin, tanh
+from math import atan2, cos, exp, floor, log, pow, sin, tanh
 
-__all__ = ["atan2", "cos", "exp", "floor", "log", "sin", "tanh"]
+__all__ = ["atan2", "cos", "exp", "floor", "log", "pow", "sin", "tanh"]
