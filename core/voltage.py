@@ -76,7 +76,10 @@ class Tick(Moves):
 
 
 class Interval(Tick):
-    r"""A device over a tick and over the interval: :math:`-\Phi_{22},\;\Phi_{12}`, inverses of b0 and b1 of a unit gain."""
+    r"""A device over a tick and over the interval.
+
+    There :math:`-\Phi_{22},\;\Phi_{12}`, and the inverses of b0 and b1 of a unit gain.
+    """
 
     later1: float
     later2: float
@@ -92,7 +95,7 @@ class Motion(Record):
 
 
 class Gathered(Record):
-    """Whether an interval has begun, the voltage at its start, the motion made so far by what the voltage changed since."""
+    """Whether an interval has begun, the voltage at its start, the motion that later voltages have made so far."""
 
     begun: float
     start: float
@@ -124,7 +127,7 @@ def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
 
 
 def interval_of(context: Context) -> Interval:
-    """Return the nominal device over a tick and over the interval of the block, for a displacement at rest of 1 um/V."""
+    """Return the nominal device over a tick and the interval of the block, for a displacement at rest of 1 um/V."""
     device, interval = context.device, Interval.blank()
     fill_tick(interval, device, device.stiffness, context.dt_ms / context.every, context.analogue)
     b0, b1, _, _ = difference_equation(device, 1.0, context.dt_ms)
@@ -145,7 +148,7 @@ def advance_motion(p: Tick, s: Motion, u: float) -> None:
 
 @kernel
 def add_moves(p: Moves, s: Motion, middle: float, end: float) -> None:
-    """Add to a motion the effect of a voltage that was more in the middle and at the end of the tick than at its start."""
+    """Add to a motion the effect of a voltage that was more in the middle and at the end than at the start."""
     s.x += p.middle1 * middle + p.end1 * end
     s.v += p.middle2 * middle + p.end2 * end
 
@@ -154,7 +157,7 @@ def add_moves(p: Moves, s: Motion, middle: float, end: float) -> None:
 def gather(p: Tick, s: Gathered, u: float, middle: float, end: float) -> None:
     """Take in a tick: its voltage at the start, in the middle and at the end.
 
-    The motion is gathered that comes of the voltage being more than at the start of the interval, so that a voltage held
+    The motion gathered is that by what the voltage is more than at the start of the interval, so that a voltage held
     over all of it adds nothing, to the bit.
     """
     if s.begun == 0.0:

@@ -107,7 +107,7 @@ class Board:
             if not scored(section.block):
                 continue
             names = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
-            found[name] = score.read(self.wiring.state_of(f"{name}.score"), names, int(self.value(f"{name}.winner")))
+            found[name] = score.read(self.wiring.state(f"{name}.score"), names, int(self.value(f"{name}.winner")))
         return found
 
     # -- time

@@ -7,55 +7,36 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import TIME_MS, Block, BlockParams, Context, FloatArray, Port, kernel, parameter
+from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor
+from core.kernel import kernel
 from core.noise import key, uniform
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record
 
-LIMIT, QUANTUM, DITHER, CHIPS, KEY = range(5)
-COMMAND, MIDDLE_IN, END_IN, VOLTAGE, MIDDLE, END, SATURATED = range(7)
+
+class Converter(Record):
+    """Limit to either side, step of the converter, 0 for none."""
+
+    limit_v: float
+    quantum_v: float
 
 
 @kernel
-def convert(p: Any, u: float) -> float:
+def convert(p: Converter, u: float) -> float:
     """Clip to the limit and round to the converter's step; nothing comes out for what is not a number."""
     if not math.isfinite(u):
         return 0.0
-    u = min(max(u, -p[LIMIT]), p[LIMIT])
-    if p[QUANTUM] > 0.0:
-        u = p[QUANTUM] * math.floor(u / p[QUANTUM] + 0.5)
+    u = min(max(u, -p.limit_v), p.limit_v)
+    if p.quantum_v > 0.0:
+        u = p.quantum_v * floor(u / p.quantum_v + 0.5)
     return u
-
-
-def drive_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Apply the voltage asked for, as far as the drive can."""
-    dither = 0.0
-    if p[DITHER] > 0.0:
-        dither = p[DITHER] if uniform(p[KEY], math.floor(w[TIME_MS] * p[CHIPS])) < 0.5 else -p[DITHER]
-    u = w[io[COMMAND]] + dither
-    w[io[VOLTAGE]] = convert(p, u)
-    if w[io[MIDDLE_IN]] == w[io[COMMAND]] and w[io[END_IN]] == w[io[COMMAND]]:
-        w[io[MIDDLE]] = w[io[VOLTAGE]]
-        w[io[END]] = w[io[VOLTAGE]]
-    else:
-        w[io[MIDDLE]] = convert(p, w[io[MIDDLE_IN]] + dither)
-        w[io[END]] = convert(p, w[io[END_IN]] + dither)
-    w[io[SATURATED]] = 1.0 if abs(u) > p[LIMIT] else 0.0
 
 
 class Drive(Block):
     """Limiter and digital-to-analogue converter; holds the voltage for one sample."""
 
     title = "Drive"
-    inputs = (
-        Port("command", "V", "voltage asked for by the controller that drives", source="@active"),
-        Port("command_middle", "V", "the same half a sample later", source="@active_middle"),
-        Port("command_end", "V", "the same one sample later", source="@active_end"),
-    )
-    outputs = (
-        Port("voltage", "V", "applied voltage"),
-        Port("middle", "V", "applied voltage half a sample later", hidden=True),
-        Port("end", "V", "applied voltage one sample later", hidden=True),
-    )
-    taps = (Port("saturated", "1", "1 while more voltage is asked for than the drive has"),)
 
     class Params(BlockParams):
         """The output stage."""
@@ -74,10 +55,44 @@ class Drive(Block):
             "held", "held by a converter, or an analogue generator (open loop only)", live=False
         )
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        dither = [params.dither_v, params.dither_rate_hz / 1e3, key(context.seed, "drive.dither")]
-        return np.array([params.limit_v, params.quantum_v, *dither])
+    class Packed(Converter):
+        """The converter, size and rate per ms of the dither, its key."""
 
-    step = drive_step
+        dither_v: float
+        dither_per_ms: float
+        dither_key: float
+
+    class Ports(BlockPorts):
+        """What is asked for, what is applied."""
+
+        command: float = reads("@active", "V", "voltage asked for by the controller that drives")
+        command_middle: float = reads("@active_middle", "V", "the same half a sample later")
+        command_end: float = reads("@active_end", "V", "the same one sample later")
+        voltage: float = output("V", "applied voltage")
+        middle: float = output("V", "applied voltage half a sample later", hidden=True)
+        end: float = output("V", "applied voltage one sample later", hidden=True)
+        saturated: float = tap("1", "1 while more voltage is asked for than the drive has")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p = cls.Packed.blank()
+        p.dither_per_ms = params.dither_rate_hz / 1e3
+        p.dither_key = key(context.seed, "drive.dither")
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Apply the voltage asked for, as far as the drive can."""
+        dither = 0.0
+        if p.dither_v > 0.0:
+            dither = p.dither_v if uniform(p.dither_key, floor(x.time_ms * p.dither_per_ms)) < 0.5 else -p.dither_v
+        u = x.command + dither
+        x.voltage = convert(p, u)
+        if x.command_middle == x.command and x.command_end == x.command:
+            x.middle = x.voltage
+            x.end = x.voltage
+        else:
+            x.middle = convert(p, x.command_middle + dither)
+            x.end = convert(p, x.command_end + dither)
+        x.saturated = 1.0 if abs(u) > p.limit_v else 0.0

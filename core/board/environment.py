@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Port, parameter
+from core.block import Block, BlockParams, Context, Equation, parameter
 from core.device.environment import (
     ATMOSPHERE_PA,
     ROOM_K,
@@ -19,43 +17,37 @@ from core.device.environment import (
     structural_share,
 )
 from core.device.geometry import drawn
-
-PRESSURE_AT, TEMPERATURE_AT, HUMID, STICKY, RUBBING, WEEKS, AGED, SET_DAMPING, FILM = range(9)
-"""Packed parameters; from ``FILM`` on areas and gaps, angular frequency and structural share."""
-LAST_PRESSURE, LAST_TEMPERATURE, LAST_STIFFNESS, LAST_DAMPING, LAST_SQUEEZE = range(5)
-VACUUM, STIFFNESS, DAMPING, SQUEEZE, FRICTION, FRICTION_SCALE, AGE, DAMPING_SET, PRESSURE, ADHESION = range(10)
+from core.kernel import kernel
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record
 
 
-def environment_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Say what pressure and temperature make of the device; a leak of the tick before counts."""
-    pressure = p[PRESSURE_AT]
-    if w[io[VACUUM]] != 1.0:
-        pressure = ATMOSPHERE_PA - w[io[VACUUM]] * (ATMOSPHERE_PA - pressure)
-    temperature = p[TEMPERATURE_AT]
-    if pressure != s[LAST_PRESSURE] or temperature != s[LAST_TEMPERATURE]:
-        s[LAST_PRESSURE] = pressure
-        s[LAST_TEMPERATURE] = temperature
-        s[LAST_STIFFNESS] = stiffness_scale(temperature)
-        s[LAST_DAMPING] = damping_scale(
-            pressure,
-            temperature,
-            p[FILM],
-            p[FILM + 1],
-            p[FILM + 2],
-            p[FILM + 3],
-            p[FILM + 4],
-            p[FILM + 5],
+class Film(Record):
+    """The gas film of a device, as `core.device.environment.damping_scale` takes it; the last is the structural share."""
+
+    plan_um2: float
+    film_um: float
+    comb_um2: float
+    gap_um: float
+    omega: float
+    structural: float
+
+
+@kernel
+def damping_in(film: Film, pressure_pa: float, temperature_k: float) -> float:
+    """Return the damping of a device in air over that at 300 K and 1 atm."""
+    return float(
+        damping_scale(
+            pressure_pa,
+            temperature_k,
+            film.plan_um2,
+            film.film_um,
+            film.comb_um2,
+            film.gap_um,
+            film.omega,
+            film.structural,
         )
-        s[LAST_SQUEEZE] = squeezed_share(pressure, temperature, p[FILM + 3]) / s[LAST_DAMPING]
-    w[io[STIFFNESS]] = s[LAST_STIFFNESS] * p[AGED]
-    w[io[DAMPING]] = s[LAST_DAMPING]
-    w[io[SQUEEZE]] = s[LAST_SQUEEZE]
-    w[io[FRICTION]] = p[RUBBING] * p[STICKY]
-    w[io[FRICTION_SCALE]] = p[STICKY]
-    w[io[AGE]] = p[WEEKS]
-    w[io[DAMPING_SET]] = p[SET_DAMPING]
-    w[io[PRESSURE]] = pressure
-    w[io[ADHESION]] = p[HUMID]
+    )
 
 
 class Environment(Block):
@@ -69,20 +61,6 @@ class Environment(Block):
     """
 
     title = "Environment"
-    inputs = (Port("vacuum", "1", "share of the vacuum that is left", source="effects.vacuum"),)
-    outputs = (
-        Port("stiffness_scale", "1", "stiffness over nominal", hidden=True),
-        Port("damping_scale", "1", "damping over nominal", hidden=True),
-        Port("squeeze", "1", "squeeze film over that of a continuous gas at 300 K, over the damping", hidden=True),
-        Port("friction", "uN", "Coulomb friction without any fault", hidden=True),
-        Port("friction_scale", "1", "friction at this humidity over that at 40 %", hidden=True),
-        Port("age", "week", "age without any fault", hidden=True),
-        Port("damping_set", "1", "damping over nominal without any leak", hidden=True),
-    )
-    taps = (
-        Port("pressure", "Pa", "pressure at the device"),
-        Port("adhesion", "mJ/m^2", "adhesion energy of surfaces that touch"),
-    )
     equations = (
         Equation(
             "damping",
@@ -120,39 +98,93 @@ class Environment(Block):
         )
         age_weeks: float = parameter(0.0, "age of the device", "week", ge=0, le=52, equation="3.1.3.2")
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the state of the air and the film of the device; nN to uN."""
-        device = context.device
-        film = [
-            *drawn(context).film,
-            1e3 * device.natural_frequency,
-            # what is no resonator has no air around it either
-            structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0,
-        ]
-        return np.array(
-            [
-                params.pressure_pa,
-                params.temperature_k,
-                1e3 * adhesion_j_m2(params.humidity_pct),
-                friction_scale(params.humidity_pct),
-                1e-3 * params.friction_nn,
-                params.age_weeks,
-                1.0 / ageing_ratio(params.age_weeks),
-                damping_scale(params.pressure_pa, params.temperature_k, *film),
-                *film,
-            ]
+    class Packed(Record):
+        """Air that is set, adhesion, friction, age and the share of the modulus it leaves, damping without a leak, film."""
+
+        pressure_pa: float
+        temperature_k: float
+        adhesion: float
+        friction_scale: float
+        friction_un: float
+        age_weeks: float
+        aged: float
+        damping_set: float
+        film: Film
+
+    class State(Record):
+        """Pressure and temperature of the factors kept, and the factors."""
+
+        pressure: float
+        temperature: float
+        stiffness: float
+        damping: float
+        squeeze: float
+
+    class Ports(BlockPorts):
+        """The leak in; factors out."""
+
+        vacuum: float = reads("effects.vacuum", "1", "share of the vacuum that is left")
+        stiffness_scale: float = output("1", "stiffness over nominal", hidden=True)
+        damping_scale: float = output("1", "damping over nominal", hidden=True)
+        squeeze: float = output(
+            "1", "squeeze film over that of a continuous gas at 300 K, over the damping", hidden=True
         )
+        friction: float = output("uN", "Coulomb friction without any fault", hidden=True)
+        friction_scale: float = output("1", "friction at this humidity over that at 40 %", hidden=True)
+        age: float = output("week", "age without any fault", hidden=True)
+        damping_set: float = output("1", "damping over nominal without any leak", hidden=True)
+        pressure: float = tap("Pa", "pressure at the device")
+        adhesion: float = tap("mJ/m^2", "adhesion energy of surfaces that touch")
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Pressure and temperature of the factors kept, and the factors."""
-        return np.array([ATMOSPHERE_PA, ROOM_K, 1.0, 1.0, squeezed_share(ATMOSPHERE_PA, ROOM_K, drawn(context).gap_um)])
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the state of the air and the film of the device; nN to uN."""
+        device = context.device
+        p = cls.Packed.blank()
+        p.adhesion = 1e3 * adhesion_j_m2(params.humidity_pct)
+        p.friction_scale = friction_scale(params.humidity_pct)
+        p.friction_un = 1e-3 * params.friction_nn
+        p.aged = 1.0 / ageing_ratio(params.age_weeks)
+        film = p.film
+        film.plan_um2, film.film_um, film.comb_um2, film.gap_um = drawn(context).film
+        film.omega = 1e3 * device.natural_frequency
+        # what is no resonator has no air around it either
+        film.structural = structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0
+        p.damping_set = damping_in(film, params.pressure_pa, params.temperature_k)
+        return p
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """Factors at room temperature and 1 atm."""
+        s = cls.State.zeros()
+        s.pressure, s.temperature, s.stiffness, s.damping = ATMOSPHERE_PA, ROOM_K, 1.0, 1.0
+        s.squeeze = squeezed_share(ATMOSPHERE_PA, ROOM_K, drawn(context).gap_um)
+        return s
 
     @classmethod
     def scales(cls, params: Any, context: Context) -> tuple[float, float]:
         """Return the factors of stiffness and damping before any fault."""
         packed = cls.pack(params, context)
-        return float(stiffness_scale(params.temperature_k) * packed[AGED]), float(packed[SET_DAMPING])
+        return float(stiffness_scale(params.temperature_k) * packed.aged), float(packed.damping_set)
 
-    step = environment_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Say what pressure and temperature make of the device; a leak of the tick before counts."""
+        pressure = p.pressure_pa
+        if x.vacuum != 1.0:
+            pressure = ATMOSPHERE_PA - x.vacuum * (ATMOSPHERE_PA - pressure)
+        if pressure != s.pressure or p.temperature_k != s.temperature:
+            s.pressure = pressure
+            s.temperature = p.temperature_k
+            s.stiffness = stiffness_scale(p.temperature_k)
+            s.damping = damping_in(p.film, pressure, p.temperature_k)
+            s.squeeze = squeezed_share(pressure, p.temperature_k, p.film.gap_um) / s.damping
+        x.stiffness_scale = s.stiffness * p.aged
+        x.damping_scale = s.damping
+        x.squeeze = s.squeeze
+        x.friction = p.friction_un * p.friction_scale
+        x.friction_scale = p.friction_scale
+        x.age = p.age_weeks
+        x.damping_set = p.damping_set
+        x.pressure = pressure
+        x.adhesion = p.adhesion

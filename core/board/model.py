@@ -5,48 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Literal, Self
 
-import numpy as np
 from pydantic import Field, model_validator
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
 from core.device.oscillator import held, parabola, transition
 from core.device.ranges import Sized
 from core.device.transfer_function import of_coefficients
 from core.errors import InputError
-
-PHI11, PHI12, PHI21, PHI22, STATIC, DIRECT, REACH, PUSH, ZEROTH, FIRST, SLOPE_X, SLOPE_V, SLOPE_IN, DT = range(14)
-RISE_X, RISE_V, BEND_X, BEND_V = range(14, 18)
-X, V, START, MIDDLE, END, STARTED = range(6)
-REFERENCE, HALFWAY, AFTERWARDS, DISPLACEMENT, VELOCITY = range(5)
-
-
-def model_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance the model over the interval that ends now."""
-    if p[DIRECT] != 0.0:
-        before = w[io[DISPLACEMENT]]
-        w[io[DISPLACEMENT]] = p[STATIC] * w[io[REFERENCE]]
-        w[io[VELOCITY]] = (w[io[DISPLACEMENT]] - before) / p[DT] if s[STARTED] != 0.0 else 0.0
-        s[STARTED] = 1.0
-        return
-    if s[STARTED] != 0.0:
-        # an analogue reference is a parabola through the start, middle and end of the interval, a held one level
-        half = s[MIDDLE] - s[START]
-        whole = s[END] - s[START]
-        rise = (4.0 * half - whole) / p[DT]
-        bend = 4.0 * (whole - 2.0 * half) / (p[DT] * p[DT])
-        rest = p[STATIC] * s[START]
-        x = s[X] - rest
-        v = s[V]
-        more_x = p[RISE_X] * rise + p[BEND_X] * bend
-        more_v = p[RISE_V] * rise + p[BEND_V] * bend
-        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest + p[REACH] * s[START] + more_x)
-        s[V] = settled(p[PHI21] * x + p[PHI22] * v + p[PUSH] * s[START] + more_v)
-    s[STARTED] = 1.0
-    s[START] = w[io[REFERENCE]]
-    s[MIDDLE] = w[io[HALFWAY]]
-    s[END] = w[io[AFTERWARDS]]
-    w[io[DISPLACEMENT]] = p[ZEROTH] * s[X] + p[FIRST] * s[V]
-    w[io[VELOCITY]] = p[SLOPE_X] * s[X] + p[SLOPE_V] * s[V] + p[SLOPE_IN] * s[START]
+from core.kernel import flush_tiny
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record
 
 
 class Model(Block):
@@ -58,13 +26,6 @@ class Model(Block):
     """
 
     title = "Reference model"
-    inputs = (
-        Port("reference", "V", "reference voltage", source="reference.voltage"),
-        Port("middle", "V", "reference half a sample later", source="reference.middle"),
-        Port("end", "V", "reference one sample later", source="reference.end"),
-    )
-    outputs = (Port("displacement", "um", "where the shuttle should be"),)
-    taps = (Port("velocity", "um/ms", "how fast it should move"),)
     equations = (
         Equation("model", r"\ddot y_m+a_{m1}\dot y_m+a_{m2}y_m=k_mr", "3.1.2.4"),
         Equation("transfer function", r"y_m=\frac{b_1s+b_0}{a_2s^2+a_1s+a_0}\,r", "4.3.1.2"),
@@ -103,6 +64,47 @@ class Model(Block):
                 raise ValueError("the numerator must be shorter than the denominator")
             return self
 
+    class Packed(Record):
+        """Transition, effects of the reference on state and output, and of what it changes by within a sample."""
+
+        phi11: float
+        phi12: float
+        phi21: float
+        phi22: float
+        static_gain: float
+        direct: float
+        reach: float
+        push: float
+        zeroth: float
+        first: float
+        slope_x: float
+        slope_v: float
+        slope_reference: float
+        dt_ms: float
+        rise_x: float
+        rise_v: float
+        bend_x: float
+        bend_v: float
+
+    class State(Record):
+        """Displacement, velocity, reference over the sample that begins, whether it has run."""
+
+        x: float
+        v: float
+        start: float
+        middle: float
+        end: float
+        started: float
+
+    class Ports(BlockPorts):
+        """Reference in, displacement and velocity of the model out."""
+
+        reference: float = reads("reference.voltage", "V", "reference voltage")
+        middle: float = reads("reference.middle", "V", "reference half a sample later")
+        end: float = reads("reference.end", "V", "reference one sample later")
+        displacement: float = output("um", "where the shuttle should be")
+        velocity: float = tap("um/ms", "how fast it should move")
+
     @classmethod
     def oscillator(cls, params: Any, device: Oscillator) -> Oscillator:
         """Return the model that belongs to a device; a zero of its transfer function is left out.
@@ -126,45 +128,65 @@ class Model(Block):
         return Oscillator(device.mass, params.damping_ratio * critical, device.stiffness, device.force)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         model = context.model
+        p = cls.Packed.zeros()
+        p.dt_ms, p.direct = context.dt_ms, params.kind == "direct"
         resonator = params.kind != "transfer_function" and context.device.time_unit_ms == 0.0
         if resonator or params.kind == "direct":
-            phi = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
-            plain = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0)
-            more = _parabola(model, model.force, context)
-            return np.array([*phi, model.static_gain, float(params.kind == "direct"), *plain, context.dt_ms, *more])
-        *free, reach, push = held(model.mass, model.damping, model.stiffness, context.dt_ms)
-        gain, unit = model.force, 1.0 / context.device.natural_frequency
-        first, zeroth = 0.0, 1.0
-        if params.kind == "transfer_function":
-            # the zero works on the output: the state is that of a unit numerator
-            gain = 1.0
-            first, zeroth = [0.0, 0.0, *params.numerator][-2:]
-        first *= unit
-        if model.mass == 0.0:
-            slope = (-zeroth * model.stiffness / model.damping, 0.0, zeroth * gain / model.damping)
+            p.phi11, p.phi12, p.phi21, p.phi22 = transition(model.mass, model.damping, model.stiffness, context.dt_ms)
+            p.static_gain, p.zeroth, p.slope_v = model.static_gain, 1.0, 1.0
+            gain = model.force
         else:
-            inverse = 1.0 / model.mass
-            slope = (
-                -first * model.stiffness * inverse,
-                zeroth - first * model.damping * inverse,
-                first * gain * inverse,
+            p.phi11, p.phi12, p.phi21, p.phi22, reach, push = held(
+                model.mass, model.damping, model.stiffness, context.dt_ms
             )
-        more = _parabola(model, gain, context)
-        return np.array([*free, 0.0, 0.0, gain * reach, gain * push, zeroth, first, *slope, context.dt_ms, *more])
+            gain, unit = model.force, 1.0 / context.device.natural_frequency
+            first, p.zeroth = 0.0, 1.0
+            if params.kind == "transfer_function":
+                # the zero works on the output: the state is that of a unit numerator
+                gain = 1.0
+                first, p.zeroth = [0.0, 0.0, *params.numerator][-2:]
+            p.first, p.reach, p.push = first * unit, gain * reach, gain * push
+            if model.mass == 0.0:
+                p.slope_x = -p.zeroth * model.stiffness / model.damping
+                p.slope_reference = p.zeroth * gain / model.damping
+            else:
+                inverse = 1.0 / model.mass
+                p.slope_x = -p.first * model.stiffness * inverse
+                p.slope_v = p.zeroth - p.first * model.damping * inverse
+                p.slope_reference = p.first * gain * inverse
+        if context.analogue:
+            within = parabola(model.mass, model.damping, model.stiffness, context.dt_ms, gain)
+            p.rise_x, p.rise_v, p.bend_x, p.bend_v = within
+        return p
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Displacement, velocity, reference over the sample that begins, whether it has run."""
-        return np.zeros(6)
-
-    step = model_step
-
-
-def _parabola(model: Oscillator, gain: float, context: Context) -> tuple[float, float, float, float]:
-    """Return what displacement and velocity gain over a sample by the two derivatives of r; 0 when it is held."""
-    if not context.analogue:
-        return 0.0, 0.0, 0.0, 0.0
-    return parabola(model.mass, model.damping, model.stiffness, context.dt_ms, gain)
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Advance the model over the interval that ends now."""
+        if p.direct != 0.0:
+            before = x.displacement
+            x.displacement = p.static_gain * x.reference
+            x.velocity = (x.displacement - before) / p.dt_ms if s.started != 0.0 else 0.0
+            s.started = 1.0
+        else:
+            if s.started != 0.0:
+                # an analogue reference is a parabola through the start, middle and end of the interval, a held one level
+                half = s.middle - s.start
+                whole = s.end - s.start
+                rise = (4.0 * half - whole) / p.dt_ms
+                bend = 4.0 * (whole - 2.0 * half) / (p.dt_ms * p.dt_ms)
+                rest = p.static_gain * s.start
+                from_rest = s.x - rest
+                v = s.v
+                gained_x = p.rise_x * rise + p.bend_x * bend
+                gained_v = p.rise_v * rise + p.bend_v * bend
+                s.x = flush_tiny(p.phi11 * from_rest + p.phi12 * v + rest + p.reach * s.start + gained_x)
+                s.v = flush_tiny(p.phi21 * from_rest + p.phi22 * v + p.push * s.start + gained_v)
+            s.started = 1.0
+            s.start = x.reference
+            s.middle = x.middle
+            s.end = x.end
+            x.displacement = p.zeroth * s.x + p.first * s.v
+            x.velocity = p.slope_x * s.x + p.slope_v * s.v + p.slope_reference * s.start

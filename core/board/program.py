@@ -30,12 +30,16 @@ DONE, TRIPPED, WATCHED = range(3)
 """Why the loop returned."""
 
 
-@cache
+_compiled: dict[type[Block], Any] = {}
+
+
 def compiled(block: type[Block]) -> Any:
-    """Compile the step of a block to its C function."""
-    if block.Ports is BlockPorts:  # OLD NOTATION
-        return _old(block.step)
-    return compiled_step(block.step, block.Packed, block.State, block.Ports)
+    """Return the C function of the step of a block; it is compiled when it is asked for the first time."""
+    if block not in _compiled:
+        if block.Ports is BlockPorts:  # OLD NOTATION
+            return _old(block.step)
+        _compiled[block] = compiled_step(block.step, block.Packed, block.State, block.Ports)
+    return _compiled[block]
 
 
 # OLD NOTATION from here

@@ -5,81 +5,28 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 from pydantic import BaseModel
 
-from core.block import TICK, Block, Context, FloatArray, Port
+from core.block import Block, Context
 from core.diagnose.hypothesis import BankParams
-from core.diagnose.weights import likeliest
+from core.diagnose.weights import winner_of
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record, Records, Vector, tail, vector
 
 HELD = 20.0
 """Right verdicts in a row that count as recognised."""
 TOLERANCE = 1e-3
 STEPS = 64
-COUNT, EVERY, FACTORS = range(3)
-PROBABILITY, NIS, MASS, STIFFNESS, DAMPING, GAIN, OTHER, SET_STIFFNESS, SET_DAMPING = range(9)
-WINNER, TRUTH, CORRECT, FALSE, DELAY = range(9, 14)
-LAST_TRUTH, RUN, FOUND, SINCE, STEP, TOTAL, RIGHT, EXITS, NIS_SUM, NIS_COUNT, STARTED, WAS_RIGHT = range(12)
-DELAYS = 12
-CONFUSION = DELAYS + STEPS
+"""Steps whose delays are kept."""
 
 
-def score_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Name the winner and the truth, and count."""
-    n = int(p[COUNT])
-    winner = likeliest(w, io[PROBABILITY], n)
-    if not math.isfinite(w[io[PROBABILITY] + winner]):
-        winner = -1
-    truth = -1
-    stiffness = w[io[SET_STIFFNESS]]
-    damping = w[io[SET_DAMPING]]
-    for i in range(n):
-        a = FACTORS + 4 * i
-        if (
-            truth < 0
-            and w[io[OTHER]] == 0.0
-            and abs(w[io[MASS]] - p[a]) <= TOLERANCE * p[a]
-            and abs(w[io[STIFFNESS]] - stiffness * p[a + 1]) <= TOLERANCE * stiffness * p[a + 1]
-            and abs(w[io[DAMPING]] - damping * p[a + 2]) <= TOLERANCE * damping * p[a + 2]
-            and abs(w[io[GAIN]] - p[a + 3]) <= TOLERANCE * p[a + 3]
-        ):
-            truth = i
-    if s[STARTED] == 0.0 or truth != s[LAST_TRUTH]:
-        s[STARTED] = 1.0
-        s[LAST_TRUTH] = truth
-        s[SINCE] = w[TICK]
-        s[RUN] = 0.0
-        s[FOUND] = 0.0
-        s[WAS_RIGHT] = 0.0
-        if truth >= 0:  # what no hypothesis names is never found
-            s[STEP] += 1.0
-            if s[STEP] <= STEPS:
-                s[DELAYS + int(s[STEP]) - 1] = -1.0
-        w[io[DELAY]] = -1.0
-    s[TOTAL] += 1.0
-    right = winner == truth and truth >= 0
-    if right:
-        s[RIGHT] += 1.0
-        s[RUN] += 1.0
-        if s[FOUND] == 0.0 and s[RUN] >= HELD:
-            s[FOUND] = 1.0
-            delay = w[TICK] - (HELD - 1.0) * p[EVERY] - s[SINCE]
-            w[io[DELAY]] = delay
-            if s[STEP] <= STEPS:
-                s[DELAYS + int(s[STEP]) - 1] = delay
-    else:
-        s[RUN] = 0.0
-        if s[FOUND] != 0.0 and s[WAS_RIGHT] != 0.0:
-            s[EXITS] += 1.0
-    s[WAS_RIGHT] = 1.0 if right else 0.0
-    if truth >= 0 and winner >= 0:
-        s[CONFUSION + truth * n + winner] += 1.0
-        s[NIS_SUM] += w[io[NIS] + truth]
-        s[NIS_COUNT] += 1.0
-    w[io[WINNER]] = winner
-    w[io[TRUTH]] = truth
-    w[io[CORRECT]] = s[RIGHT] / s[TOTAL]
-    w[io[FALSE]] = s[EXITS]
+class Factors(Record):
+    """A hypothesis, as factors on the nominal device."""
+
+    mass: float
+    stiffness: float
+    damping: float
+    gain: float
 
 
 class Score(Block):
@@ -96,45 +43,125 @@ class Score(Block):
     """
 
     title = "Score"
-    inputs = (
-        Port("probability", "1", "probabilities of the bank"),
-        Port("nis", "1", "normalised residuals of the bank"),
-        Port("mass_scale", "1", "true mass over nominal", source="effects.mass_scale"),
-        Port("stiffness_scale", "1", "true stiffness over nominal", source="effects.stiffness_scale"),
-        Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
-        Port("drive_gain", "1", "voltage at the comb over the voltage applied", source="effects.drive_gain"),
-        Port("other", "1", "not zero while no hypothesis can be true", source="effects.other"),
-        Port("set_stiffness", "1", "stiffness without any fault over nominal", source="environment.stiffness_scale"),
-        Port("set_damping", "1", "damping without any fault over nominal", source="environment.damping_set"),
-    )
-    outputs = (
-        Port("winner", "1", "index of the most probable hypothesis, -1 when probabilities are no numbers"),
-        Port("truth", "1", "index of the hypothesis that is true, -1 for none"),
-    )
-    taps = (
-        Port("correct_fraction", "1", "share of samples with the right winner"),
-        Port("false_switches", "1", "exits from the truth after it was found"),
-        Port("delay", "samples", "samples it took to find the present truth, -1 while it is not found"),
-    )
     Params = BankParams
 
+    class Packed(Record):
+        """Number of hypotheses, ticks between two verdicts, the hypotheses."""
+
+        count: float
+        every: float
+        hypotheses: Records[Factors] = tail()
+
+    class State(Record):
+        """The present truth and how far it is found, counters, delays of the steps, confusion matrix row by row."""
+
+        truth: float
+        run: float
+        found: float
+        since: float
+        steps: float
+        total: float
+        right: float
+        exits: float
+        nis_sum: float
+        nis_count: float
+        started: float
+        was_right: float
+        delays: Vector = vector(STEPS)
+        confusion: Vector = tail()
+
+    class Ports(BlockPorts):
+        """What the bank says and what is so; the verdict."""
+
+        probability: Vector = reads("", "1", "probabilities of the bank")
+        nis: Vector = reads("", "1", "normalised residuals of the bank")
+        mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal")
+        stiffness_scale: float = reads("effects.stiffness_scale", "1", "true stiffness over nominal")
+        damping_scale: float = reads("effects.damping_scale", "1", "true damping over nominal")
+        drive_gain: float = reads("effects.drive_gain", "1", "voltage at the comb over the voltage applied")
+        other: float = reads("effects.other", "1", "not zero while no hypothesis can be true")
+        set_stiffness: float = reads("environment.stiffness_scale", "1", "stiffness without any fault over nominal")
+        set_damping: float = reads("environment.damping_set", "1", "damping without any fault over nominal")
+        winner: float = output("1", "index of the most probable hypothesis, -1 when probabilities are no numbers")
+        truth: float = output("1", "index of the hypothesis that is true, -1 for none")
+        correct_fraction: float = tap("1", "share of samples with the right winner")
+        false_switches: float = tap("1", "exits from the truth after it was found")
+        delay: float = tap("samples", "samples it took to find the present truth, -1 while it is not found")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the ticks between two verdicts and the factors of the hypotheses."""
-        factors = [
-            value for item in params.hypotheses for value in (item.mass, item.stiffness, item.damping, item.gain)
-        ]
-        return np.array([float(len(params.hypotheses)), context.every, *factors])
+        p = cls.Packed.blank(len(params.hypotheses))
+        p.count, p.every = len(params.hypotheses), context.every
+        for factors, item in zip(p.hypotheses, params.hypotheses, strict=True):
+            factors.mass, factors.stiffness = item.mass, item.stiffness
+            factors.damping, factors.gain = item.damping, item.gain
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Counters, delays of the steps, confusion matrix."""
-        n = len(params.hypotheses)
-        start = np.zeros(CONFUSION + n * n)
-        start[LAST_TRUTH] = -2.0
-        return start
+    def state(cls, params: Any, context: Context) -> State:
+        """Nothing counted."""
+        s = cls.State.zeros(len(params.hypotheses) ** 2)
+        s.truth = -2.0
+        return s
 
-    step = score_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Name the winner and the truth, and count."""
+        n = int(p.count)
+        winner = winner_of(x.probability, n)
+        if not math.isfinite(x.probability[winner]):
+            winner = -1
+        truth = -1
+        stiffness = x.set_stiffness
+        damping = x.set_damping
+        for i in range(n):
+            h = p.hypotheses[i]
+            if (
+                truth < 0
+                and x.other == 0.0
+                and abs(x.mass_scale - h.mass) <= TOLERANCE * h.mass
+                and abs(x.stiffness_scale - stiffness * h.stiffness) <= TOLERANCE * stiffness * h.stiffness
+                and abs(x.damping_scale - damping * h.damping) <= TOLERANCE * damping * h.damping
+                and abs(x.drive_gain - h.gain) <= TOLERANCE * h.gain
+            ):
+                truth = i
+        if s.started == 0.0 or truth != s.truth:
+            s.started = 1.0
+            s.truth = truth
+            s.since = x.tick
+            s.run = 0.0
+            s.found = 0.0
+            s.was_right = 0.0
+            if truth >= 0:  # what no hypothesis names is never found
+                s.steps += 1.0
+                if s.steps <= STEPS:
+                    s.delays[int(s.steps) - 1] = -1.0
+            x.delay = -1.0
+        s.total += 1.0
+        right = winner == truth and truth >= 0
+        if right:
+            s.right += 1.0
+            s.run += 1.0
+            if s.found == 0.0 and s.run >= HELD:
+                s.found = 1.0
+                delay = x.tick - (HELD - 1.0) * p.every - s.since
+                x.delay = delay
+                if s.steps <= STEPS:
+                    s.delays[int(s.steps) - 1] = delay
+        else:
+            s.run = 0.0
+            if s.found != 0.0 and s.was_right != 0.0:
+                s.exits += 1.0
+        s.was_right = 1.0 if right else 0.0
+        if truth >= 0 and winner >= 0:
+            s.confusion[truth * n + winner] += 1.0
+            s.nis_sum += x.nis[truth]
+            s.nis_count += 1.0
+        x.winner = winner
+        x.truth = truth
+        x.correct_fraction = s.right / s.total
+        x.false_switches = s.exits
 
 
 class Scores(BaseModel):
@@ -151,19 +178,18 @@ class Scores(BaseModel):
     confusion: list[list[int]]
 
 
-def read(state: FloatArray, names: list[str], winner: int) -> Scores:
+def read(s: Score.State, names: list[str], winner: int) -> Scores:
     """Read the counters of a score block."""
     n = len(names)
-    steps = min(int(state[STEP]), STEPS)
-    delays = [None if value < 0 else int(value) for value in state[DELAYS : DELAYS + steps]]
+    delays = s.delays[: min(int(s.steps), STEPS)]
     return Scores(
         names=names,
         winner=winner,
-        truth=int(state[LAST_TRUTH]) if state[STARTED] else -1,
-        correct_fraction=float(state[RIGHT] / max(state[TOTAL], 1.0)),
-        false_switches=int(state[EXITS]),
-        delays=delays,
-        since_tick=int(state[SINCE]),
-        nis=float(state[NIS_SUM] / state[NIS_COUNT]) if state[NIS_COUNT] else None,
-        confusion=state[CONFUSION : CONFUSION + n * n].reshape(n, n).astype(int).tolist(),
+        truth=int(s.truth) if s.started else -1,
+        correct_fraction=float(s.right / max(s.total, 1.0)),
+        false_switches=int(s.exits),
+        delays=[None if value < 0 else int(value) for value in delays],
+        since_tick=int(s.since),
+        nis=float(s.nis_sum / s.nis_count) if s.nis_count else None,
+        confusion=s.confusion.reshape(n, n).astype(int).tolist(),
     )
