@@ -86,7 +86,7 @@ def _digest_function(function: FunctionType, digest: Any, seen: dict[int, int]) 
         digest.update(f"seen {seen[id(function)]}".encode())
         return
     seen[id(function)] = len(seen)
-    _digest_code(function.__code__, digest)
+    _digest_code(function.__code__, digest, function.__doc__)
     names, globals_ = _names(function.__code__), _globals(function.__code__)
     for name in globals_:
         if name in function.__globals__:
@@ -110,13 +110,13 @@ def _digest_value(name: str, value: Any, names: tuple[str, ...], digest: Any, se
         digest.update(repr(value).encode())
 
 
-def _digest_code(code: CodeType, digest: Any) -> None:
+def _digest_code(code: CodeType, digest: Any, docstring: str | None = None) -> None:
     digest.update(code.co_code)
     digest.update(repr((code.co_names, code.co_varnames, code.co_freevars, code.co_argcount)).encode())
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
             _digest_code(constant, digest)
-        else:
+        elif constant != docstring:
             digest.update(repr(constant).encode())
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
 from core.block import Block, BlockParams, Context, parameter
 from core.elementary import floor
 from core.kernel import kernel

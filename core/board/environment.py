@@ -23,7 +23,7 @@ from core.record import Record
 
 
 class Film(Record):
-    """The gas film of a device, as `core.device.environment.damping_scale` takes it; the last is the structural share."""
+    """The gas film of a device, as ``core.device.environment.damping_scale`` takes it, and the structural share."""
 
     plan_um2: float
     film_um: float
@@ -99,7 +99,7 @@ class Environment(Block):
         age_weeks: float = parameter(0.0, "age of the device", "week", ge=0, le=52, equation="3.1.3.2")
 
     class Packed(Record):
-        """Air that is set, adhesion, friction, age and the share of the modulus it leaves, damping without a leak, film."""
+        """Air, adhesion, friction, age and the share of the modulus it leaves, damping without a leak, film."""
 
         pressure_pa: float
         temperature_k: float

@@ -172,7 +172,7 @@ class Model(Block):
             s.started = 1.0
         else:
             if s.started != 0.0:
-                # an analogue reference is a parabola through the start, middle and end of the interval, a held one level
+                # an analogue reference is a parabola through the start, middle and end of the interval
                 half = s.middle - s.start
                 whole = s.end - s.start
                 rise = (4.0 * half - whole) / p.dt_ms

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
@@ -58,6 +57,7 @@ class _Apart(Compiler):
 @cache
 def _old(step: Any) -> Any:
     from numba.core.ccallback import CFunc
+
     from core.kernel_cache import KernelCache
 
     options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
