@@ -27,7 +27,7 @@ CHUNK = 512
 """Most ticks of one call of ``advance``."""
 
 
-COPIED = ("faults", "pending", "trip", "wiring", "folds", "used", "_observer")
+COPIED = ("pending", "trip", "wiring", "folds", "used", "_observer")
 SHARED = ("spec", "base", "compiled", "tick")
 """What of a board is its own in every copy, and what never changes in place."""
 
@@ -58,7 +58,6 @@ class Board:
         self.spec: Spec = parse(document)
         self.base: Document = copy.deepcopy(self.spec.document)
         self.compiled = compiled
-        self.faults: dict[str, BlockParams] = {}
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
         self.log = Log()
@@ -76,6 +75,11 @@ class Board:
     def dt_ms(self) -> float:
         """Sample interval, ms."""
         return self.spec.dt_ms
+
+    @property
+    def faults(self) -> dict[str, BlockParams]:
+        """The faults that act, by name."""
+        return self.spec.faults
 
     @property
     def signals(self) -> SignalTable:

@@ -9,11 +9,10 @@ from pydantic import ValidationError
 
 from core import registry
 from core.block import BlockParams
-from core.board import program
 from core.board.commands import Command, Heal, Inject, Set, Switch
-from core.board.document import as_written, with_values
-from core.board.spec import Section, Spec, parse
-from core.board.wiring import Instance, Wiring, engage, wire
+from core.board.document import as_written
+from core.board.spec import Section, Spec
+from core.board.wiring import Wiring, change, engage, wire
 from core.errors import InputError, from_validation, short, unknown
 from core.faults.fault import FaultParams
 from core.format import format_short
@@ -106,8 +105,7 @@ def inject(board: Board, command: Inject) -> tuple[Any, Any]:
             "conflict",
         )
     old = current.model_dump() if current is not None else None
-    board.faults[command.fault] = params
-    _repack(board, f"faults.{command.fault}", params)
+    _change(board, board.spec.with_faults({**board.faults, command.fault: params}))
     return old, params.model_dump()
 
 
@@ -121,16 +119,14 @@ def heal(board: Board, command: Heal) -> tuple[Any, Any]:
         present = ", ".join(board.faults) or "none"
         raise InputError(f"{absent[0]} is not there to heal; present: {present}", "faults", code="conflict")
     old = {name: board.faults[name].model_dump() for name in names}
-    for name in names:
-        del board.faults[name]
-        _repack(board, f"faults.{name}", registry.block("faults", name).Params())
+    _change(board, board.spec.with_faults({k: v for k, v in board.faults.items() if k not in names}))
     return old, None
 
 
 def set_values(board: Board, values: dict[str, Any]) -> tuple[Any, Any]:
     """Change parameters by path, all in this tick."""
     spec, old, new = _changed(board.spec, values)
-    _rewire(board, spec)
+    _change(board, spec)
     return old, new
 
 
@@ -140,8 +136,8 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
     old = board.spec.active
     if name == old and not command.cold:
         raise InputError(f"{name} drives already", "controller", "choose another, or a cold start", "conflict")
-    spec = parse(with_values(board.spec.document, {"controller.kind": name}))
-    _rewire(board, spec)
+    spec = board.spec.changed({"controller.kind": name})
+    _change(board, spec)
     ran_away = not np.all(np.isfinite(board.wiring.state_of(name)))
     if ran_away:  # nothing in shadow trips the board, and no number comes of what is none
         board._note("board", "warning", f"{name} had run away in shadow, so it starts anew")
@@ -162,7 +158,7 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
     if board.trip is None:
         raise InputError("the board has not tripped", "kind", code="conflict")
     old = board.trip.model_dump()
-    fresh = wire(board.spec, board.faults)
+    fresh = wire(board.spec)
     keep = [instance.key for instance in fresh.instances if instance.key.endswith(".score")]
     for key in keep:
         fresh.state_of(key)[:] = board.wiring.state_of(key)
@@ -207,7 +203,7 @@ def _same_fault(first: BlockParams, second: BlockParams) -> bool:
 
 def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:
     """Return the new bench with old and new values, or refuse what is not tunable while running."""
-    new = parse(with_values(spec.document, values))
+    new = spec.changed(values)
     try:
         _check_live(spec, new)
     except InputError as error:
@@ -237,6 +233,8 @@ def _check_live(spec: Spec, new: Spec) -> None:
 
 
 def _check_section(path: str, old: Section, new: Section) -> None:
+    if old is new:
+        return
     if old.every != new.every:
         raise _not_live(f"{path}.every")
     if old.block is not new.block:
@@ -272,31 +270,21 @@ def _get(spec: Spec, path: str) -> Any:
     return section.block.name if leaf in ("kind", "model") else getattr(section.params, leaf, None)
 
 
-def _repack(board: Board, key: str, params: BlockParams) -> None:
-    """Replace the packed parameters of one instance."""
-    wiring = board.wiring
-    row = wiring.row(key)
-    old = wiring.instances[row]
-    wiring.instances = [*wiring.instances]
-    wiring.instances[row] = Instance(old.key, old.prefix, old.block, params, old.every)
-    packed = old.block.packed(params, board.spec.context(old.every))
-    start = wiring.table[row, program.P_OFFSET]
-    wiring.p[start : start + len(packed)] = packed
+def _change(board: Board, spec: Spec) -> None:
+    """Put another bench of the same signals on the board; what is alike keeps its state."""
+    if not change(board.wiring, board.spec, spec):
+        board.wiring = _exchanged(board.wiring, spec)
+    board.spec = spec
     board._link()
 
 
-def _rewire(board: Board, spec: Spec) -> None:
-    """Put another bench of the same signals on the board; what is alike keeps its state."""
-    old = board.wiring
-    new: Wiring = wire(spec, board.faults, (board.spec, old))
+def _exchanged(old: Wiring, spec: Spec) -> Wiring:
+    """Return the wiring of a bench in which a block has been exchanged; all others go on from where they are."""
+    new = wire(spec, old)
     assert new.signals.names == old.signals.names
     new.w[:] = old.w
     engage(spec, new.index, new.w)
     for before, after in zip(old.instances, new.instances, strict=True):
         if before.block is after.block:
-            kept, fresh = old.state_of(before.key), new.state_of(after.key)
-            if len(kept) == len(fresh):
-                fresh[:] = kept
-    board.spec = spec
-    board.wiring = new
-    board._link()
+            new.state_of(after.key)[:] = old.state_of(before.key)
+    return new

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from typing import Any
 
 from pydantic import BaseModel, Field, ValidationError
 
 from core import registry
 from core.block import Block, BlockParams, Context, Oscillator
-from core.board.document import IDENTIFIER, SECTIONS, Document, as_written, normal_form, written
+from core.board.document import (
+    IDENTIFIER,
+    SECTIONS,
+    Document,
+    as_written,
+    completed,
+    normal_form,
+    written,
+    written_over,
+)
 from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
@@ -56,7 +65,7 @@ class Spec:
     """A bench, ready to be wired.
 
     ``document`` is what it was made from, in normal form: the parameters of the controller and the sensor in use
-    stand under ``controllers`` and ``sensors``.
+    stand under ``controllers`` and ``sensors``. ``faults`` are those that act.
     """
 
     document: Document
@@ -74,6 +83,7 @@ class Spec:
     controllers: dict[str, Section]
     identifiers: dict[str, Section]
     diagnosers: dict[str, Section]
+    faults: dict[str, BlockParams] = field(default_factory=dict)
 
     @property
     def dt_ms(self) -> float:
@@ -84,6 +94,11 @@ class Spec:
     def seed(self) -> int:
         """Seed of all noise."""
         return self.frame.seed
+
+    @property
+    def nominal(self) -> Oscillator:
+        """The nominal device."""
+        return _oscillator(self.device)
 
     def turns(self, section: Section) -> int:
         """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
@@ -109,7 +124,7 @@ class Spec:
         return replace(self._known(every), sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:
-        nominal = self.device.oscillator()
+        nominal = self.nominal
         return Context(
             dt_ms=self.dt_ms * every,
             every=every,
@@ -126,6 +141,38 @@ class Spec:
             sensors={name: section.params for name, section in self.sensors.items()},
         )
 
+    def changed(self, values: dict[str, Any]) -> Spec:
+        """Return this bench with dotted paths written over; sections that stay as they are are not checked again.
+
+        Raises
+        ------
+        InputError
+            As ``parse``.
+        """
+        document = written_over(self.document, values)
+        try:
+            spec = replace(_parse(completed(document), self), faults=self.faults)
+        except InputError as error:
+            raise as_written(error, document, written(document)) from None
+        if all(getattr(spec, name) is getattr(self, name) for name in OF_CONTEXT):
+            vars(spec)["_contexts"] = self._contexts
+        return spec
+
+    def with_faults(self, faults: dict[str, BlockParams]) -> Spec:
+        """Return this bench with other faults."""
+        spec = replace(self, faults=faults)
+        vars(spec)["_contexts"] = self._contexts
+        return spec
+
+
+@lru_cache(maxsize=64)
+def _oscillator(device: Device) -> Oscillator:
+    return device.oscillator()
+
+
+OF_CONTEXT = ("frame", "device", "environment", "drive", "reference", "model", "measuring", "sensors")
+"""Parts of a bench that blocks may know of."""
+
 
 def parse(document: Document) -> Spec:
     """Check a document and return the bench it describes.
@@ -137,17 +184,84 @@ def parse(document: Document) -> Spec:
     """
     doc = normal_form(document)
     try:
-        return _parse(doc)
+        return _parse(doc, None)
     except InputError as error:
         raise as_written(error, document, written(document)) from None
 
 
-def _parse(doc: Document) -> Spec:
-    frame = _frame({key: doc[key] for key in doc if key not in SECTIONS})
+def _parse(doc: Document, before: Spec | None) -> Spec:
+    """Check a document in normal form; sections whose tables are those of another bench are taken from there."""
+    known = before.document if before is not None else {}
+
+    def same(*keys: str) -> bool:
+        return before is not None and all(doc.get(key) is known.get(key) for key in keys)
+
+    loose = [key for key in doc if key not in SECTIONS]
+    if before is not None and same(*loose) and loose == [key for key in known if key not in SECTIONS]:
+        frame = before.frame
+    else:
+        frame = _frame({key: doc[key] for key in loose})
     identifiers, diagnosers = doc.get("identifiers", {}), doc.get("diagnosers", {})
     for name in identifiers:
         if name in diagnosers:
             raise InputError("is the name of a diagnoser as well", f"identifiers.{name}", "choose another")
+    if before is not None and same("device", "plant", "drive"):
+        device, plant, drive = before.device, before.plant, before.drive
+    else:
+        device, plant, drive = _driven(doc, before if same("device") else None)
+
+    def alone(key: str, block: type[Block]) -> Section:
+        kept: Section | None = getattr(before, key) if same(key) else None
+        return kept or Section(block, _params(block, doc.get(key, {}), key))
+
+    def all_of(key: str, family: str) -> dict[str, Section]:
+        kept: dict[str, Section] = getattr(before, key, {})
+        if same(key) and same("device", "plant", "model"):
+            return kept
+        tables, old = doc.get(key, {}), known.get(key, {})
+        for name in tables:
+            registry.block(family, name, key)
+        return {
+            name: kept[name]
+            if name in kept and tables.get(name) is old.get(name)
+            else _section(family, name, tables.get(name, {}), f"{key}.{name}")
+            for name in registry.blocks(family)
+        }
+
+    def chosen(key: str, family: str) -> dict[str, Section]:
+        kept: dict[str, Section] = getattr(before, key, {})
+        tables, old = doc.get(key, {}), known.get(key, {})
+        return {
+            name: kept[name] if table is old.get(name) else _named(family, key, name, table)
+            for name, table in tables.items()
+        }
+
+    spec = Spec(
+        document=doc,
+        frame=frame,
+        device=device,
+        environment=alone("environment", Environment),
+        plant=plant,
+        reference=before.reference
+        if before is not None and same("reference")
+        else _chosen("reference", doc["reference"], "reference"),
+        model=alone("model", Model),
+        drive=drive,
+        guard=alone("guard", Guard),
+        measuring=_measuring(doc["sensor"]["kind"]),
+        sensors=all_of("sensors", "sense"),
+        active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
+        controllers=all_of("controllers", "control"),
+        identifiers=chosen("identifiers", "identify"),
+        diagnosers=chosen("diagnosers", "diagnose"),
+    )
+    if before is None or [*before.identifiers, *before.diagnosers] != [*identifiers, *diagnosers]:
+        _named_apart(spec)
+    return _suited(spec)
+
+
+def _driven(doc: Document, before: Spec | None) -> tuple[Device, Section, Section]:
+    """Return device, plant and drive: how the drive works may be said at the plant, and a gap there is the device's."""
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
     if "drive" in plant:
@@ -157,37 +271,21 @@ def _parse(doc: Document) -> Spec:
             raise InputError(text, "drive.kind", "leave one of them out")
     device = build_device(doc["device"])
     usual = "transfer_function" if device.transfer_function is not None else "linear"
-    plant_kind = plant.pop("model", usual)
-    doc["plant"].setdefault("model", usual)
-    chosen = _section("plant", plant_kind, plant, "plant", "model")
-    gap = getattr(chosen.params, "gap_um", None)
-    if gap is not None:  # one comb, one gap: of the force, of what is sensed, of what is believed
+    if "model" not in plant:
+        doc["plant"] = {**doc["plant"], "model": usual}
+    section = _section("plant", plant.pop("model", usual), plant, "plant", "model")
+    gap = getattr(section.params, "gap_um", None)
+    if gap is not None:  # one comb, one gap: of the force, of the sensors, of the model a diagnoser believes in
         device = device.model_copy(update={"finger_gap_um": gap})
-    spec = Spec(
-        document=doc,
-        frame=frame,
-        device=device,
-        environment=Section(Environment, _params(Environment, doc.get("environment", {}), "environment")),
-        plant=chosen,
-        reference=_chosen("reference", doc["reference"], "reference"),
-        model=Section(Model, _params(Model, doc.get("model", {}), "model")),
-        drive=Section(Drive, _params(Drive, drive, "drive")),
-        guard=Section(Guard, _params(Guard, doc.get("guard", {}), "guard")),
-        measuring=_measuring(doc["sensor"]["kind"]),
-        sensors=_shadowed("sense", "sensors", doc),
-        active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
-        controllers=_shadowed("control", "controllers", doc),
-        identifiers={name: _named("identify", "identifiers", name, table) for name, table in identifiers.items()},
-        diagnosers={name: _named("diagnose", "diagnosers", name, table) for name, table in diagnosers.items()},
-    )
-    _named_apart(spec)
-    return _suited(spec)
+    if before is not None and before.device == device:
+        device = before.device
+    return device, section, Section(Drive, _params(Drive, drive, "drive"))
 
 
 def _named_apart(spec: Spec) -> None:
     """Refuse identifiers and diagnosers by the name of another block: signals of both would have the same names."""
     chosen = [(key, name) for key in ("identifiers", "diagnosers") for name in getattr(spec, key)]
-    others = instances(replace(spec, identifiers={}, diagnosers={}), {}) if chosen else []
+    others = instances(replace(spec, identifiers={}, diagnosers={})) if chosen else []
     taken = {*CLOCK, *(other.prefix.split(".")[0] for other in others)}
     for key, name in chosen:
         if name in taken:
@@ -197,12 +295,12 @@ def _named_apart(spec: Spec) -> None:
 
 def _suited(spec: Spec) -> Spec:
     """Leave out controllers and sensors that are not for this device; refuse what was asked for and is not."""
-    nominal = spec.device.oscillator()
+    nominal = spec.nominal
     pair = nominal, Model.oscillator(spec.model.params, nominal)
-    for field, grows in zip(("device.transfer_function", "model.denominator"), pair, strict=True):
+    for path, grows in zip(("device.transfer_function", "model.denominator"), pair, strict=True):
         if slowest_pole(grows) * spec.dt_ms > MOST_GROWTH:
             text = f"grows by more than e^{MOST_GROWTH:g} from one sample to the next"
-            raise InputError(text, field, "sample faster, or slow it down")
+            raise InputError(text, path, "sample faster, or slow it down")
     fields = {
         "plant.model": spec.plant.block,
         "controller.kind": spec.controllers[spec.active].block,
@@ -213,15 +311,19 @@ def _suited(spec: Spec) -> Spec:
         raise InputError(text, "drive.kind", f"hold the drive, or let {OPEN_LOOP} drive")
     for key in ("identifiers", "diagnosers"):
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
-    for field, block in fields.items():
+    for path, block in fields.items():
         reason = block.unsuited(*pair)
         if reason:
-            raise InputError(f"{block.name}: {reason}", field)
-    return replace(spec, controllers=_for(pair, spec.controllers), sensors=_for(pair, spec.sensors))
+            raise InputError(f"{block.name}: {reason}", path)
+    controllers, sensors = _for(pair, spec.controllers), _for(pair, spec.sensors)
+    if controllers is spec.controllers and sensors is spec.sensors:
+        return spec
+    return replace(spec, controllers=controllers, sensors=sensors)
 
 
 def _for(pair: tuple[Oscillator, Oscillator], sections: dict[str, Section]) -> dict[str, Section]:
-    return {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
+    suited = {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
+    return sections if len(suited) == len(sections) else suited
 
 
 def _frame(values: Document) -> Frame:
@@ -244,14 +346,6 @@ def _section(family: str, kind: object, table: Document, field: str, key: str = 
     if not isinstance(every, int) or isinstance(every, bool) or not 1 <= every <= 10000:
         raise InputError(f"must be a whole number from 1 to 10000, got {short(every)}", f"{field}.every")
     return Section(block, _params(block, rest, field), every)
-
-
-def _shadowed(family: str, key: str, doc: Document) -> dict[str, Section]:
-    """Return every block of a family with its parameters: all of them run."""
-    tables = doc.get(key, {})
-    for name in tables:
-        registry.block(family, name, key)
-    return {name: _section(family, name, tables.get(name, {}), f"{key}.{name}") for name in registry.blocks(family)}
 
 
 def _measuring(kind: object) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +33,7 @@ NOTHING = "@nothing"
 """A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
 
 
-@dataclass(frozen=True)
-class Instance:
+class Instance(NamedTuple):
     """One block on the board: ``prefix`` is the first part of its signals' names."""
 
     key: str
@@ -125,7 +124,7 @@ class Wiring:
         return idle[self.tap_rows]
 
 
-def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
+def instances(spec: Spec) -> list[Instance]:
     """Return the blocks of a bench in the order of a tick.
 
     The plant comes first: it integrates the sample that ends now, under the voltage and the effects that were held
@@ -133,29 +132,41 @@ def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
     next.
     """
 
-    def own(key: str, section: Any) -> Instance:
+    def usual(key: str, section: Any) -> Instance:
         return Instance(key, key, section.block, section.params, section.every)
 
     def waiting(key: str, section: Any) -> Instance:
         return Instance(key, key, section.block, section.params, spec.turns(section))
 
-    order = [own("plant", spec.plant), own("environment", spec.environment)]
+    order = [usual("plant", spec.plant), usual("environment", spec.environment)]
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
     for name, block in registry.blocks("faults").items():
-        order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
+        order.append(Instance(f"faults.{name}", f"faults.{name}", block, spec.faults.get(name) or _usual(block)))
     # first what only detects, then what recovers a displacement from it
     for recovers in (False, True):
-        order += [own(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers]
+        order += [
+            usual(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers
+        ]
     order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
     order += [waiting(name, section) for name, section in spec.identifiers.items()]
     for name, section in spec.diagnosers.items():
         order.append(waiting(name, section))
         if scored(section.block):
             order.append(Instance(f"{name}.score", name, Score, _scored(section.params), spec.turns(section)))
-    order += [own("reference", spec.reference), own("model", spec.model)]
-    order += [own(name, section) for name, section in spec.controllers.items()]
-    order += [own("drive", spec.drive), own("guard", spec.guard)]
+    order += [usual("reference", spec.reference), usual("model", spec.model)]
+    order += [usual(name, section) for name, section in spec.controllers.items()]
+    order += [usual("drive", spec.drive), usual("guard", spec.guard)]
     return order
+
+
+_USUAL: dict[type[Block], BlockParams] = {}
+
+
+def _usual(block: type[Block]) -> BlockParams:
+    """Return the parameters of a fault that is not there, always the same ones."""
+    if block not in _USUAL:
+        _USUAL[block] = block.Params()
+    return _USUAL[block]
 
 
 def recovered(block: type[Block]) -> bool:
@@ -172,38 +183,29 @@ def _scored(params: BlockParams) -> BlockParams:
     return Score.Params.model_construct(hypotheses=getattr(params, "hypotheses"))  # noqa: B009
 
 
-def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Spec, Wiring] | None = None) -> Wiring:
+def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
     """Lay out the arrays of a bench and connect its ports.
 
     Parameters
     ----------
     spec : Spec
-        The bench.
-    faults : dict
-        The faults that act, by name.
-    now : tuple, optional
-        A bench of the same signals and its wiring: what is alike is taken from there.
+        The bench, with the faults that act.
+    like : Wiring, optional
+        Of a bench with the same signals.
     """
-    order = instances(spec, faults or {})
-    before, like = now or (None, None)
-    if like is not None and [one.block for one in order] == [one.block for one in like.instances]:
+    order = instances(spec)
+    if like is not None and [entry.block for entry in order] == [entry.block for entry in like.instances]:
         signals, index, size = like.signals, like.index, len(like.w)
     else:
         signals, index, size = _laid_out(spec, order)
-        like = None
-    alike = like is not None and before is not None and spec.context() == before.context()
     table = np.zeros((len(order), program.COLUMNS), dtype=np.int64)
     p_parts, s_parts, io_parts = [], [], []
     p_size = s_size = io_size = 0
     for row, instance in enumerate(order):
-        if alike and like is not None and instance == like.instances[row]:
-            p, s = like.packed(row), like.state_of(instance.key)
-        else:
-            context = spec.context(instance.every)
-            p, s = instance.block.packed(instance.params, context), instance.block.initial(instance.params, context)
+        context = spec.context(instance.every)
+        p, s = instance.block.packed(instance.params, context), instance.block.initial(instance.params, context)
         io = ports_of(spec, instance, index)
-        every = 1 if instance.block.every_tick else instance.every
-        table[row, 1:] = (p_size, s_size, io_size, every)
+        table[row, 1:] = (p_size, s_size, io_size, _every(instance))
         p_parts.append(p)
         s_parts.append(s)
         io_parts.append(io)
@@ -212,7 +214,6 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Sp
     for name, value in Effects.neutral().items():
         w[index[f"effects.{name}"]] = value
     engage(spec, index, w)
-    read = needed(spec)
     rows = {instance.key: row for row, instance in enumerate(order)}
     return Wiring(
         instances=order,
@@ -223,10 +224,54 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Sp
         s=np.concatenate(s_parts),
         w=w,
         io=np.concatenate(io_parts),
-        unread=[i.key in spec.sensors and issubclass(i.block, Sensor) and i.key not in read for i in order],
+        unread=unread(spec, order),
         rows=rows,
         tap_rows=np.array([rows[signal.block] for signal in signals.taps], dtype=np.int64),
     )
+
+
+def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
+    """Make the wiring of one bench that of another with the same blocks, in place; say whether it could.
+
+    Only rows whose parameters or context differ are packed again; states go on. When a block refuses its parameters
+    nothing has changed.
+
+    Raises
+    ------
+    InputError
+        As ``Block.pack``.
+    """
+    order = instances(spec)
+    if [entry.block for entry in order] != [entry.block for entry in wiring.instances]:
+        return False
+    same_context = {every: spec.context(every) == before.context(every) for every in {entry.every for entry in order}}
+    packed = {
+        row: new.block.packed(new.params, spec.context(new.every))
+        for row, (new, old) in enumerate(zip(order, wiring.instances, strict=True))
+        if new != old or not same_context[new.every]
+    }
+    for row, numbers in packed.items():
+        wiring.packed(row)[:] = numbers
+        wiring.table[row, program.EVERY] = _every(order[row])
+    wiring.instances = order
+    if spec.active != before.active or spec.measuring != before.measuring:
+        for row, instance in enumerate(order):
+            if any(port.source.startswith("@") for port in instance.block.inputs):
+                wiring.ports(row)[:] = ports_of(spec, instance, wiring.index)
+        engage(spec, wiring.index, wiring.w)
+    if spec.sensors is not before.sensors or spec.measuring != before.measuring:
+        wiring.unread = unread(spec, order)
+    return True
+
+
+def _every(instance: Instance) -> int:
+    return 1 if instance.block.every_tick else instance.every
+
+
+def unread(spec: Spec, order: list[Instance]) -> list[bool]:
+    """Return of every row whether it is a sensor that nobody reads."""
+    read = needed(spec)
+    return [entry.key in spec.sensors and issubclass(entry.block, Sensor) and entry.key not in read for entry in order]
 
 
 def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str, int], int]:
