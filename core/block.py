@@ -211,6 +211,11 @@ class Block:
         return ""
 
     @classmethod
+    def rests(cls, params: Any) -> bool:  # noqa: ARG003 (most blocks never rest)
+        """Say whether the block has nothing to do with these parameters, so that it need not run."""
+        return False
+
+    @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:  # noqa: ARG003 (most blocks take it as it is)
         """Say what the block takes the voltage for and loses by it under a tone; nothing when that is little."""
         return ""

@@ -24,7 +24,7 @@ def main() -> None:
         print(".", end="", flush=True)
     for family in registry.FAMILIES:
         for block in registry.blocks(family).values():
-            program.compiled(block)
+            program.address(block)
         print(".", end="", flush=True)
     print(f" {time.monotonic() - start:.1f} s")
 

@@ -172,7 +172,7 @@ class Board:
         self._idle = wiring.idle(running)
         if self.compiled:
             blocks = [wiring.instances[row].block for row in running]
-            self._table[:, program.ADDRESS] = [program.compiled(block).address for block in blocks]
+            self._table[:, program.ADDRESS] = [program.address(block) for block in blocks]
         else:
             self._steps = [wiring.bound(row) for row in running]
 

@@ -29,16 +29,19 @@ DONE, TRIPPED, WATCHED = range(3)
 """Why the loop returned."""
 
 
-_compiled: dict[type[Block], Any] = {}
+_addresses: dict[type[Block], int] = {}
 
 
-def compiled(block: type[Block]) -> Any:
-    """Return the C function of the step of a block; it is compiled when it is asked for the first time."""
-    if block not in _compiled:
-        if block.Ports is BlockPorts:  # OLD NOTATION
-            return _old(block.step)
-        _compiled[block] = compiled_step(block.step, block.Packed, block.State, block.Ports)
-    return _compiled[block]
+def address(block: type[Block]) -> int:
+    """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
+    found = _addresses.get(block)
+    if found is None:
+        if block.Ports is BlockPorts and hasattr(block, "inputs") and block.step.__code__.co_argcount == 4:  # OLD NOTATION
+            found = _old(block.step).address
+        else:
+            found = compiled_step(block.step, block.Packed, block.State, block.Ports).address
+        _addresses[block] = found
+    return found
 
 
 # OLD NOTATION from here

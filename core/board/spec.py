@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 from pydantic import BaseModel, Field, ValidationError
@@ -95,10 +95,10 @@ class Spec:
         """Seed of all noise."""
         return self.frame.seed
 
-    @property
+    @cached_property
     def nominal(self) -> Oscillator:
         """The nominal device."""
-        return _oscillator(self.device)
+        return self.device.oscillator()
 
     def turns(self, section: Section) -> int:
         """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
@@ -151,7 +151,7 @@ class Spec:
         """
         document = written_over(self.document, values)
         try:
-            spec = replace(_parse(completed(document), self), faults=self.faults)
+            spec = _parse(completed(document), self)
         except InputError as error:
             raise as_written(error, document, written(document)) from None
         if all(getattr(spec, name) is getattr(self, name) for name in OF_CONTEXT):
@@ -161,13 +161,8 @@ class Spec:
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:
         """Return this bench with other faults."""
         spec = replace(self, faults=faults)
-        vars(spec)["_contexts"] = self._contexts
+        vars(spec).update(_contexts=self._contexts, nominal=self.nominal)
         return spec
-
-
-@lru_cache(maxsize=64)
-def _oscillator(device: Device) -> Oscillator:
-    return device.oscillator()
 
 
 OF_CONTEXT = ("frame", "device", "environment", "drive", "reference", "model", "measuring", "sensors")
@@ -238,6 +233,7 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
 
     spec = Spec(
         document=doc,
+        faults=before.faults if before is not None else {},
         frame=frame,
         device=device,
         environment=alone("environment", Environment),
@@ -255,6 +251,8 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         identifiers=chosen("identifiers", "identify"),
         diagnosers=chosen("diagnosers", "diagnose"),
     )
+    if before is not None and spec.device is before.device:
+        vars(spec)["nominal"] = before.nominal
     if before is None or [*before.identifiers, *before.diagnosers] != [*identifiers, *diagnosers]:
         _named_apart(spec)
     return _suited(spec)

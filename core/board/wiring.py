@@ -16,7 +16,7 @@ from core.board import program
 from core.board.effects import Effects
 from core.board.measurement import Measurement
 from core.board.score import Score
-from core.faults.fault import Fault, FaultParams
+from core.faults.fault import Fault
 from core.plain import plain
 from core.ports import BlockPorts
 from core.sense.sensor import Sensor
@@ -104,7 +104,7 @@ class Wiring:
         """Return the rows that run; make those that rest as new, and their signals 0."""
         running = []
         for row, instance in enumerate(self.instances):
-            if not (self.unread[row] or absent(instance)):
+            if not (self.unread[row] or instance.block.rests(instance.params)):
                 running.append(row)
                 self.resting.discard(row)
                 continue
@@ -241,14 +241,14 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     InputError
         As ``Block.pack``.
     """
-    order = instances(spec)
+    order = _after(wiring, before, spec)
     if [entry.block for entry in order] != [entry.block for entry in wiring.instances]:
         return False
-    same_context = {every: spec.context(every) == before.context(every) for every in {entry.every for entry in order}}
+    other = {every for every in {entry.every for entry in order} if _differs(spec.context(every), before.context(every))}
     packed = {
         row: new.block.packed(new.params, spec.context(new.every))
         for row, (new, old) in enumerate(zip(order, wiring.instances, strict=True))
-        if new != old or not same_context[new.every]
+        if new.every in other or _differs(new, old)
     }
     for row, numbers in packed.items():
         wiring.packed(row)[:] = numbers
@@ -262,6 +262,26 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     if spec.sensors is not before.sensors or spec.measuring != before.measuring:
         wiring.unread = unread(spec, order)
     return True
+
+
+def _after(wiring: Wiring, before: Spec, spec: Spec) -> list[Instance]:
+    """Return the blocks of a bench, most often those of another but for a fault."""
+    if any(getattr(spec, name) is not getattr(before, name) for name in PARTS):
+        return instances(spec)
+    order = [*wiring.instances]
+    for name in {*before.faults, *spec.faults}:
+        row = wiring.rows[f"faults.{name}"]
+        order[row] = order[row]._replace(params=spec.faults.get(name) or _usual(order[row].block))
+    return order
+
+
+PARTS = ("frame", "device", "environment", "plant", "reference", "model", "drive", "guard", "measuring", "sensors")
+PARTS += ("active", "controllers", "identifiers", "diagnosers")
+"""Parts of a bench without its faults."""
+
+
+def _differs(one: object, other: object) -> bool:
+    return one is not other and one != other
 
 
 def _every(instance: Instance) -> int:
@@ -301,11 +321,6 @@ def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str,
         size += 1
     index[NOTHING] = size
     return SignalTable(shown), index, size + 1
-
-
-def absent(instance: Instance) -> bool:
-    """Say whether a block is a fault that is not there, so that it need not run."""
-    return isinstance(instance.params, FaultParams) and instance.params.severity == 0.0
 
 
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:

@@ -74,6 +74,11 @@ class Fault(Block):
     changes: ClassVar[str]
     suggested: ClassVar[float] = 0.05
 
+    @classmethod
+    def rests(cls, params: Any) -> bool:
+        """Say whether the fault is not there."""
+        return bool(params.severity == 0.0)
+
     Packed: ClassVar[type[Record]] = PackedFault
 
     @classmethod

@@ -76,7 +76,7 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
     wiring = again(board, board.spec.seed).wiring
     instance = wiring.instances[wiring.row(name)]
     table = np.ascontiguousarray(wiring.table[[wiring.row(name)]])
-    table[:, program.ADDRESS] = program.compiled(instance.block).address
+    table[:, program.ADDRESS] = program.address(instance.block)
     nothing, watches = np.zeros((1, 0)), np.zeros((0, 3))
     places = {signal: wiring.index[signal] for signal in RECORDED}
     wanted, trip = wiring.index[f"{name}.probability.{hypothesis}"], wiring.index["guard.trip"]
