@@ -69,7 +69,7 @@ $(PYTHON_STAMP): requirements.lock pyproject.toml scripts/venv
 	@touch $@
 
 $(KERNEL_STAMP): $(PYTHON_STAMP) $(KERNEL_SOURCE)
-	@.venv/bin/python scripts/warm.py
+	@.venv/bin/python -m scenarios.kernels
 	@touch $@
 
 $(NODE_STAMP): web/package.json web/package-lock.json | $(PYTHON_STAMP)

@@ -70,7 +70,7 @@ class Service:
         await asyncio.to_thread(self.database.migrate)
         await self.recordings.recover()
         self.engine.start()
-        await asyncio.to_thread(warm_up)
+        await asyncio.to_thread(kernels.load)
         self.has_kernels = True
         await self.jobs.recover()
         await self.sweeps.recover()
@@ -137,15 +137,6 @@ class Service:
         if loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop may be closing
                 loop.call_soon_threadsafe(self.hub.publish)
-
-
-def warm_up() -> None:
-    """Load the compiled kernels (or compile them) and compute one tick with them, before anyone waits."""
-    for scenario in library():
-        board = build(scenario)
-        history = History(board.signals.outputs, len(board.signals.taps), 1)
-        history.append(board.advance(1))
-        history.columns([0], 0, 1, 1)
 
 
 def _theatre() -> Theatre | None:

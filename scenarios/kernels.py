@@ -1,0 +1,94 @@
+"""Compiles the kernels that are not kept yet, on all cores.
+
+``python -m scenarios.kernels`` prints how far it is. What one process has compiled all others load.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import sys
+import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+
+import numpy as np
+
+from core import registry
+from core.board import fold, program
+from core.board.history import History
+from core.board.rows import Rows
+from core.ports import RESERVED
+from scenarios.library import get
+from scenarios.run import build
+
+HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference")
+"""Families in the order in which they are compiled, so that no core is left with a long one at the end."""
+FIRST_BENCH = "first-look"
+LOOP = ("", "loop")
+"""The task that compiles what every bench needs beside its blocks."""
+
+Task = tuple[str, str]
+
+
+def load() -> None:
+    """Load the kernels of a bench, or compile them, and compute one tick with them."""
+    board = build(get(FIRST_BENCH))
+    history = History(board.signals.outputs, len(board.signals.taps), 1)
+    history.append(board.advance(1))
+    history.columns([0], 0, 1, 1)
+
+
+def _loop() -> None:
+    """Compile the loop and the history: no tick of no block."""
+    none, nothing = np.zeros(RESERVED), np.zeros((0, 0))
+    table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
+    program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
+    history = History(1, 1, 1)
+    history.append(Rows.of(0, np.zeros((1, 2)), 1))
+    history.columns([0], 0, 1, 1)
+
+
+def tasks(*, first_bench_only: bool = False) -> list[Task]:
+    """Return the blocks that have a kernel, by family and name, those that take long first."""
+    if first_bench_only:
+        wiring = build(get(FIRST_BENCH)).wiring
+        named = {(entry.block.family, entry.block.name) for entry in wiring.instances}
+        return [task for task in tasks() if task in named]
+    return [(family, name) for family in HEAVY_FIRST for name in registry.blocks(family)]
+
+
+def compile_all(work: list[Task], told: Callable[[int, int], None]) -> None:
+    """Compile some kernels in processes of their own; tell how many are done, of how many."""
+    method = "fork" if sys.platform == "linux" else "spawn"
+    with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context(method)) as pool:
+        done = [pool.submit(_compile, task) for task in [LOOP, *work]]
+        for count, future in enumerate(as_completed(done), 1):
+            future.result()
+            told(count, len(done))
+
+
+def _compile(task: Task) -> None:
+    family, name = task
+    if task == LOOP:
+        _loop()
+    else:
+        program.address(registry.block(family, name))
+
+
+def main() -> None:
+    """Compile all kernels, those of the first bench only with ``first``."""
+    start = time.monotonic()
+    work = tasks(first_bench_only="first" in sys.argv)
+
+    def told(count: int, total: int) -> None:
+        if sys.stdout.isatty() or count == total:
+            print(f"\rCompiling kernels: {count} of {total}", end="", flush=True)
+
+    compile_all(work, told)
+    load()
+    print(f", {time.monotonic() - start:.1f} s")
+
+
+if __name__ == "__main__":
+    main()
