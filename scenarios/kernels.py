@@ -1,6 +1,6 @@
 """Compiles the kernels that are not kept yet, on all cores.
 
-``python -m scenarios.kernels`` prints how far it is. What one process has compiled all others load.
+``python -m scenarios.kernels`` prints how far it is. All processes load what one has compiled.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from core.board import fold, program
 from core.board.history import History
 from core.board.rows import Rows
 from core.ports import RESERVED
+from scenarios.kernel_cache import folder
+from scenarios.key import code_version
 from scenarios.library import get
 from scenarios.run import build
 
@@ -76,18 +79,27 @@ def _compile(task: Task) -> None:
         program.address(registry.block(family, name))
 
 
+def complete() -> Path | None:
+    """Return the file that says that all kernels of this version are kept; nothing where none are kept."""
+    path = folder()
+    return path / f"complete-{code_version()}" if path is not None else None
+
+
 def main() -> None:
     """Compile all kernels, those of the first bench only with ``first``."""
+    sys.dont_write_bytecode = False  # packages come without bytecode, and some environments never write it
     start = time.monotonic()
-    work = tasks(first_bench_only="first" in sys.argv)
+    first = "first" in sys.argv
 
     def told(count: int, total: int) -> None:
-        if sys.stdout.isatty() or count == total:
-            print(f"\rCompiling kernels: {count} of {total}", end="", flush=True)
+        print(f"\rCompiling kernels: {count} of {total}", end="", flush=True)
 
-    compile_all(work, told)
+    compile_all(tasks(first_bench_only=first), told)
     load()
     print(f", {time.monotonic() - start:.1f} s")
+    done = complete()
+    if done is not None and not first:
+        done.touch()
 
 
 if __name__ == "__main__":

@@ -10,14 +10,12 @@ import secrets
 from collections.abc import AsyncIterator
 from typing import TYPE_CHECKING
 
-from core.board.history import History
-from scenarios.library import library
-from scenarios.run import build
 from server.bench.benches import Benches
 from server.bench.engine import Engine
 from server.bench.portrait import bench_of
 from server.bench.session import Session
 from server.bench.status import Bench
+from server.kernels import Kernels
 from server.lag import Lateness, probe
 from server.metrics import Metrics
 from server.runs.jobs import Jobs
@@ -60,7 +58,8 @@ class Service:
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
         self.theatre = _theatre()
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
-        self.is_ready = self.has_kernels = False
+        self.kernels = Kernels()
+        self.is_ready = False
         self._loop: asyncio.AbstractEventLoop | None = None
 
     @contextlib.asynccontextmanager
@@ -70,8 +69,7 @@ class Service:
         await asyncio.to_thread(self.database.migrate)
         await self.recordings.recover()
         self.engine.start()
-        await asyncio.to_thread(kernels.load)
-        self.has_kernels = True
+        await self.kernels.start()
         await self.jobs.recover()
         await self.sweeps.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
@@ -84,6 +82,7 @@ class Service:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            await self.kernels.stop()
             if self.theatre is not None:
                 await self.theatre.close()
             await self.sweeps.close()
