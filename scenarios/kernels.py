@@ -92,11 +92,12 @@ def main() -> None:
     first = "first" in sys.argv
 
     def told(count: int, total: int) -> None:
-        print(f"\rCompiling kernels: {count} of {total}", end="", flush=True)
+        sys.stdout.write(f"\rCompiling kernels: {count} of {total}")
+        sys.stdout.flush()
 
     compile_all(tasks(first_bench_only=first), told)
     load()
-    print(f", {time.monotonic() - start:.1f} s")
+    sys.stdout.write(f", {time.monotonic() - start:.1f} s\n")
     done = complete()
     if done is not None and not first:
         done.touch()
