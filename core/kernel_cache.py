@@ -1,4 +1,4 @@
-"""Keeps compiled kernels in files, so that each is compiled once.
+"""Keeps compiled kernels, so that each is compiled once.
 
 A kernel is known by a hash of its bytecode, of the constants, layouts and kernels it names, of numba and of the
 processor. An edit compiles again what it touches and nothing else; an edit of a comment compiles nothing.
@@ -6,16 +6,12 @@ processor. An edit compiles again what it touches and nothing else; an edit of a
 
 from __future__ import annotations
 
-import contextlib
 import dis
 import hashlib
-import os
 import pickle
-import tempfile
 from functools import cache
-from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
-from typing import Any
+from typing import Any, Protocol
 
 import numba
 import numpy as np
@@ -23,54 +19,56 @@ from numba.core import serialize
 from numba.core.compiler import CompileResult
 
 
+class Shelf(Protocol):
+    """A place for compiled kernels that outlasts the process."""
+
+    def get(self, name: str) -> bytes | None:
+        """Return a kernel, if it is there."""
+
+    def put(self, name: str, code: bytes) -> None:
+        """Keep a kernel."""
+
+
+_shelves: list[Shelf] = []
+
+
+def keep_on(shelf: Shelf) -> None:
+    """Name the place of compiled kernels; without one each process compiles its own."""
+    _shelves[:] = [shelf]
+
+
 class KernelCache:
-    """Compiled code of one kernel, in files; numba asks it before it compiles and tells it afterwards."""
+    """Compiled code of one kernel; numba asks here before it compiles, and tells what it has compiled."""
 
     compiled = 0
-    """Kernels compiled by this process because no file had them."""
+    """Kernels compiled by this process because no shelf had them."""
 
-    def __init__(self, function: FunctionType, more: str = "") -> None:
-        self._function, self._more = function, more
+    def __init__(self, function: FunctionType, layouts: str = "") -> None:
+        self._function, self._layouts = function, layouts
 
     def load_overload(self, signature: Any, target: Any) -> Any:
-        """Return what was compiled for a signature, or nothing."""
+        """Return the code compiled for a signature, or nothing."""
         target.refresh()
-        path = self._path(signature, target)
-        if path is None:
-            return None
-        try:
-            return CompileResult._rebuild(target, *pickle.loads(path.read_bytes()))
-        except FileNotFoundError:
-            return None
-        except (OSError, EOFError, pickle.UnpicklingError, ValueError, TypeError, AttributeError):
-            return None  # a file that another version wrote, or half of one: compile again
+        for shelf in _shelves:
+            code = shelf.get(self._name(signature, target))
+            if code is not None:
+                try:
+                    return CompileResult._rebuild(target, *pickle.loads(code))
+                except (EOFError, pickle.UnpicklingError, ValueError, TypeError, AttributeError):
+                    return None  # another version wrote it, or half of it is lost: compile again
+        return None
 
     def save_overload(self, signature: Any, result: Any) -> None:
-        """Keep what was compiled for a signature."""
+        """Keep the code compiled for a signature."""
         KernelCache.compiled += 1
-        path = self._path(signature, result.target_context)
-        if path is None or result.library.has_dynamic_globals:
-            return
-        with contextlib.suppress(OSError):
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as part:
-                part.write(serialize.dumps(result._reduce()))
-            os.replace(part.name, path)
+        if not result.library.has_dynamic_globals:
+            for shelf in _shelves:
+                shelf.put(self._name(signature, result.target_context), serialize.dumps(result._reduce()))
 
-    def _path(self, signature: Any, target: Any) -> Path | None:
-        if not _folder:
-            return None
-        parts = (key(self._function), self._more, signature, target.codegen().magic_tuple())
+    def _name(self, signature: Any, target: Any) -> str:
+        parts = (key(self._function), self._layouts, signature, target.codegen().magic_tuple())
         digest = hashlib.sha256("\n".join(map(str, parts)).encode())
-        return Path(_folder) / f"{self._function.__module__}.{self._function.__name__}-{digest.hexdigest()[:24]}"
-
-
-_folder = ""
-
-
-def keep_in(path: str) -> None:
-    """Name the folder of compiled kernels; without one nothing is kept."""
-    global _folder
-    _folder = path
+        return f"{self._function.__module__}.{self._function.__name__}-{digest.hexdigest()[:24]}"
 
 
 @cache

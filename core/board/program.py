@@ -36,7 +36,9 @@ def address(block: type[Block]) -> int:
     """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
     found = _addresses.get(block)
     if found is None:
-        if block.Ports is BlockPorts and hasattr(block, "inputs") and block.step.__code__.co_argcount == 4:  # OLD NOTATION
+        if (
+            block.Ports is BlockPorts and hasattr(block, "inputs") and block.step.__code__.co_argcount == 4
+        ):  # OLD NOTATION
             found = _old(block.step).address
         else:
             found = compiled_step(block.step, block.Packed, block.State, block.Ports).address

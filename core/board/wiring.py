@@ -244,7 +244,9 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     order = _after(wiring, before, spec)
     if [entry.block for entry in order] != [entry.block for entry in wiring.instances]:
         return False
-    other = {every for every in {entry.every for entry in order} if _differs(spec.context(every), before.context(every))}
+    other = {
+        every for every in {entry.every for entry in order} if _differs(spec.context(every), before.context(every))
+    }
     packed = {
         row: new.block.packed(new.params, spec.context(new.every))
         for row, (new, old) in enumerate(zip(order, wiring.instances, strict=True))
