@@ -7,10 +7,19 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context
 from core.elementary import floor
-from core.ports import output, reads, tap
+from core.ports import BlockPorts, output, reads, tap
 from core.record import Record, Records
 from core.sense.past import KEPT, Entry, note
 from core.voltage import AppliedPorts
+
+
+class ChosenPorts(BlockPorts):
+    """The sensor in use, and what is wrong with it."""
+
+    chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
+    offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
+    quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
+    held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
 
 
 class Measurement(Block):
@@ -31,13 +40,9 @@ class Measurement(Block):
         variance: float
         every: float
 
-    class Ports(AppliedPorts):
-        """The sensor in use and what is wrong with it, what is measured, and the past."""
+    class Ports(ChosenPorts, AppliedPorts):
+        """The sensor in use and the voltage in, what is measured and the past out."""
 
-        chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
-        offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
-        quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
-        held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
         displacement: float = output("um", "measured displacement")
         past: Records[Entry] = tap(
             "mixed",
