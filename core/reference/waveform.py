@@ -90,11 +90,11 @@ class Waveform(Block):
     @classmethod
     def tones(cls, params: Any, context: Context) -> list[tuple[float, float]]:
         """Return frequency in Hz and amplitude in V of its lines, a constant at 0 Hz; none when it is broad."""
-        own = [(hz, params.volts(context) * share) for hz, share in cls.lines(params)]
-        if not own:
+        lines = [(hz, params.volts(context) * share) for hz, share in cls.lines(params)]
+        if not lines:
             return []
-        constant = params.offset_v + sum(volts for hz, volts in own if hz == 0.0)
-        moving = [(hz, volts) for hz, volts in own if hz > 0.0 and volts != 0.0]
+        constant = params.offset_v + sum(volts for hz, volts in lines if hz == 0.0)
+        moving = [(hz, volts) for hz, volts in lines if hz > 0.0 and volts != 0.0]
         return [*moving, (0.0, constant)] if constant != 0.0 else moving
 
     @classmethod

@@ -43,13 +43,13 @@ G = TypeVar("G", bound=Grating)
 @lru_cache(256)
 def amplitudes(pitch: float, spot: float, opening: float) -> tuple[float, ...]:
     """Return the amplitudes a of the harmonics, as many as matter."""
-    found = []
+    harmonics = []
     for m in range(1, HARMONICS + 1):
         smooth = math.exp(-0.5 * (math.pi * m * spot / pitch) ** 2)
-        found.append(2.0 / (math.pi * m) * math.sin(math.pi * m * opening) * smooth)
-    while len(found) > 1 and abs(found[-1]) <= NEGLIGIBLE * abs(found[0]):
-        found.pop()
-    return tuple(found)
+        harmonics.append(2.0 / (math.pi * m) * math.sin(math.pi * m * opening) * smooth)
+    while len(harmonics) > 1 and abs(harmonics[-1]) <= NEGLIGIBLE * abs(harmonics[0]):
+        harmonics.pop()
+    return tuple(harmonics)
 
 
 class GratingParams(SensorParams):
