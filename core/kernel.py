@@ -68,11 +68,12 @@ class _Apart(Compiler):
 
 def compiled_step(step: Step, packed: type[Record], state: type[Record], ports: type[BlockPorts]) -> Any:
     """Return the C function of a step: pointers to its two records, to all signals, and to the places of its ports."""
-    return _compiled(step, packed.layout, state.layout, tuple((port.name, port.vector) for port in ports.declared))
+    seen = tuple((port.name, port.record.layout if port.record else port.vector) for port in ports.declared)
+    return _compiled(step, packed.layout, state.layout, seen)
 
 
 @cache
-def _compiled(step: Step, packed: Layout, state: Layout, ports: tuple[tuple[str, bool], ...]) -> Any:
+def _compiled(step: Step, packed: Layout, state: Layout, ports: tuple[tuple[str, bool | Layout], ...]) -> Any:
     body: Any = numba.njit(error_model="numpy", inline="always")(step)
     parameters_at, state_at, signals_at = record_at(packed), record_at(state), ports_at(ports)
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Protocol, get_type_hints
 
+from core.record import Record, Records, record_of
+
 KINDS = INPUT, OUTPUT, TAP = "input", "output", "tap"
 """Kinds of ports, in the order of their places."""
 TICK, TIME_MS, RESERVED = 0, 1, 2
@@ -47,6 +49,8 @@ class Port:
         Input, output or tap.
     vector : bool
         Whether the step sees several numbers.
+    record : type, optional
+        For vectors: the record that the numbers are several of, if they are.
     """
 
     name: str
@@ -59,6 +63,7 @@ class Port:
     warning: str = ""
     kind: str = INPUT
     vector: bool = False
+    record: type[Record] | None = None
 
     def names(self, params: Lists) -> tuple[str, ...]:
         """Return the component names below the instance, one for a scalar."""
@@ -116,6 +121,16 @@ class _Signals:
         return ports.signals[int(ports.places[self._place]) :]
 
 
+class _Several:
+    """Finds the records behind a port."""
+
+    def __init__(self, place: int, kind: type[Record]) -> None:
+        self._place, self._kind = place, kind
+
+    def __get__(self, ports: Any, owner: Any) -> Any:
+        return Records(ports.signals[int(ports.places[self._place]) :], self._kind)
+
+
 class _Reserved:
     """Reads a signal that has no port."""
 
@@ -127,7 +142,7 @@ class _Reserved:
 
 
 class BlockPorts:
-    """Ports of a block; a subclass annotates them, ``float`` or ``Vector``, and says what each is.
+    """Ports of a block; a subclass annotates them, ``float``, ``Vector`` or ``Records``, and says what each is.
 
     An instance is a view: of all signals, and of the places of its own among them. Every step may also read ``x.tick``,
     and ``x.time_ms``, which is device time.
@@ -150,7 +165,11 @@ class BlockPorts:
             port = cls.__dict__.get(name)
             if not isinstance(port, Port):
                 raise TypeError(f"{cls.__qualname__}.{name}: declare reads(...), output(...) or tap(...)")
-            ports[name] = replace(port, name=name, vector=hints[name] is not float)
+            vector, record = hints[name] is not float, record_of(hints[name])
+            ports[name] = replace(port, name=name, vector=vector, record=record)
         cls.declared = tuple(sorted(ports.values(), key=lambda port: KINDS.index(port.kind)))
         for place, port in enumerate(cls.declared):
-            setattr(cls, port.name, _Signals(place) if port.vector else _Signal(place))
+            if port.record is not None:
+                setattr(cls, port.name, _Several(place, port.record))
+            else:
+                setattr(cls, port.name, _Signals(place) if port.vector else _Signal(place))

@@ -123,7 +123,7 @@ class Record:
         cls._declared = declared
         cls.layout = _laid_out(cls.__qualname__, declared)
         for field in cls.layout.fields:
-            setattr(cls, field.name, _ACCESS[field.kind](cls.layout, field, _record_of(declared[field.name][0])))
+            setattr(cls, field.name, _ACCESS[field.kind](cls.layout, field, record_of(declared[field.name][0])))
 
     _declared: ClassVar[dict[str, tuple[Any, Any]]] = {}
 
@@ -173,7 +173,8 @@ class Records(Generic[R]):
         return self._kind(self._array[i * size : (i + 1) * size])
 
 
-def _record_of(hint: Any) -> type[Record] | None:
+def record_of(hint: Any) -> type[Record] | None:
+    """Return the record that an annotation names, or of which it names several."""
     inner = get_args(hint)[0] if get_origin(hint) is Records else hint
     return inner if isinstance(inner, type) and issubclass(inner, Record) else None
 
@@ -182,7 +183,7 @@ def _laid_out(owner: str, declared: dict[str, tuple[Any, Any]]) -> Layout:
     """Lay fields out in their order, tails behind all others."""
     fields, tails, at = [], 0, 0
     for name, (hint, many) in declared.items():
-        record = _record_of(hint)
+        record = record_of(hint)
         inner = record.layout if record else None
         count = many.count if isinstance(many, _Many) else -1
         if count < 0:

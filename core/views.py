@@ -53,10 +53,15 @@ class RecordsType(types.Type):
 class PortsType(types.Type):
     """Ports of a block."""
 
-    def __init__(self, ports: tuple[tuple[str, bool], ...]) -> None:
+    def __init__(self, ports: tuple[tuple[str, bool | Layout], ...]) -> None:
         self.ports = ports
-        self.places = {name: (place, vector) for place, (name, vector) in enumerate(ports)}
-        super().__init__(name=f"ports({','.join(name + '[]' * vector for name, vector in ports)})")
+        self.places = {name: (place, seen) for place, (name, seen) in enumerate(ports)}
+        super().__init__(name=f"ports({','.join(name + _several(seen) for name, seen in ports)})")
+
+
+def _several(seen: bool | Layout) -> str:
+    """Return what stands behind the name of a port: nothing, or that it is a vector, or of which records."""
+    return f"[{_text(seen)}]" if isinstance(seen, Layout) else "[]" * seen
 
 
 def _text(layout: Layout) -> str:
@@ -104,7 +109,10 @@ class _PortAttributes(AttributeTemplate):
             return types.float64
         if name not in ports.places:
             return None
-        return DOUBLES if ports.places[name][1] else types.float64
+        seen = ports.places[name][1]
+        if isinstance(seen, Layout):
+            return RecordsType(seen)
+        return DOUBLES if seen else types.float64
 
 
 @infer_global(operator.getitem)
@@ -176,7 +184,10 @@ def _signal(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any
 @lower_getattr_generic(PortsType)
 def _read_port(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:
     at = _signal(context, builder, kind, value, name)
-    return at if kind.places.get(name, (0, False))[1] else builder.load(at)
+    seen = kind.places.get(name, (0, False))[1]
+    if isinstance(seen, Layout):
+        return _view(context, builder, RecordsType(seen), base=at)
+    return at if seen else builder.load(at)
 
 
 @lower_setattr_generic(PortsType)
@@ -211,10 +222,10 @@ def record_at(layout: Layout) -> Any:
     return intrinsic(view)
 
 
-def ports_at(ports: tuple[tuple[str, bool], ...]) -> Any:
+def ports_at(ports: tuple[tuple[str, bool | Layout], ...]) -> Any:
     """Return what makes a view of ports from the signals and their places, for compiled code.
 
-    Of every port its name, and whether it is a vector.
+    Of every port its name, and whether it is a vector or of which records.
     """
     kind = PortsType(ports)
 

@@ -5,32 +5,21 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Block, BlockParams, Context, FloatArray, Port
-from core.sense.past import ENTRY, KEPT, note
-from core.voltage import APPLIED_PORTS
-
-CHOSEN, OFFSET, QUANTUM, HELD, APPLIED = range(5)
-MEASURED, PAST = APPLIED + len(APPLIED_PORTS), APPLIED + len(APPLIED_PORTS) + 1
-VARIANCE, EVERY = range(2)
+from core.block import Block, BlockParams, Context
+from core.elementary import floor
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record, Records
+from core.sense.past import KEPT, Entry, note
+from core.voltage import AppliedPorts
 
 
-def measurement_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Pass on the displacement of the sensor in use, unless the sample was lost."""
-    if w[io[HELD]] != 0.0:
-        note(w, io, PAST, APPLIED, 0.0, 0.0)
-        return
-    z = w[io[CHOSEN]]
-    if w[io[OFFSET]] != 0.0:
-        z += w[io[OFFSET]]
-    if w[io[QUANTUM]] != 0.0:
-        z = w[io[QUANTUM]] * math.floor(z / w[io[QUANTUM]] + 0.5)
-    w[io[MEASURED]] = z
-    # a division costs more than the rest of this step, and most sensors run at every tick
-    fresh = (p[EVERY] == 1.0 or int(w[TICK]) % int(p[EVERY]) == 0) and math.isfinite(z)
-    variance = p[VARIANCE] + w[io[QUANTUM]] * w[io[QUANTUM]] / 12.0
-    note(w, io, PAST, APPLIED, z, variance if fresh else 0.0)
+class ChosenPorts(BlockPorts):
+    """The sensor in use, and what is wrong with it."""
+
+    chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
+    offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
+    quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
+    held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
 
 
 class Measurement(Block):
@@ -41,31 +30,48 @@ class Measurement(Block):
     """
 
     title = "Measurement"
-    inputs = (
-        Port("chosen", "um", "displacement of the sensor in use", source="@measuring"),
-        Port("offset", "um", "added to what is measured", source="effects.sensor_offset"),
-        Port("quantum", "um", "step what is measured is rounded to", source="effects.sensor_quantum"),
-        Port("held", "1", "not zero while the sample is lost", source="effects.sensor_held"),
-        *APPLIED_PORTS,
-    )
-    outputs = (Port("displacement", "um", "measured displacement"),)
-    taps = (
-        Port(
-            "past",
-            "mixed",
-            "what was measured over the last samples, with voltage and variance",
-            labels=tuple(str(i) for i in range(KEPT * ENTRY)),
-            hidden=True,
-        ),
-    )
 
     class Params(BlockParams):
         """Nothing to choose but the sensor."""
 
+    class Packed(Record):
+        """Variance of a sample, and how often there is one."""
+
+        variance: float
+        every: float
+
+    class Ports(ChosenPorts, AppliedPorts):
+        """The sensor in use and the voltage in, what is measured and the past out."""
+
+        displacement: float = output("um", "measured displacement")
+        past: Records[Entry] = tap(
+            "mixed",
+            "what was measured over the last samples, with voltage and variance",
+            labels=tuple(str(i) for i in range(KEPT * Entry.layout.size)),
+            hidden=True,
+        )
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the variance of a sample, not 0 so that it counts as measured, and how often there is one."""
         noise = max(context.sensor_noise_um, 1e-6)
-        return np.array([noise * noise, context.sensor_every])
+        p = cls.Packed.blank()
+        p.variance, p.every = noise * noise, context.sensor_every
+        return p
 
-    step = measurement_step
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Pass on the displacement of the sensor in use, unless the sample was lost."""
+        if x.held != 0.0:
+            note(x.past, x, 0.0, 0.0)
+        else:
+            z = x.chosen
+            if x.offset != 0.0:
+                z += x.offset
+            if x.quantum != 0.0:
+                z = x.quantum * floor(z / x.quantum + 0.5)
+            x.displacement = z
+            # a division costs more than the rest of this step, and most sensors run at every tick
+            fresh = (p.every == 1.0 or int(x.tick) % int(p.every) == 0) and math.isfinite(z)
+            variance = p.variance + x.quantum * x.quantum / 12.0
+            note(x.past, x, z, variance if fresh else 0.0)

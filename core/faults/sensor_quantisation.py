@@ -2,21 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import TICK, Equation, Port, parameter
-from core.faults.fault import Fault, FaultParams, channels, severity_at
-
-QUANTUM, OTHER, WIDTH = range(3)
-
-
-def sensor_quantisation_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Coarsen what is measured; of two converters in a row the coarser counts."""
-    width = severity_at(p, w[TICK])
-    w[io[WIDTH]] = width
-    if width != 0.0:
-        w[io[QUANTUM]] = max(w[io[QUANTUM]], width)
-        w[io[OTHER]] += 1.0
+from core.block import Equation, parameter
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class SensorQuantisation(Fault):
@@ -30,8 +19,6 @@ class SensorQuantisation(Fault):
     shows = "sensor"
     changes = "measured displacement, in steps; small motion is not seen at all"
     suggested = 0.1
-    inputs = channels("sensor_quantum", "other")
-    outputs = (Port("severity", "um", "step of the converter"),)
     equations = (Equation("effect", r"z\to q\lfloor z/q+\tfrac12\rfloor", "not in the text"),)
 
     class Params(FaultParams):
@@ -39,4 +26,18 @@ class SensorQuantisation(Fault):
 
         severity: float = parameter(0.0, "step of the converter", "um", ge=0, le=100)
 
-    step = sensor_quantisation_step
+    class Ports(BlockPorts):
+        """The step what is measured is rounded to."""
+
+        sensor_quantum: float = effect("sensor_quantum")
+        other: float = effect("other")
+        severity: float = severity("um", "step of the converter")
+
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Ports) -> None:
+        """Coarsen what is measured; of two converters in a row the coarser counts."""
+        width = severity_now(p, x.tick)
+        x.severity = width
+        if width != 0.0:
+            x.sensor_quantum = max(x.sensor_quantum, width)
+            x.other += 1.0

@@ -2,20 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import TICK, Equation, Port, parameter
-from core.faults.fault import Fault, FaultParams, channel, severity_at
-
-EFFECT, LOST = range(2)
-
-
-def vacuum_loss_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Let air in."""
-    lost = severity_at(p, w[TICK])
-    w[io[LOST]] = lost
-    if lost != 0.0:
-        w[io[EFFECT]] *= 1.0 - lost
+from core.block import Equation, parameter
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class VacuumLoss(Fault):
@@ -30,8 +20,6 @@ class VacuumLoss(Fault):
     shows = "film"
     changes = "pressure at the device, and with it the damping of the gas"
     suggested = 1.0
-    inputs = channel("vacuum")
-    outputs = (Port("severity", "1", "share of the vacuum that is lost"),)
     equations = (
         Equation(
             "effect",
@@ -45,4 +33,16 @@ class VacuumLoss(Fault):
 
         severity: float = parameter(0.0, "share of the vacuum that is lost", "1", ge=0, le=1)
 
-    step = vacuum_loss_step
+    class Ports(BlockPorts):
+        """The vacuum."""
+
+        effect: float = effect("vacuum")
+        severity: float = severity("1", "share of the vacuum that is lost")
+
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Ports) -> None:
+        """Let air in."""
+        lost = severity_now(p, x.tick)
+        x.severity = lost
+        if lost != 0.0:
+            x.effect *= 1.0 - lost

@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 from typing import Any, TypeVar
 
-from core.block import Block, BlockParams, Context, Port, kernel, parameter
+from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor
+from core.kernel import kernel
+from core.ports import output, reads, tap
 
-LAST_PORT = Port("last", "um", "what was measured last: where to take over", source="sensor.displacement")
+LAST_PORT = reads("sensor.displacement", "um", "what was measured last: where to take over")
 
-TRUE_PORT = Port("true", "um", "true displacement, for the error only", source="plant.displacement")
-RECOVERED_PORT = Port("displacement", "um", "recovered displacement")
-ERROR_PORT = Port("error", "um", "recovered minus true displacement")
-SLIPS_PORT = Port("slips", "1", "whole pitches it is off by")
+TRUE_PORT = reads("plant.displacement", "um", "true displacement, for the error only")
+RECOVERED_PORT = output("um", "recovered displacement")
+ERROR_PORT = tap("um", "recovered minus true displacement")
+SLIPS_PORT = tap("1", "whole pitches it is off by")
 
 P = TypeVar("P", bound=BlockParams)
 
@@ -32,7 +35,7 @@ def begin_at(last: float) -> float:
 @kernel
 def slips(error: float, pitch: float) -> float:
     """Return the whole pitches a recovered displacement is off by."""
-    return float(math.floor(error / pitch + 0.5)) if math.isfinite(error) else 0.0
+    return float(floor(error / pitch + 0.5)) if math.isfinite(error) else 0.0
 
 
 class Sensor(Block):
