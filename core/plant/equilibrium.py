@@ -33,7 +33,7 @@ def planar_force(p: Plane.Packed, suspension: Suspension) -> Force:
     """Return the static force of a planar plant."""
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
-        return np.array(static_force(p, suspension, float(q[0]), float(q[1]), float(q[2]), right, left))
+        return np.array(static_force(p, suspension, q[0], q[1], q[2], right, left))
 
     return force
 
@@ -60,7 +60,7 @@ def slaved_force(p: SlavedLateral.Packed, stiffness: float) -> Force:
     """Return the static force of the slaved plant, a place of one number."""
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
-        x = float(q[0])
+        x = q.item(0)
         return np.array([slaved_lateral.slaved_force(p, x, right, left) - stiffness * x])
 
     return force
@@ -72,8 +72,9 @@ SCALES = np.array([1e-5, 1e-6, 1e-8])
 
 def jacobian(function: Callable[[FloatArray], FloatArray], at: FloatArray, scales: FloatArray) -> FloatArray:
     """Return the Jacobian of a function, by central differences over the steps given."""
-    steps = np.diag(scales[: len(at)])
-    return np.column_stack([(function(at + h) - function(at - h)) / (2.0 * h.sum()) for h in steps])
+    sizes = scales[: len(at)]
+    steps = zip(np.diag(sizes), sizes, strict=True)
+    return np.array([(function(at + h) - function(at - h)) / (2.0 * size) for h, size in steps]).T
 
 
 def stiffness(force: Force, q: FloatArray, right: float, left: float) -> FloatArray:
