@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, Generic, Self, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -142,7 +143,7 @@ class Record:
         record.array.view(np.uint64)[[*cls.layout.scalars]] = BLANK
         return record
 
-    @property
+    @cached_property
     def address(self) -> int:
         """Where its numbers stand in memory."""
         return int(self.array.ctypes.data)

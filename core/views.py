@@ -7,6 +7,7 @@ Only the way to an address differs. A number of a record is at ``base[offset]``,
 from __future__ import annotations
 
 import operator
+from functools import cache
 from typing import Any
 
 from llvmlite import ir
@@ -22,7 +23,6 @@ from numba.extending import (
     lower_getattr_generic,
     models,
     register_model,
-    typeof_impl,
     unbox,
 )
 
@@ -195,9 +195,13 @@ def _write_port(context: Any, builder: Any, signature: Any, args: Any, name: str
     builder.store(args[1], _signal(context, builder, signature.args[0], args[0], name))
 
 
-@typeof_impl.register(Record)
-def _type_of(record: Record, context: Any) -> RecordType:
+@cache
+def _type(record: Any) -> RecordType:
     return RecordType(record.layout)
+
+
+# numba asks a value itself before it looks up what is registered for its class, which takes twice as long
+Record._numba_type_ = property(lambda record: _type(record.__class__))  # type: ignore[attr-defined]
 
 
 @unbox(RecordType)

@@ -7,15 +7,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from core.block import FloatArray
-from core.board import program
 from core.board.board import Board
 from core.device.device import Device
 from core.device.geometry import Geometry
 from core.device.lateral import lateral
 from core.device.pull_in import rotation_pull_in_v
-from core.plant import body, slaved_lateral
+from core.plant.body import worst
 from core.plant.equilibrium import Fold, bias_pull_in, fold, planar_force, slaved_force, stators_of, voltage_at
+from core.plant.plane import Plane
+from core.plant.suspension import Suspension
 
 SMALL_UM = 1.0
 """Travel at which the rotation is read."""
@@ -32,12 +32,12 @@ def lateral_metrics(board: Board) -> dict[str, float]:
     if board.tick == 0:
         return {}
     kind = board.spec.plant.block.name
-    p, state = _packed(board), board.wiring.state_of("plant")
+    p, state = board.wiring.parameters("plant"), board.wiring.state("plant")
     if kind == "slaved_lateral":
         scale = board.value("effects.stiffness_scale")
-        force = slaved_force(p, float(p[slaved_lateral.SPRING]) * scale)
-        ratio = float(p[slaved_lateral.KAPPA])
-        return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state[0]))
+        force = slaved_force(p, float(p.stiffness_n_m) * scale)
+        ratio = float(p.ratio)
+        return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state.touched_ms))
     if kind == "planar":
         return _planar(p, state, board.spec.device.drawing.far_finger_um)
     volts = device_pull_in(
@@ -66,11 +66,11 @@ def geometry_pull_in(geometry: Geometry, gradient_f_m: float) -> float:
     )
 
 
-def _planar(p: FloatArray, state: FloatArray, far_um: float) -> dict[str, float]:
-    suspension = state[:9].copy()
+def _planar(p: Plane.Packed, state: Plane.State, far_um: float) -> dict[str, float]:
+    suspension = Suspension(state.suspension.array.copy())
     force, stators = planar_force(p, suspension), stators_of(p)
-    found = _folded(fold(force, stators, lambda q: float(body.worst(p, float(q[1]), float(q[2]))), 3))
-    found |= _touched(float(state[body.TOUCHED_MS]))
+    found = _folded(fold(force, stators, lambda q: float(worst(p, float(q[1]), float(q[2]))), 3))
+    found |= _touched(float(state.touched_ms))
     pull_in = bias_pull_in(p, suspension)
     if pull_in is not None:
         found["device.pull_in_v"] = pull_in
@@ -78,11 +78,6 @@ def _planar(p: FloatArray, state: FloatArray, far_um: float) -> dict[str, float]
     if held is not None:
         found["lateral.far_ratio"] = 1.0 + abs(float(held[0][2])) * far_um / SMALL_UM
     return found
-
-
-def _packed(board: Board) -> FloatArray:
-    wiring = board.wiring
-    return wiring.p[wiring.table[wiring.row("plant"), program.P_OFFSET] :]
 
 
 def _folded(end: Fold | None) -> dict[str, float]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from core.board import program
 from core.board.board import Board
-from core.plant import body, slaved_lateral
+from core.plant.body import worst
 from core.plant.equilibrium import Fold, Force, folds, planar_force, slaved_force, stators_of
 from core.plant.escape import Boundary, boundary
-from core.plant.shuttle import LEFT, MASS, RIGHT, comb_voltage
+from core.plant.shuttle import LEFT, RIGHT, comb_voltage
+from core.plant.suspension import Suspension
 
 
 @dataclass(frozen=True)
@@ -32,18 +32,16 @@ def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegion:
         Voltage held on the shuttle for the boundary.
     """
     kind = board.spec.plant.block.name
-    wiring = board.wiring
-    p = wiring.p[wiring.table[wiring.row("plant"), program.P_OFFSET] :]
-    state = wiring.state_of("plant")
-    mass = float(p[MASS]) * board.value("effects.mass_scale")
+    p, state = board.wiring.parameters("plant"), board.wiring.state("plant")
+    mass = float(p.mass) * board.value("effects.mass_scale")
     if kind == "slaved_lateral":
-        ratio = float(p[slaved_lateral.KAPPA])
-        force: Force = slaved_force(p, float(p[slaved_lateral.SPRING]) * board.value("effects.stiffness_scale"))
+        ratio = float(p.ratio)
+        force: Force = slaved_force(p, float(p.stiffness_n_m) * board.value("effects.stiffness_scale"))
         ends = folds(force, stators_of(p), lambda q: ratio * float(q[0]), 1)
         size = 1
     elif kind == "planar" and board.tick > 0:
-        force = planar_force(p, state[:9].copy())
-        ends = folds(force, stators_of(p), lambda q: float(body.worst(p, float(q[1]), float(q[2]))), 3)
+        force = planar_force(p, Suspension(state.suspension.array.copy()))
+        ends = folds(force, stators_of(p), lambda q: float(worst(p, float(q[1]), float(q[2]))), 3)
         size = 3
     else:
         return UnstableRegion(kind, [], None)

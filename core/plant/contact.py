@@ -5,23 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, kernel, parameter
+from core.block import Context, parameter
 from core.device.geometry import drawn
-from core.plant.shuttle import OWN, ShuttleParams, wall
+from core.kernel import kernel
+from core.plant.shuttle import Shuttle, ShuttleParams, wall
 
-(
-    GAP,
-    LIMIT,
-    TOUCH,
-    TOUCH_STIFFNESS,
-    TOUCH_DAMPING,
-    SHORTS,
-    STOP,
-    STOP_STIFFNESS,
-    STOP_DAMPING,
-    PLANT,
-) = range(OWN, OWN + 10)
-"""Packed parameters behind those of every plant; a plant's own start at ``PLANT``."""
 LEAST_US = 0.01
 """Shortest step, so that a sample ends."""
 
@@ -41,20 +29,34 @@ class ContactParams(ShuttleParams):
         """Return the longest step asked for, or the longest that follows the end stops."""
         return resolved_us(step_us, self.stop_stiffness_n_m, self.stop_damping_ns_m * 1e3, mass)
 
-    def packed(self, context: Context) -> list[float]:
+
+class TouchingShuttle(Shuttle):
+    """A plant whose fingers may touch a stator."""
+
+    class Packed(Shuttle.Packed):
+        """Gap, the offset up to which the force law holds, and that at which fingers touch; contact and stops."""
+
+        gap: float
+        limit: float
+        touch_um: float
+        contact_stiffness_n_m: float
+        contact_damping: float
+        short_on_contact: float
+        stop_um: float
+        stop_stiffness_n_m: float
+        stop_damping: float
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Any:
         """Pack gap, contact and stops; the force law holds up to nine tenths of the gap."""
         gap = drawn(context).gap_um
-        return [
-            gap,
-            0.9 * gap,
-            gap - self.contact_clearance_um,
-            self.contact_stiffness_n_m,
-            self.contact_damping_ns_m * 1e3,
-            float(self.short_on_contact),
-            self.stop_um,
-            self.stop_stiffness_n_m,
-            self.stop_damping_ns_m * 1e3,
-        ]
+        p: Any = super().pack(params, context)
+        p.gap = gap
+        p.limit = 0.9 * gap
+        p.touch_um = gap - params.contact_clearance_um
+        p.contact_damping = params.contact_damping_ns_m * 1e3
+        p.stop_damping = params.stop_damping_ns_m * 1e3
+        return p
 
 
 def resolved_us(step_us: float, stiffness: float, damping: float, mass: float) -> float:
@@ -64,12 +66,12 @@ def resolved_us(step_us: float, stiffness: float, damping: float, mass: float) -
 
 
 @kernel
-def touch(p: Any, eta: float, rate: float) -> float:
+def touch(p: TouchingShuttle.Packed, eta: float, rate: float) -> float:
     """Return the force of a stator on fingers that are ``eta`` off their centre, uN."""
-    return wall(p[TOUCH], p[TOUCH_STIFFNESS], p[TOUCH_DAMPING], eta, rate)
+    return wall(p.touch_um, p.contact_stiffness_n_m, p.contact_damping, eta, rate)
 
 
 @kernel
-def stop(p: Any, x: float, v: float) -> float:
+def stop(p: TouchingShuttle.Packed, x: float, v: float) -> float:
     """Return the force of the end stops, uN."""
-    return wall(p[STOP], p[STOP_STIFFNESS], p[STOP_DAMPING], x, v)
+    return wall(p.stop_um, p.stop_stiffness_n_m, p.stop_damping, x, v)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import inlined, kernel
+from core.kernel import inlined, kernel
 
 Z1, Z2 = 0.538469310105683091, 0.906179845938663993
 W0, W1, W2 = 0.568888888888888889, 0.478628670499366468, 0.236926885056189088

@@ -8,10 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.block import FloatArray
-from core.plant import contact, plane, slaved_lateral
+from core.kernel import kernel
+from core.plant import slaved_lateral
 from core.plant.electrostatics import comb
-from core.plant.shuttle import FIRST_V, SECOND_V
-from core.plant.suspension import elastic_force
+from core.plant.plane import Plane
+from core.plant.shuttle import Shuttle
+from core.plant.slaved_lateral import SlavedLateral
+from core.plant.suspension import Suspension, elastic_force
 
 Force = Callable[[FloatArray, float, float], FloatArray]
 """Generalised force at a place under two squared voltages."""
@@ -26,27 +29,38 @@ class Fold:
     lateral_um: float
 
 
-def planar_force(p: FloatArray, suspension: FloatArray) -> Force:
+def planar_force(p: Plane.Packed, suspension: Suspension) -> Force:
     """Return the static force of a planar plant."""
-    square, limit, stator, strength = p[plane.GAP_SQUARED], p[contact.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
-    overlap = p[plane.ROTOR] - stator
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
-        x, y, theta = float(q[0]), float(q[1]), float(q[2])
-        yy, tt = y + p[plane.Y_MISS], theta + p[plane.T_MISS]
-        first = comb(square, limit, stator, 0.5 * (overlap + x), 1.0, yy, tt)
-        second = comb(square, limit, stator, 0.5 * (overlap - x), -1.0, yy, tt)
-        pulled = strength * (right * np.array(first[:3]) + left * np.array(second[:3]))
-        return np.asarray(np.array(elastic_force(suspension, x, y, theta)) + pulled)
+        return np.array(static_force(p, suspension, q[0], q[1], q[2], right, left))
 
     return force
 
 
-def slaved_force(p: FloatArray, stiffness: float) -> Force:
+@kernel
+def static_force(
+    p: Plane.Packed, suspension: Suspension, x: float, y: float, theta: float, right: float, left: float
+) -> tuple[float, float, float]:
+    """Return the static forces, uN, and torque, uN um, of a planar plant under two squared voltages."""
+    overlap = p.rotor_tip - p.stator_tip
+    yy = y + p.misalignment_um
+    tt = theta + p.misalignment_rad
+    fx, fy, mz = elastic_force(suspension, x, y, theta)
+    x1, y1, t1, _, _ = comb(p.gap_squared, p.limit, p.stator_tip, 0.5 * (overlap + x), 1.0, yy, tt)
+    x2, y2, t2, _, _ = comb(p.gap_squared, p.limit, p.stator_tip, 0.5 * (overlap - x), -1.0, yy, tt)
+    return (
+        fx + p.strength * (right * x1 + left * x2),
+        fy + p.strength * (right * y1 + left * y2),
+        mz + p.strength * (right * t1 + left * t2),
+    )
+
+
+def slaved_force(p: SlavedLateral.Packed, stiffness: float) -> Force:
     """Return the static force of the slaved plant, a place of one number."""
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
-        x = float(q[0])
+        x = q.item(0)
         return np.array([slaved_lateral.slaved_force(p, x, right, left) - stiffness * x])
 
     return force
@@ -58,8 +72,9 @@ SCALES = np.array([1e-5, 1e-6, 1e-8])
 
 def jacobian(function: Callable[[FloatArray], FloatArray], at: FloatArray, scales: FloatArray) -> FloatArray:
     """Return the Jacobian of a function, by central differences over the steps given."""
-    steps = np.diag(scales[: len(at)])
-    return np.column_stack([(function(at + h) - function(at - h)) / (2.0 * h.sum()) for h in steps])
+    sizes = scales[: len(at)]
+    steps = zip(np.diag(sizes), sizes, strict=True)
+    return np.array([(function(at + h) - function(at - h)) / (2.0 * size) for h, size in steps]).T
 
 
 def stiffness(force: Force, q: FloatArray, right: float, left: float) -> FloatArray:
@@ -202,7 +217,7 @@ def _one_side(
     return Fold(x, float(last[-1]), lateral(last[:-1]))
 
 
-def bias_pull_in(p: FloatArray, suspension: FloatArray, highest: float = 400.0) -> float | None:
+def bias_pull_in(p: Plane.Packed, suspension: Suspension, highest: float = 400.0) -> float | None:
     """Return the bias, V on both stators with opposite signs, beyond which a planar plant has no stable rest."""
     force = planar_force(p, suspension)
 
@@ -222,6 +237,6 @@ def bias_pull_in(p: FloatArray, suspension: FloatArray, highest: float = 400.0) 
     return volts
 
 
-def stators_of(p: FloatArray) -> tuple[float, float]:
+def stators_of(p: Shuttle.Packed) -> tuple[float, float]:
     """Return the voltages of the stators in packed parameters of a plant."""
-    return float(p[FIRST_V]), float(p[SECOND_V])
+    return float(p.first_v), float(p.second_v)
