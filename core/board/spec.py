@@ -25,7 +25,7 @@ from core.board.drive import Drive
 from core.board.environment import Environment
 from core.board.guard import Guard
 from core.board.model import Model
-from core.board.wiring import OPEN_LOOP, instances
+from core.board.wiring import feeds_forward, instances
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.device.transfer_function import slowest_pole
@@ -304,9 +304,11 @@ def _suited(spec: Spec) -> Spec:
         "controller.kind": spec.controllers[spec.active].block,
         "sensor.kind": spec.sensors[spec.measuring].block,
     }
-    if spec.active != OPEN_LOOP and getattr(spec.drive.params, "kind", "held") == "analogue":
-        text = f"analogue is for {OPEN_LOOP} only: what {spec.active} asks for is held over a sample"
-        raise InputError(text, "drive.kind", f"hold the drive, or let {OPEN_LOOP} drive")
+    analogue = getattr(spec.drive.params, "kind", "held") == "analogue"
+    if analogue and not feeds_forward(spec.controllers[spec.active].block):
+        able = " or ".join(name for name, block in registry.blocks("control").items() if feeds_forward(block))
+        text = f"analogue is for {able} only: what {spec.active} asks for is held over a sample"
+        raise InputError(text, "drive.kind", f"hold the drive, or let {able} drive")
     for key in ("identifiers", "diagnosers"):
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
     for path, block in fields.items():

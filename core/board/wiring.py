@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 N = TypeVar("N", np.float64, np.int64)
 
-OPEN_LOOP = "open_loop"
-"""The controller that passes the reference on, so that the drive may follow it between samples."""
 NOTHING = "@nothing"
 """A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
 
@@ -172,6 +170,11 @@ def _usual(block: type[Block]) -> BlockParams:
 def recovered(block: type[Block]) -> bool:
     """Say whether a sensor puts out a displacement."""
     return any(port.name == "displacement" for port in block.outputs)
+
+
+def feeds_forward(block: type[Block]) -> bool:
+    """Say whether a controller puts out its voltage between samples too, so that the drive may be analogue."""
+    return any(port.name == "voltage_middle" for port in block.outputs)
 
 
 def scored(block: type[Block]) -> bool:
@@ -368,7 +371,6 @@ def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -
     if port.source == "@active":
         return f"{spec.active}.voltage"
     if port.source in ("@active_middle", "@active_end"):
-        # only the generator itself knows what happens between samples
-        between = port.source.removeprefix("@active_")
-        return f"reference.{between}" if spec.active == OPEN_LOOP else f"{spec.active}.voltage"
+        between = port.source.removeprefix("@active") if feeds_forward(spec.controllers[spec.active].block) else ""
+        return f"{spec.active}.voltage{between}"
     return port.source or f"{instance.prefix}.{port.name}"

@@ -34,6 +34,15 @@ class ControllerPorts(ReferencePorts, AppliedPorts, EngagedPorts):
     """Ports of every controller; ``applied`` is the voltage of whichever controller drives."""
 
 
+class FeedForwardPorts(ControllerPorts):
+    """Ports of a law without feedback: it knows its voltage between samples too, so the drive may be analogue."""
+
+    reference_middle: float = reads("reference.middle", "V", "reference half a sample later")
+    reference_end: float = reads("reference.end", "V", "reference one sample later")
+    voltage_middle: float = output("V", "voltage this controller asks for half a sample later", hidden=True)
+    voltage_end: float = output("V", "voltage this controller asks for one sample later", hidden=True)
+
+
 class TruthPorts(BlockPorts):
     """Signals of the device that no controller may use: only ideal values for the taps are made of them."""
 

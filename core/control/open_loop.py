@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.block import Block, BlockParams, Equation
-from core.control.controller import ControllerPorts
+from core.control.controller import FeedForwardPorts
 from core.record import Record
 
 
@@ -16,10 +16,12 @@ class OpenLoop(Block):
     class Params(BlockParams):
         """Open loop has no parameters."""
 
-    class Ports(ControllerPorts):
-        """Ports of a controller."""
+    class Ports(FeedForwardPorts):
+        """Ports of a law without feedback."""
 
     @staticmethod
     def step(p: Record, s: Record, x: Ports) -> None:
         """Pass the reference on."""
         x.voltage = x.reference
+        x.voltage_middle = x.reference_middle
+        x.voltage_end = x.reference_end
