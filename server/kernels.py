@@ -7,6 +7,7 @@ import contextlib
 import logging
 import os
 import re
+import signal
 import sys
 
 from scenarios import kernels
@@ -43,6 +44,7 @@ class Kernels:
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,
+            start_new_session=True,  # so that its processes end with it
             preexec_fn=_step_back if os.name == "posix" else None,
         )
         assert process.stdout is not None
@@ -58,7 +60,11 @@ class Kernels:
                 log.warning("kernels could not be compiled ahead; each is compiled when it is used")
         finally:
             with contextlib.suppress(ProcessLookupError):
-                process.terminate()
+                if os.name == "posix":
+                    os.killpg(process.pid, signal.SIGTERM)
+                else:
+                    process.terminate()
+            await process.wait()
 
     async def stop(self) -> None:
         """End the compiler."""
