@@ -55,6 +55,16 @@ class AppliedPorts(BlockPorts):
     end: float = reads("drive.end", "V", "the same at its end")
 
 
+class MeasuredPorts(BlockPorts):
+    """What was measured."""
+
+    measured: float = reads("sensor.displacement", "um", "measured displacement")
+
+
+class ObservedPorts(MeasuredPorts, AppliedPorts):
+    """What was measured, and the voltage that made it: all that an identifier or a bank knows of the device."""
+
+
 class Moves(Record):
     """Effect of a volt more in the middle and at the end of a tick than at its start."""
 
