@@ -142,8 +142,10 @@ def _place(builder: Any, base: Any, layout: Layout, field: Field) -> Any:
     behind = builder.gep(base, [_integer(layout.size)])
     if field.offset == 0:
         return behind
-    length = builder.fptosi(builder.load(builder.gep(base, [_integer(layout.size - 1)])), ir.IntType(64))
-    return builder.gep(behind, [builder.mul(length, _integer(field.offset))])
+    length = builder.load(builder.gep(base, [_integer(layout.size - 1)]))
+    # nobody writes it, so it need not be read again after every number that is written
+    length.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return builder.gep(behind, [builder.mul(builder.fptosi(length, ir.IntType(64)), _integer(field.offset))])
 
 
 @lower_getattr_generic(RecordType)

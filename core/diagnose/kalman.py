@@ -3,32 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, BlockParams, Context, FloatArray, Oscillator, Port, parameter
-from core.diagnose.filters import (
-    DEPTH,
-    GAIN1,
-    INVERSE_PSI,
-    LEAST,
-    MOVE11,
-    NOISE22,
-    OWN,
-    P11,
-    P22,
-    PSI,
-    TAKE_MIDDLE,
-    TAKE_PARABOLA,
-    TAKE_START,
-    WIDTH,
-)
+from core.block import Block, BlockParams, Context, FloatArray, Oscillator, parameter
+from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
-from core.diagnose.lanes import lanes
+from core.diagnose.lanes import Filters, PackedFilters
 from core.format import format_short
-from core.voltage import APPLIED_PORTS, MOST_LOST, PUSH1, PUSH2, pack_tick
+from core.voltage import MOST_LOST, tick_of
+
+P = TypeVar("P", bound=PackedFilters)
+S = TypeVar("S", bound=Filters)
 
 
 class FilterParams(BlockParams):
@@ -62,22 +50,15 @@ class KalmanBank(Block):
     """Base of every bank of Kalman filters: the filters, not what is concluded from them."""
 
     Params: ClassVar[type[BlockParams]] = KalmanParams
-    inputs: ClassVar[tuple[Port, ...]] = (
-        Port("measured", "um", "measured displacement", source="sensor.displacement"),
-        *APPLIED_PORTS,
-    )
-    outputs: ClassVar[tuple[Port, ...]] = (
-        Port("probability", "1", "probability of the hypothesis", each="hypotheses"),
-    )
-    taps: ClassVar[tuple[Port, ...]] = (
-        Port("residual", "um", "measured minus predicted displacement", each="hypotheses"),
-        Port(
-            "nis",
-            "1",
-            "normalised residual squared, 1 on average for a true and well tuned model",
-            each="hypotheses",
-        ),
-    )
+
+    class Packed(PackedFilters):
+        """What the filters read."""
+
+    class State(Filters):
+        """The filters."""
+
+    class Ports(BankPorts):
+        """Ports of every bank."""
 
     every_tick: ClassVar[bool] = True
 
@@ -103,46 +84,54 @@ class KalmanBank(Block):
         return gaussian(residual, covariance)
 
     @classmethod
-    def filters(cls, params: Any, context: Context, hypotheses: list[Hypothesis] | None = None) -> list[float]:
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        return cls.filters(cls.Packed.blank(), params, context)
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """All filters at rest."""
+        return cls.at_rest(cls.State.zeros(), params, context)
+
+    @classmethod
+    def filters(cls, p: P, params: Any, context: Context, hypotheses: list[Hypothesis] | None = None) -> P:
         """Pack what every bank needs; steady gains from the Riccati equation, for those that offer them."""
         hypotheses = hypotheses or params.hypotheses
         scale = params.assumed_noise_scale
         q = params.process_noise_v**2 * scale
         r = (params.sensor_noise_um or assumed_noise(context)) ** 2 * scale
-        table = lanes(WIDTH, len(hypotheses))
         steady = getattr(params, "form", "") == "steady"
         printed = getattr(params, "residual_covariance", "") == "printed"
         for i, hypothesis in enumerate(hypotheses):
             device = hypothesis.oscillator(context.device)
-            tick = pack_tick(device, device.force, context.dt_ms / context.every, context.analogue)
-            push = tick[PUSH1], tick[PUSH2]
-            phi, noise = over_ticks(np.reshape(tick[:PUSH1], (2, 2)), np.outer(push, push) * q, context.every)
-            table[: NOISE22 + 1, i] = (*phi.flat, noise[0, 0], noise[0, 1], noise[1, 1])
-            table[MOVE11:, i] = tick
+            tick = tick_of(device, device.force, context.dt_ms / context.every, context.analogue)
+            push = tick.push1, tick.push2
+            over_tick = np.array([[tick.phi11, tick.phi12], [tick.phi21, tick.phi22]])
+            phi, noise = over_ticks(over_tick, np.outer(push, push) * q, context.every)
+            p.phi11[i], p.phi12[i], p.phi21[i], p.phi22[i] = phi.flat
+            p.noise11[i], p.noise12[i], p.noise22[i] = noise[0, 0], noise[0, 1], noise[1, 1]
+            p.tick11[i], p.tick12[i], p.tick21[i], p.tick22[i] = over_tick.flat
+            p.push1[i], p.push2[i] = push
+            p.middle1[i], p.middle2[i], p.end1[i], p.end2[i] = tick.middle1, tick.middle2, tick.end1, tick.end2
             if steady:
-                table[GAIN1 : PSI + 1, i] = steady_gain(phi, noise, r, printed)
-                table[INVERSE_PSI, i] = 1.0 / table[PSI, i]
-        head = [
-            len(hypotheses),
-            r,
-            steady,
-            printed,
-            context.every,
-            _taken(params, context),
-            shuttle_memory(context),
-            params.least_drive_v**2,
-        ]
-        return [float(value) for value in (*head, *table.ravel())]
+                p.gain1[i], p.gain2[i], p.psi[i] = steady_gain(phi, noise, r, printed)
+                p.inverse_psi[i] = 1.0 / p.psi[i]
+        p.count = len(hypotheses)
+        p.sensor = r
+        p.steady = steady
+        p.printed = printed
+        p.every = context.every
+        p.taken = _taken(params, context)
+        p.memory = shuttle_memory(context)
+        p.least_drive = params.least_drive_v**2
+        return p
 
     @classmethod
-    def at_rest(cls, params: Any, context: Context, more: tuple[float, ...] = (), count: int = 0) -> list[float]:
-        """All filters at rest, as uncertain as the parameters say; then lanes of a bank's own, each of one value."""
-        table = lanes(DEPTH + len(more), count or len(params.hypotheses))
-        table[P11] = params.initial_std_um**2
-        table[P22] = (params.initial_std_um * context.device.natural_frequency) ** 2
-        for row, value in enumerate(more, DEPTH):
-            table[row] = value
-        return [0.0] * OWN + [float(value) for value in table.ravel()]
+    def at_rest(cls, s: S, params: Any, context: Context) -> S:
+        """Put all filters at rest, as uncertain as the parameters say."""
+        s.p11[:] = params.initial_std_um**2
+        s.p22[:] = (params.initial_std_um * context.device.natural_frequency) ** 2
+        return s
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:

@@ -5,68 +5,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.diagnose import window
-from core.diagnose.filters import (
-    COUNT,
-    DEPTH,
-    LANES,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    coasts,
-    filters_step,
-    informed,
-)
+from core.diagnose.filters import between_updates, filters_step, informed
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
-from core.diagnose.weights import floored, weigh
-
-FLOOR, LOG_FLOOR, CYCLES, DT, WINDOW, CAPACITY, LEAN = range(7)
-LOG, LIKELIHOOD, SLIDING = DEPTH, DEPTH + 1, DEPTH + 2
-RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 1, PROBABILITY + 4)
-
-
-def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    own = LANES + WIDTH * LANE
-    evidence = informed(p, s, w, io)
-    at = OWN + SLIDING * LANE
-    capacity = int(p[own + CAPACITY])
-    place = window.begin(s, at, capacity, p[own + WINDOW], p[own + CYCLES])
-    turn = window.angle(w, p[own + CYCLES], p[own + DT])
-    cosine = math.cos(turn)
-    sine = math.sin(turn)
-    along, across = window.leaning(p, own + LEAN, cosine, sine)
-    span = p[own + LEAN + window.SPAN]
-    half = 0.5 / p[own + WINDOW]
-    filters_step(p, s, w, io, n, RESIDUAL_TAP)
-    window.push(s, at, n, capacity, place, cosine, sine)
-    best = -math.inf
-    for i in range(n):
-        tone = window.tone(s, at, i, along, across, span)
-        w[io[TONE_TAP] + i] = tone
-        log = s[OWN + LOG * LANE + i]
-        if evidence:
-            log -= half * tone
-        s[OWN + LIKELIHOOD * LANE + i] = log
-        best = max(best, log)
-    weigh(
-        s,
-        OWN + LOG * LANE,
-        OWN + LIKELIHOOD * LANE,
-        w,
-        io[PROBABILITY],
-        n,
-        best,
-        p[own + FLOOR],
-        p[own + LOG_FLOOR],
-    )
+from core.diagnose.weights import floored, take_floored_softmax
+from core.elementary import cos, sin
+from core.ports import tap
+from core.record import Vector, vector
 
 
 class LockIn(KalmanBank):
@@ -81,7 +28,6 @@ class LockIn(KalmanBank):
     """
 
     title = "Residual-correlation bank (lock-in)"
-    taps = (*KalmanBank.taps, Port("tone", "1", "part of the residuals at the tone, 2 on average", each="hypotheses"))
     equations = (
         Equation(
             "tone",
@@ -100,6 +46,23 @@ class LockIn(KalmanBank):
         )
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
 
+    class Packed(window.Packed):
+        """What filters and window read; floor under probabilities and its logarithm."""
+
+        probability_floor: float
+        log_floor: float
+
+    class State(window.State):
+        """Filters and window; logarithms of probabilities, and those of this sample."""
+
+        log: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
+
+    class Ports(KalmanBank.Ports):
+        """Ports of every bank, and the tone."""
+
+        tone: Vector = tap("1", "part of the residuals at the tone, 2 on average", each="hypotheses")
+
     evidence = r"-\frac{T_k}{2W}"
 
     @classmethod
@@ -108,23 +71,43 @@ class LockIn(KalmanBank):
         return -0.5 * tone / window.length(params, context)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        own = [
-            *floored(params.probability_floor),
-            window.tone_hz(params, context) / 1e3,
-            context.dt_ms / context.every,
-            float(window.length(params, context)),
-            float(window.room(params)),
-            *window.lean(params, context, window.length(params, context)),
-        ]
-        return np.array(cls.filters(params, context) + own)
+        p = cls.filters(cls.Packed.blank(), params, context)
+        window.fill(p, params, context, window.length(params, context), window.room(params))
+        p.probability_floor, p.log_floor = floored(params.probability_floor)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike, the window empty."""
-        n = len(params.hypotheses)
-        sliding = [0.0] * window.size(window.room(params))
-        return np.array(cls.at_rest(params, context, (-math.log(n), 0.0)) + sliding)
+        s = cls.at_rest(cls.State.zeros(window.room(params)), params, context)
+        s.log[:] = -math.log(len(params.hypotheses))
+        return s
 
-    step = lock_in_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        evidence = informed(p, s, x.measured)
+        place = window.begin(p, s)
+        turn = window.angle(p, x.tick)
+        cosine = cos(turn)
+        sine = sin(turn)
+        along, across = window.leaning(p, cosine, sine)
+        span = p.span
+        half = 0.5 / p.samples
+        filters_step(p, s, x, n)
+        window.push(s, n, place, cosine, sine)
+        best = -math.inf
+        for i in range(n):
+            tone = window.tone(s, i, along, across, span)
+            x.tone[i] = tone
+            log = s.log[i]
+            if evidence:
+                log -= half * tone
+            s.likelihood[i] = log
+            best = max(best, log)
+        take_floored_softmax(s.log, s.likelihood, x.probability, n, best, p.probability_floor, p.log_floor)
