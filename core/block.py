@@ -16,17 +16,13 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from core.kernel import SMALL, flush_tiny, inlined, kernel
-from core.ports import KINDS, RESERVED, TICK, TIME_MS, BlockPorts, Port
+from core.ports import KINDS, BlockPorts, Port
 from core.record import Record
 from core.table import Table
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
-
-settled = flush_tiny  # OLD NOTATION
-__all__ = ["RESERVED", "SMALL", "TICK", "TIME_MS", "Block", "Port", "inlined", "kernel", "settled"]
 
 
 @dataclass(frozen=True)
@@ -195,10 +191,9 @@ class Block:
         path = cls.__module__.split(".")
         cls.name = path[-1]
         cls.family = path[-2] if len(path) > 1 else ""
-        if cls.Ports is not BlockPorts:  # OLD NOTATION: always
-            cls.inputs, cls.outputs, cls.taps = (
-                tuple(port for port in cls.Ports.declared if port.kind == kind) for kind in KINDS
-            )
+        cls.inputs, cls.outputs, cls.taps = (
+            tuple(port for port in cls.Ports.declared if port.kind == kind) for kind in KINDS
+        )
 
     @staticmethod
     def step(p: Any, s: Any, x: Any) -> None:
@@ -240,18 +235,15 @@ class Block:
             When neither ``pack`` nor a parameter says one of them.
         """
         record = cls.pack(params, context)
-        if isinstance(record, np.ndarray):  # OLD NOTATION
-            return np.ascontiguousarray(record, dtype=np.float64)
         for name in record.blanks():
             if "." in name or not hasattr(params, name):
                 raise TypeError(f"{cls.__module__}: pack leaves {name} blank, and no parameter has this name")
             setattr(record, name, float(getattr(params, name)))
-        return np.ascontiguousarray(record.array, dtype=np.float64)
+        numbers: FloatArray = record.array
+        return numbers
 
     @classmethod
     def initial(cls, params: BlockParams, context: Context) -> FloatArray:
         """Return the numbers of the initial state."""
-        record = cls.state(params, context)
-        if isinstance(record, np.ndarray):  # OLD NOTATION
-            return np.ascontiguousarray(record, dtype=np.float64)
-        return np.ascontiguousarray(record.array, dtype=np.float64)
+        numbers: FloatArray = cls.state(params, context).array
+        return numbers

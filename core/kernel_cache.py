@@ -1,14 +1,16 @@
 """Keeps compiled kernels, so that each is compiled once.
 
-A kernel is known by a hash of its bytecode, of the constants, layouts and kernels it names, of numba and of the
-processor. An edit compiles again what it touches and nothing else; an edit of a comment compiles nothing.
+A kernel is known by a hash of its bytecode, of the constants, layouts and kernels it names, of the compiler and of
+the processor. An edit compiles again what it touches and nothing else; an edit of a comment compiles nothing.
 """
 
 from __future__ import annotations
 
 import dis
 import hashlib
+import inspect
 import pickle
+import sys
 from functools import cache
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Protocol
@@ -74,9 +76,15 @@ class KernelCache:
 @cache
 def key(function: FunctionType) -> str:
     """Return a hash of a function and of all it names, which another process would find too."""
-    digest = hashlib.sha256(f"{numba.__version__} {np.__version__}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {np.__version__} {_compiler()}".encode())
     _digest_function(function, digest, {})
     return digest.hexdigest()
+
+
+@cache
+def _compiler() -> str:
+    """Return the text that makes machine code of steps, beside numba."""
+    return "".join(inspect.getsource(sys.modules[name]) for name in ("core.kernel", "core.views"))
 
 
 def _digest_function(function: FunctionType, digest: Any, seen: dict[int, int]) -> None:

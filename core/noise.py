@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from core.block import kernel
+from core.kernel import kernel
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 MULTIPLIER_1 = np.uint64(0xBF58476D1CE4E5B9)

@@ -7,6 +7,7 @@ displacement")``. The step reads and writes ``x.measured``.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from inspect import get_annotations
 from typing import Any, ClassVar, Protocol, get_type_hints
 
 from core.record import Record, Records, record_of
@@ -161,7 +162,7 @@ class BlockPorts:
         """Give every port its place: those of the bases first, then its own, a port declared anew where it was."""
         ports = {port.name: port for base in cls.__bases__ for port in getattr(base, "declared", ())}
         hints = get_type_hints(cls)
-        for name in cls.__dict__.get("__annotations__", {}):
+        for name in get_annotations(cls):
             port = cls.__dict__.get(name)
             if not isinstance(port, Port):
                 raise TypeError(f"{cls.__qualname__}.{name}: declare reads(...), output(...) or tap(...)")

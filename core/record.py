@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from inspect import get_annotations
 from typing import Any, ClassVar, Generic, Self, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -113,18 +114,19 @@ class Record:
     layout: ClassVar[Layout] = Layout((), 0)
 
     def __init__(self, array: Any) -> None:
-        self.array = array
+        self.array: Any = array
 
     def __init_subclass__(cls) -> None:
         """Lay the fields out: those of the bases first, then its own."""
         declared = {name: many for base in cls.__bases__ for name, many in getattr(base, "_declared", {}).items()}
         hints = get_type_hints(cls)
-        for name in cls.__dict__.get("__annotations__", {}):
+        for name in get_annotations(cls):
             declared[name] = (hints[name], cls.__dict__.get(name))
         cls._declared = declared
         cls.layout = _laid_out(cls.__qualname__, declared)
         for field in cls.layout.fields:
-            setattr(cls, field.name, _ACCESS[field.kind](cls.layout, field, record_of(declared[field.name][0])))
+            kind = record_of(declared[field.name][0])
+            setattr(cls, field.name, _Scalar(field.offset) if field.kind == SCALAR else _Part(cls.layout, field, kind))
 
     _declared: ClassVar[dict[str, tuple[Any, Any]]] = {}
 
@@ -212,14 +214,14 @@ def _laid_out(owner: str, declared: dict[str, tuple[Any, Any]]) -> Layout:
 class _Scalar:
     """Reads and writes one number."""
 
-    def __init__(self, layout: Layout, field: Field, kind: type[Record] | None) -> None:
-        self._at = field.offset
+    def __init__(self, place: int) -> None:
+        self._place = place
 
     def __get__(self, record: Record, owner: type[Record]) -> Any:
-        return record.array[self._at]
+        return record.array[self._place]
 
     def __set__(self, record: Record, value: Any) -> None:
-        record.array[self._at] = value
+        record.array[self._place] = value
 
 
 class _Part:
@@ -243,6 +245,3 @@ class _Part:
 
     def __set__(self, record: Record, value: Any) -> None:
         record.array[self._slice(record)] = value.array if isinstance(value, Record) else value
-
-
-_ACCESS: dict[str, type[_Scalar] | type[_Part]] = {SCALAR: _Scalar, VECTOR: _Part, RECORD: _Part, RECORDS: _Part}

@@ -11,8 +11,9 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from core.block import Block, BlockParams, Equation, Port
+from core.block import Block, BlockParams, Equation
 from core.errors import unknown
+from core.ports import Port
 
 FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", "board")
 

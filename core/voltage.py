@@ -18,7 +18,6 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -26,23 +25,9 @@ from core.block import Context, Oscillator
 from core.device.oscillator import transition, within
 from core.format import format_short
 from core.kernel import flush_tiny, inlined, kernel
-from core.ports import BlockPorts, Port, reads
+from core.ports import BlockPorts, reads
 from core.record import Record
 
-APPLIED_PORTS = (
-    Port("applied", "V", "voltage applied at the start of the sample that ends now", source="drive.voltage"),
-    Port("middle", "V", "the same in its middle", source="drive.middle"),
-    Port("end", "V", "the same at its end", source="drive.end"),
-)
-"""A held voltage is the same in all of them."""
-
-PHI11, PHI12, PHI21, PHI22, PUSH1, PUSH2, MIDDLE1, MIDDLE2, END1, END2 = range(10)
-"""A device over a tick: transition, effect of a held volt, and of a volt more in the middle and at the end."""
-TICK_SIZE = 10
-LATER1, LATER2, FIRST_SHARE, SECOND_SHARE, INTERVAL_SIZE = range(TICK_SIZE, TICK_SIZE + 5)
-"""Behind it, over the interval: :math:`-\\Phi_{22},\\;\\Phi_{12}`, and the inverses of b0 and b1 of a unit gain."""
-BEGUN, START, GAINED1, GAINED2, STATES = range(5)
-"""State: whether the interval has begun, the voltage at its start, what motion the rest of it has made so far."""
 MOST_LOST = 1e-3
 """Share of the response to a tone that may be lost unsaid."""
 
@@ -199,78 +184,11 @@ def weighed_voltages(p: Interval, s: Gathered) -> tuple[float, float]:
     return s.start + p.first_share * x, s.start + p.second_share * later
 
 
-@inlined
-def moved(w: Any, io: Any, at: int) -> tuple[float, float, float]:
-    """Return the voltage at the start of the tick that ends now, and how much more it was in the middle and the end."""
-    u = w[io[at]]
-    return u, w[io[at + 1]] - u, w[io[at + 2]] - u
-
-
-def pack_tick(device: Oscillator, gain: float, h: float, analogue: bool) -> list[float]:
-    """Pack a device over a tick; its stiffness times its displacement at rest is the gain times the voltage."""
-    phi = transition(device.mass, device.damping, device.stiffness, h)
-    more = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
-    rest = gain / device.stiffness
-    return [*phi, (1.0 - phi[0]) * rest, -phi[2] * rest, *more]
-
-
-def pack_interval(context: Context) -> list[float]:
-    """Pack the nominal device over a tick and over the interval of the block, for a displacement at rest of 1 um/V."""
-    device = context.device
-    tick = pack_tick(device, device.stiffness, context.dt_ms / context.every, context.analogue)
-    b0, b1, _, _ = difference_equation(device, 1.0, context.dt_ms)
-    _, phi12, _, phi22 = transition(device.mass, device.damping, device.stiffness, context.dt_ms)
-    return [*tick, -phi22, phi12, 1.0 / b0 if b0 else 0.0, 1.0 / b1 if b1 else 0.0]
-
-
 def difference_equation(device: Oscillator, rest: float, h: float) -> tuple[float, float, float, float]:
     """Return b0, b1, a1, a2 of a device under a held voltage, of which a volt moves it by ``rest`` in the end."""
     f11, f12, f21, f22 = transition(device.mass, device.damping, device.stiffness, h)
     g1, g2 = (1.0 - f11) * rest, -f21 * rest
     return g1, f12 * g2 - f22 * g1, -(f11 + f22), f11 * f22 - f12 * f21
-
-
-@kernel
-def add_moved(p: Any, more: int, s: Any, at: int, middle: float, end: float) -> None:
-    """Add to a motion what the voltage of a tick was more in its middle and at its end; the effects are at ``more``."""
-    s[at] += p[more] * middle + p[more + 2] * end
-    s[at + 1] += p[more + 1] * middle + p[more + 3] * end
-
-
-@kernel
-def follow(p: Any, at: int, s: Any, b: int, u: float, middle: float, end: float) -> None:
-    """Take in a tick: its voltage at the start, in the middle and at the end.
-
-    What is gathered is the motion by what the voltage is more than at the start of the interval, so that a voltage held
-    over all of it adds nothing, to the bit.
-    """
-    if s[b + BEGUN] == 0.0:
-        s[b + BEGUN] = 1.0
-        s[b + START] = u
-        s[b + GAINED1] = 0.0
-        s[b + GAINED2] = 0.0
-    x = s[b + GAINED1]
-    v = s[b + GAINED2]
-    if middle == u and end == u and u == s[b + START] and x == 0.0 and v == 0.0:
-        return
-    more = u - s[b + START]
-    middle -= u
-    end -= u
-    own1 = p[at + PUSH1] * more + p[at + MIDDLE1] * middle + p[at + END1] * end
-    own2 = p[at + PUSH2] * more + p[at + MIDDLE2] * middle + p[at + END2] * end
-    s[b + GAINED1] = p[at + PHI11] * x + p[at + PHI12] * v + own1
-    s[b + GAINED2] = p[at + PHI21] * x + p[at + PHI22] * v + own2
-
-
-@kernel
-def weighed(p: Any, at: int, s: Any, b: int) -> tuple[float, float]:
-    r"""Return :math:`\alpha/b_0` and :math:`\beta/b_1` of the interval that ends now; the next tick begins another."""
-    s[b + BEGUN] = 0.0
-    x = s[b + GAINED1]
-    if x == 0.0 and s[b + GAINED2] == 0.0:
-        return s[b + START], s[b + START]
-    later = p[at + LATER1] * x + p[at + LATER2] * s[b + GAINED2]
-    return s[b + START] + p[at + FIRST_SHARE] * x, s[b + START] + p[at + SECOND_SHARE] * later
 
 
 def lost(nominal: Oscillator, other: Oscillator, context: Context, hz: float) -> float:

@@ -8,9 +8,11 @@ import numpy as np
 from scipy import signal
 
 from core import estimation
-from core.block import FloatArray, Oscillator, kernel
+from core.block import FloatArray, Oscillator
 from core.board.board import Board
 from core.device.oscillator import transition
+from core.kernel import kernel
+from core.record import Record, Vector, vector
 from scenarios.timing import cpu_ns
 
 
@@ -60,33 +62,41 @@ def lsim_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
     return lambda: cpu_ns(lambda: signal.lsim(system, voltage, t), len(voltage))
 
 
+class Estimate(Record):
+    """Estimate of four parameters, lower triangle of its covariance, regressor, scratch numbers."""
+
+    theta: Vector = vector(4)
+    covariance: Vector = vector(10)
+    regressor: Vector = vector(4)
+    product: Vector = vector(4)
+
+
 @kernel
-def estimate_record(
-    s: FloatArray, regressors: FloatArray, measured: FloatArray, forgetting: float, limit: float
-) -> None:
+def estimate_record(s: Estimate, regressors: FloatArray, measured: FloatArray, forgetting: float, limit: float) -> None:
     """Run recursive least squares with four parameters over a record.
 
     Parameters
     ----------
-    s : ndarray
-        Estimate, lower triangle of the covariance, and eight scratch numbers.
+    s : Estimate
     regressors, measured : ndarray, shape (m, 4) and (m,)
         The record.
     forgetting, limit : float
         Forgetting factor and largest trace.
     """
-    n, at = 4, 14  # known when it is compiled, so that the loops are unrolled
+    n = 4  # known when it is compiled, so that the loops are unrolled
     for i in range(regressors.shape[0]):
         error = measured[i]
         for j in range(n):
-            s[at + j] = regressors[i, j]
-            error -= s[j] * regressors[i, j]
-        estimation.least_squares(s, 0, n, at, at + n, n, error, forgetting, forgetting, limit)
+            s.regressor[j] = regressors[i, j]
+            error -= s.theta[j] * regressors[i, j]
+        estimation.estimate(s.theta, s.covariance, s.regressor, s.product, n, error, forgetting, forgetting, limit)
 
 
-def estimate_start(covariance: float) -> FloatArray:
+def estimate_start(covariance: float) -> Estimate:
     """Return the state of ``estimate_record`` before the first sample."""
-    return np.array([0.0] * 4 + estimation.diagonal(4, covariance) + [0.0] * 8)
+    start = Estimate.zeros()
+    start.covariance[:] = estimation.diagonal(4, covariance)
+    return start
 
 
 def regressors_of(u: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -99,7 +109,7 @@ def estimate_sample(regressors: FloatArray, measured: FloatArray) -> Callable[[]
     start = estimate_start(1e8)
 
     def measure() -> float:
-        s = start.copy()
+        s = Estimate(start.array.copy())
         return cpu_ns(lambda: estimate_record(s, regressors, measured, 0.98, 1e10), len(measured))
 
     return measure

@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray, IntArray, kernel
+from core.block import FloatArray, IntArray
 from core.board.spec import Spec
 from core.board.wiring import Wiring, scored
 from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
 from core.diagnose.regions import REGIONS
 from core.format import format_count, format_short, format_si
+from core.kernel import kernel
 
 Finding = dict[str, Any]
 

@@ -7,20 +7,18 @@ about as much as inlining. The same steps run uncompiled are the oracle of the c
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
 from core.block import Block, FloatArray, IntArray
 from core.board.fold import Words, fold, fold_uncompiled
 from core.kernel import compiled_step, kernel
-from core.ports import RESERVED, TICK, TIME_MS, BlockPorts
+from core.ports import RESERVED, TICK, TIME_MS
 
 ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
 """Columns of the table, one row per block."""
@@ -36,43 +34,9 @@ def address(block: type[Block]) -> int:
     """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
     found = _addresses.get(block)
     if found is None:
-        if (
-            block.Ports is BlockPorts and hasattr(block, "inputs") and block.step.__code__.co_argcount == 4
-        ):  # OLD NOTATION
-            found = _old(block.step).address
-        else:
-            found = compiled_step(block.step, block.Packed, block.State, block.Ports).address
+        found = compiled_step(block.step, block.Packed, block.State, block.Ports).address
         _addresses[block] = found
     return found
-
-
-# OLD NOTATION from here
-_DOUBLES, _INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)  # type: ignore[no-untyped-call]
-_SIGNATURE = types.void(_DOUBLES, _DOUBLES, _DOUBLES, _INTEGERS)
-
-
-class _Apart(Compiler):
-    """Compiles a step knowing that its parameters, state, signals and ports lie apart, so that it may use vectors."""
-
-    def __init__(self, typing: Any, target: Any, library: Any, args: Any, result: Any, flags: Any, local: Any) -> None:
-        flags.noalias = True
-        super().__init__(typing, target, library, args, result, flags, local)  # type: ignore[no-untyped-call]
-
-
-@cache
-def _old(step: Any) -> Any:
-    from numba.core.ccallback import CFunc
-
-    from core.kernel_cache import KernelCache
-
-    options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
-    f = CFunc(step, (_SIGNATURE.args, types.void), locals={}, options=options, pipeline_class=_Apart)
-    vars(f)["_cache"] = KernelCache(step)
-    f.compile()
-    return f
-
-
-# OLD NOTATION to here
 
 
 def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:

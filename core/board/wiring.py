@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import registry
-from core.block import RESERVED, Block, BlockParams, BoolArray, FloatArray, IntArray, Port
+from core.block import Block, BlockParams, BoolArray, FloatArray, IntArray
 from core.board import program
 from core.board.effects import Effects
 from core.board.measurement import Measurement
 from core.board.score import Score
 from core.faults.fault import Fault
 from core.plain import plain
-from core.ports import BlockPorts
+from core.ports import RESERVED, Port
 from core.sense.sensor import Sensor
 from core.signals import Signal, SignalTable
 
@@ -90,8 +90,6 @@ class Wiring:
         """Return the step of a row in plain Python, bound to its arrays."""
         block = self.instances[row].block
         p, s, io = self.packed(row), self._part(self.s, row, program.S_OFFSET), self.ports(row)
-        if block.Ports is BlockPorts:  # OLD NOTATION
-            return partial(block.step, p, s, self.w, io)  # type: ignore[call-arg]
         return partial(plain(block.step), block.Packed(p), block.State(s), block.Ports(self.w, io))
 
     def _part(self, whole: NDArray[N], row: int, column: int) -> NDArray[N]:
@@ -280,8 +278,22 @@ def _after(wiring: Wiring, before: Spec, spec: Spec) -> list[Instance]:
     return order
 
 
-PARTS = ("frame", "device", "environment", "plant", "reference", "model", "drive", "guard", "measuring", "sensors")
-PARTS += ("active", "controllers", "identifiers", "diagnosers")
+PARTS = (
+    "frame",
+    "device",
+    "environment",
+    "plant",
+    "reference",
+    "model",
+    "drive",
+    "guard",
+    "measuring",
+    "sensors",
+    "active",
+    "controllers",
+    "identifiers",
+    "diagnosers",
+)
 """Parts of a bench without its faults."""
 
 

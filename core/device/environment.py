@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from core.block import kernel
+from core.kernel import kernel
 
 GAS_CONSTANT_AIR = 287.05
 """Specific gas constant of dry air, J/(kg K)."""

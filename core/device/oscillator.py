@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.linalg import expm
 
-from core.block import kernel
+from core.kernel import kernel
 
 
 @kernel

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.block import FloatArray, Oscillator, kernel
+from core.block import FloatArray, Oscillator
 from core.device.oscillator import transition
+from core.kernel import kernel
 
 AHEAD = 4
 

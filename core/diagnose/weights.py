@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from core.kernel import SMALL, inlined
 from core.record import Vector
@@ -18,72 +17,9 @@ def floored(floor: float) -> list[float]:
 
 
 @inlined
-def likeliest(w: Any, probability: int, n: int) -> int:
-    """Return the hypothesis with the largest probability, the first of equals."""
-    winner = 0
-    for i in range(1, n):
-        if w[probability + i] > w[probability + winner]:
-            winner = i
-    return winner
-
-
-@inlined
 def shrunk(log: float) -> float:
     """Return the number with this logarithm, nothing for the smallest: a processor underflows ten times slower."""
     return 0.0 if log < LEAST_LOG else math.exp(log)
-
-
-@inlined
-def weigh(
-    s: Any, log: int, likelihood: int, w: Any, probability: int, n: int, best: float, floor: float, log_floor: float
-) -> None:
-    r"""Turn unnormalised logarithms into probabilities, :math:`p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})`.
-
-    Parameters
-    ----------
-    s : array
-        State that holds both lanes of logarithms.
-    log, likelihood : int
-        Where the logarithms go, normalised as before the floor, and where those of this sample stand.
-    w, probability
-        Signals, and where the probabilities go.
-    n : int
-        Number of hypotheses.
-    best : float
-        Largest of the logarithms of this sample.
-    floor, log_floor : float
-        Smallest probability, 0 for none, and its logarithm.
-    """
-    total = 0.0
-    for i in range(n):
-        share = shrunk(s[likelihood + i] - best)
-        w[probability + i] = share
-        total += share
-    after = 0.0
-    inverse = 1.0 / total
-    for i in range(n):
-        share = max(w[probability + i] * inverse, floor)
-        w[probability + i] = share
-        after += share
-    shift = best + math.log(total)
-    inverse = 1.0 / after
-    for i in range(n):
-        share = w[probability + i]
-        floored = floor > 0.0 and share == floor
-        s[log + i] = log_floor if floored else s[likelihood + i] - shift
-        w[probability + i] = share * inverse
-
-
-@inlined
-def share_out(s: Any, likelihood: int, w: Any, probability: int, n: int, best: float) -> None:
-    """Turn unnormalised logarithms into probabilities that nothing remembers."""
-    total = 0.0
-    for i in range(n):
-        share = shrunk(s[likelihood + i] - best)
-        w[probability + i] = share
-        total += share
-    for i in range(n):
-        w[probability + i] /= total
 
 
 @inlined

@@ -5,14 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar, Literal, Protocol
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, FloatArray, Port, parameter
+from core.block import Block, BlockParams, Context, parameter
 from core.kernel import kernel
-from core.ports import BlockPorts, output, reads
+from core.ports import output, reads
 from core.record import Record
 
-KIND, SEVERITY, START, LENGTH, ON = range(5)
 STEP, RAMP, INTERMITTENT = 0.0, 1.0, 2.0
 KINDS = {"step": STEP, "ramp": RAMP, "intermittent": INTERMITTENT}
 
@@ -88,8 +85,6 @@ class Fault(Block):
         length = profile.duration_ms if profile.kind == "ramp" else profile.period_ms
         ticks = max(1.0, round(length / context.dt_ms))
         on = max(1.0, round(profile.duty * ticks))
-        if cls.Ports is BlockPorts:  # OLD NOTATION
-            return np.array([KINDS[profile.kind], params.severity, float(params.start_tick), ticks, on])
         p: Any = cls.Packed.blank()
         p.kind, p.length, p.on = KINDS[profile.kind], ticks, on
         return p
@@ -113,34 +108,3 @@ class ScaleFault(Fault):
         x.severity = now
         if now != 0.0:
             x.effect *= 1.0 + now
-
-
-def channel(name: str) -> tuple[Port, ...]:
-    """Return the input port of a fault: the effect it multiplies."""
-    return (Port("effect", "1", f"effect channel {name}", source=f"effects.{name}"),)
-
-
-def channels(*names: str) -> tuple[Port, ...]:
-    """Return the input ports of a fault with several effects, in their order."""
-    return tuple(Port(name, "1", f"effect channel {name}", source=f"effects.{name}") for name in names)
-
-
-@kernel
-def severity_at(p: Any, tick: float) -> float:
-    """Severity at a tick."""
-    if p[SEVERITY] == 0.0:
-        return 0.0
-    since = tick - p[START]
-    if p[KIND] == RAMP:
-        return float(p[SEVERITY] * min(1.0, since / p[LENGTH]))
-    if p[KIND] == INTERMITTENT:
-        return float(p[SEVERITY]) if since - p[LENGTH] * math.floor(since / p[LENGTH]) < p[ON] else 0.0
-    return float(p[SEVERITY])
-
-
-def scale_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Multiply the effect channel by one plus the severity."""
-    severity = severity_at(p, w[0])
-    w[io[1]] = severity
-    if severity != 0.0:
-        w[io[0]] *= 1.0 + severity

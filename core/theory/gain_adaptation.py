@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.block import FloatArray, kernel
+from core.block import FloatArray
+from core.kernel import kernel
 
 MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = range(6)
 """``PARKS`` is the rule as derived, on the slope of the error alone; ``LYAPUNOV`` adds the error itself."""

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from core.block import TICK, TIME_MS, BlockParams, FloatArray, parameter
+from core.block import BlockParams, FloatArray, parameter
 from core.board import fold, program
 from core.errors import InputError
+from core.ports import TICK, TIME_MS
 from scenarios.studies.monte_carlo import again
 from scenarios.studies.study import Study
 

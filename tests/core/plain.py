@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, TIME_MS
 from core.board import program
 from core.board.spec import parse
 from core.board.wiring import signal_name, wire
 from core.faults.fault import Fault
+from core.ports import TICK, TIME_MS
 from core.registry import block
 from tests.lab import make, run_digest
 
