@@ -20,10 +20,11 @@ from core.board.fold import Words, fold, fold_uncompiled
 from core.kernel import compiled_step, kernel
 from core.ports import RESERVED, TICK, TIME_MS
 
-ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
+ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY = 0, 1, 2, 3, 4
+COLUMNS = 5
 """Columns of the table, one row per block."""
 
-DONE, TRIPPED, WATCHED = range(3)
+DONE, TRIPPED, WATCHED = 0, 1, 2
 """Why the loop returned."""
 
 

@@ -70,5 +70,5 @@ def held_response(device: Oscillator, voltage: FloatArray, dt_ms: float) -> Floa
     drive = np.array([powers[j] @ gain for j in range(AHEAD)])
     reach = np.array([power[0] for power in powers])
     out = np.empty(len(voltage))
-    _recur(phi, drive, powers[AHEAD], reach, np.ascontiguousarray(voltage, dtype=np.float64), out)
+    _recur(phi, drive, powers[-1], reach, np.ascontiguousarray(voltage, dtype=np.float64), out)
     return out

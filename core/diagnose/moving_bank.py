@@ -45,10 +45,9 @@ class MovingBank(KalmanBank):
         @property
         def models(self) -> list[Hypothesis]:
             """The whole bank; what is not positive is left at the smallest."""
-            steps = range(-self.reach, self.reach + 1)
             return [
                 Hypothesis(name=f"{self.follows}{i:+d}", **{self.follows: max(1.0 + self.spacing * i, self.spacing)})
-                for i in steps
+                for i in range(-self.reach, self.reach + 1)
             ]
 
     class Packed(KalmanBank.Packed):

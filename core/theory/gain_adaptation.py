@@ -14,7 +14,7 @@ import numpy as np
 from core.block import FloatArray
 from core.kernel import kernel
 
-MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = range(6)
+MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = 0, 1, 2, 3, 4, 5
 """``PARKS`` is the rule as derived, on the slope of the error alone; ``LYAPUNOV`` adds the error itself."""
 RULES = {"mit": MIT, "parks": PARKS, "lyapunov": LYAPUNOV, "dressler": DRESSLER, "price": PRICE, "monopoli": MONOPOLI}
 STEPS = 200
