@@ -17,9 +17,9 @@ from core.board.ensemble import Ensemble, make
 from core.board.observer import cautions
 from core.errors import InputError
 from core.signals import Signal, SignalTable
-from scenarios.metrics import device_metrics, measure
+from scenarios.measure.metrics import device_metrics, measure
+from scenarios.measure.verdicts import TRACED_VERDICTS
 from scenarios.schema import Scenario
-from scenarios.verdict_metrics import TRACED_VERDICTS
 
 DEFAULT_SAMPLES = 10_000
 """Length of a run whose scenario has no end."""

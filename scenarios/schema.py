@@ -15,7 +15,7 @@ from core.errors import InputError, from_validation, unknown_field
 from core.format import format_short
 from core.nesting import read_toml
 from core.table import Table
-from scenarios.stretch import Stretch
+from scenarios.measure.stretch import Stretch
 from scenarios.studies import parse_study
 
 Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
