@@ -192,7 +192,7 @@ def sweep(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = False,
 ) -> None:
     """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
-    from scenarios.campaign import Stopped
+    from scenarios.campaign.campaign import Stopped
     from server.settings import load_settings
     from server.sweeping import carry_out, read_sweep
 
