@@ -21,8 +21,8 @@ from core.errors import InputError, one_line
 from core.format import format_in, format_short, format_si
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
-from scenarios.keeping import keep
 from scenarios.library import get, library
+from scenarios.report.keeping import keep
 from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds

@@ -14,9 +14,9 @@ from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import receiver_operating_characteristic, tally
 from scenarios.edit import with_values
 from scenarios.library import get
-from scenarios.report import campaign_report, results_table
+from scenarios.report.campaign import campaign_report, results_table
+from scenarios.report.svg import Series, chart, ticks
 from scenarios.run import run
-from scenarios.svg import Series, chart, ticks
 
 SWEEP = {
     "schema": 1,
