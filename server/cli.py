@@ -265,7 +265,7 @@ def catalog_command(
 @plainly
 def bench(as_json: JsonOption = False) -> None:
     """Measure speed, each figure as a ratio to a peer in the same run."""
-    from scenarios.speed import speed
+    from scenarios.speed.ratios import speed
 
     found = speed()
     if as_json:
