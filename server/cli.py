@@ -21,7 +21,7 @@ from core.errors import InputError, one_line
 from core.format import format_in, format_short, format_si
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
-from scenarios.library import get, library
+from scenarios.library import get, ids
 from scenarios.report.keeping import keep
 from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
@@ -158,7 +158,7 @@ def gallery(
     as_json: JsonOption = False,
 ) -> None:
     """Run every library scenario: published claim, expectation, measured, verdict."""
-    chosen = [entry for entry in library() if fnmatch.fnmatch(entry.id, only)]
+    chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
     if not chosen:
         raise InputError(f"no scenario matches {only!r}", "--only")
     summaries = [run_scenario(entry).summary() for entry in chosen]
