@@ -144,10 +144,11 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     InputError
         When an event could never be carried out.
     """
-    document = dict(scenario.bench)
+    spec, twins = scenario.spec, scenario.twins
     if seed is not None:
-        document["seed"] = seed
-    board = make(document, compiled=compiled)
+        spec = spec.changed({"seed": seed})
+        twins = {name: twin.changed({"seed": seed}) for name, twin in twins.items()}
+    board = make(spec, twins, compiled=compiled)
     for position, event in enumerate(scenario.head.events):
         for command in event.commands():
             try:
