@@ -14,8 +14,8 @@ from core.device.frequency import Band, response, tolerance_band
 from core.device.geometry import Geometry
 from core.device.spread import Spread, Tolerances, draw, evaluate, sensitivity
 from core.errors import InputError
-from scenarios.lateral_metrics import device_pull_in
-from scenarios.metrics import device_metrics
+from scenarios.measure.lateral import device_pull_in
+from scenarios.measure.metrics import device_metrics
 from scenarios.studies.process_spread import STEPS
 
 DRAWS = 400

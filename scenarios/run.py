@@ -17,9 +17,9 @@ from core.board.ensemble import Ensemble, make
 from core.board.observer import cautions
 from core.errors import InputError
 from core.signals import Signal, SignalTable
-from scenarios.metrics import device_metrics, measure
+from scenarios.measure.metrics import device_metrics, measure
+from scenarios.measure.verdicts import TRACED_VERDICTS
 from scenarios.schema import Scenario
-from scenarios.verdict_metrics import TRACED_VERDICTS
 
 DEFAULT_SAMPLES = 10_000
 """Length of a run whose scenario has no end."""
@@ -144,10 +144,11 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     InputError
         When an event could never be carried out.
     """
-    document = dict(scenario.bench)
+    spec, twins = scenario.spec, scenario.twins
     if seed is not None:
-        document["seed"] = seed
-    board = make(document, compiled=compiled)
+        spec = spec.changed({"seed": seed})
+        twins = {name: twin.changed({"seed": seed}) for name, twin in twins.items()}
+    board = make(spec, twins, compiled=compiled)
     for position, event in enumerate(scenario.head.events):
         for command in event.commands():
             try:

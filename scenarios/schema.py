@@ -9,13 +9,13 @@ from pydantic import Field, ValidationError, model_validator
 
 from core.board.commands import LONGEST_MS, Command, Timed, parse_command
 from core.board.document import Document
-from core.board.ensemble import twin_documents
+from core.board.ensemble import twin_specs
 from core.board.spec import FIELDS, parse
 from core.errors import InputError, from_validation, unknown_field
 from core.format import format_short
 from core.nesting import read_toml
 from core.table import Table
-from scenarios.stretch import Stretch
+from scenarios.measure.stretch import Stretch
 from scenarios.studies import parse_study
 
 Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
@@ -147,6 +147,10 @@ class Scenario:
         Title, length, events, expectations.
     bench : dict
         The part that describes the bench.
+    spec : Spec
+        That bench, checked; every board of the scenario is built from it.
+    twins : dict of Spec
+        The bench of every twin, checked.
     study : tuple, optional
         The study to make of it instead of running it, and its parameters.
     """
@@ -169,11 +173,7 @@ class Scenario:
         self.spec = parse(self.bench)
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
-        for name, twin in twin_documents(self.bench).items():
-            try:
-                parse(twin)
-            except InputError as error:
-                raise error.under(f"twins.{name}") from None
+        self.twins = twin_specs(self.bench)
         self.study = parse_study(self.head.study) if self.head.study is not None else None
         self.commands: list[Command] = []
         for position, event in enumerate(self.head.events):

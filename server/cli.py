@@ -21,8 +21,8 @@ from core.errors import InputError, one_line
 from core.format import format_in, format_short, format_si
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
-from scenarios.keeping import keep
-from scenarios.library import get, library
+from scenarios.library import get, ids
+from scenarios.report.keeping import keep
 from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds
@@ -158,7 +158,7 @@ def gallery(
     as_json: JsonOption = False,
 ) -> None:
     """Run every library scenario: published claim, expectation, measured, verdict."""
-    chosen = [entry for entry in library() if fnmatch.fnmatch(entry.id, only)]
+    chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
     if not chosen:
         raise InputError(f"no scenario matches {only!r}", "--only")
     summaries = [run_scenario(entry).summary() for entry in chosen]
@@ -192,7 +192,7 @@ def sweep(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = False,
 ) -> None:
     """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
-    from scenarios.campaign import Stopped
+    from scenarios.campaign.campaign import Stopped
     from server.settings import load_settings
     from server.sweeping import carry_out, read_sweep
 
@@ -265,7 +265,7 @@ def catalog_command(
 @plainly
 def bench(as_json: JsonOption = False) -> None:
     """Measure speed, each figure as a ratio to a peer in the same run."""
-    from scenarios.speed import speed
+    from scenarios.speed.ratios import speed
 
     found = speed()
     if as_json:

@@ -13,14 +13,14 @@ from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
 from core.nesting import read_toml
-from scenarios.campaign import Campaign, Stopped
-from scenarios.cluster import check_address
-from scenarios.html import as_toml
-from scenarios.outcome import Outcome
-from scenarios.report import campaign_report, results_table
-from scenarios.sweep import Sweep
-from scenarios.tally import tally
-from scenarios.traces import write_json, write_text
+from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.cluster import check_address
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import tally
+from scenarios.report.campaign import campaign_report, results_table
+from scenarios.report.html import as_toml
+from scenarios.report.traces import write_json, write_text
 from server.store.database import Database, reason_of
 from server.store.lock import lock
 from server.store.results import Results

@@ -46,16 +46,17 @@ class Board:
 
     Parameters
     ----------
-    document : dict
-        What the bench is made of.
+    bench : dict or Spec
+        What the bench is made of: a document, or what was read from one. A board never changes a bench in place, so
+        that several may be built from one.
     compiled : bool
         Run compiled blocks; the uncompiled ones are their oracle and give the same bits.
     """
 
     chunk = CHUNK
 
-    def __init__(self, document: Document, *, compiled: bool = True) -> None:
-        self.spec: Spec = parse(document)
+    def __init__(self, bench: Document | Spec, *, compiled: bool = True) -> None:
+        self.spec: Spec = bench if isinstance(bench, Spec) else parse(bench)
         self.base: Document = copy.deepcopy(self.spec.document)
         self.compiled = compiled
         self.wiring: Wiring = wire(self.spec)

@@ -6,8 +6,8 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from core.block import BlockParams, parameter
+from scenarios.measure.sweep_sine import sweep_sine
 from scenarios.studies.study import Study
-from scenarios.sweep_sine import sweep_sine
 
 if TYPE_CHECKING:
     from core.board.board import Board

@@ -16,9 +16,9 @@ from core.board.flops import Budget, budget
 from core.device.frequency import response
 from core.device.identification import Identified
 from core.units import UM_PER_M
-from scenarios.plant_cost import plant_costs
-from scenarios.sweep_sine import sweep_sine
-from scenarios.unstable_region import unstable_region
+from scenarios.measure.plant_cost import plant_costs
+from scenarios.measure.sweep_sine import sweep_sine
+from scenarios.measure.unstable_region import unstable_region
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep, SessionDep
 from server.bench.session import Session

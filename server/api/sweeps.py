@@ -9,8 +9,8 @@ from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from core.nesting import read_toml
-from scenarios.script import campaign_script
-from scenarios.tally import PointTally
+from scenarios.campaign.tally import PointTally
+from scenarios.report.script import campaign_script
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, table_response

@@ -15,11 +15,11 @@ from typing import Any, TypeVar
 import pyarrow as pa
 from pydantic import TypeAdapter
 
-from scenarios.executor import prepare
-from scenarios.outcome import Outcome
-from scenarios.report import campaign_report, results_table
-from scenarios.sweep import Sweep
-from scenarios.tally import PointTally, tally
+from scenarios.campaign.executor import prepare
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import PointTally, tally
+from scenarios.report.campaign import campaign_report, results_table
 from server.runs.worker import NICE
 from server.store.database import Database
 from server.store.results import Results

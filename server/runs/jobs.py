@@ -22,7 +22,7 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from core.errors import InputError
-from scenarios.executor import prepare
+from scenarios.campaign.executor import prepare
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of, not_found

@@ -19,10 +19,10 @@ from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import defer
 
 from core.errors import InputError
-from scenarios.campaign import Campaign, Stopped
+from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
 from scenarios.schema import Scenario
-from scenarios.sweep import Sweep
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
 from server.runs.apart import FEW_POINTS, FEW_RUNS, Apart, contents, examine

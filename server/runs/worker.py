@@ -69,7 +69,7 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     Cancelled
         When a file ``cancel`` has appeared in the folder.
     """
-    from scenarios.keeping import keep
+    from scenarios.report.keeping import keep
     from scenarios.run import DEFAULT_SAMPLES, Result, build, run, run_bytes
     from scenarios.schema import Scenario
     from scenarios.seeds import together

@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from core.errors import InputError
-from scenarios.traces import packing
+from scenarios.report.traces import packing
 
 PART, EVENTS = ".arrows", ".events"
 GROUP_TICKS = 1 << 15

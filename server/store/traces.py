@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError, unknown
 from core.signals import CLOCK
-from scenarios.traces import packing
+from scenarios.report.traces import packing
 
 LARGEST = 2**62
 Format = Literal["csv", "parquet", "npz", "mat"]

@@ -13,7 +13,7 @@ from core.board.board import Board
 from core.device.catalogue import device
 from core.device.frame import Damage, stiffness
 from scenarios.design import designed, device_figures
-from scenarios.lateral_metrics import lateral_metrics
+from scenarios.measure.lateral import lateral_metrics
 from tests.lab import inject, make, play
 from tests.physics.plane import EPS, STILL, XR, XS, G, N, T, bench
 from tests.physics.plane import KT as HEAT

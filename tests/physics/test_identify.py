@@ -13,8 +13,8 @@ from scipy.signal import cont2discrete, lfilter
 from core.errors import InputError
 from core.identify.filtered import noise_gram
 from scenarios.library import get
-from scenarios.peers import estimate_record, estimate_start
 from scenarios.run import run
+from scenarios.speed.peers import estimate_record, estimate_start
 from tests.lab import do, inject, make, play
 
 with warnings.catch_warnings():

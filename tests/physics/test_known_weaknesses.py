@@ -12,7 +12,7 @@ from core.device.catalogue import device
 from core.plant.planar import Planar
 from core.plant.suspension import elastic_force
 from core.sense.single_beam import SingleBeam
-from scenarios.sensing_metrics import lost_samples
+from scenarios.measure.sensing import lost_samples
 from tests.core.sense.bench import errors
 from tests.lab import do, play, rms
 from tests.physics.large_displacement import Frame

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.plant.equilibrium import bias_pull_in
-from scenarios.lateral_metrics import lateral_metrics
+from scenarios.measure.lateral import lateral_metrics
 from tests.lab import do, play, rms
 from tests.physics.plane import EPS, KT, XR, XS, G, N, T, bench, insides
 

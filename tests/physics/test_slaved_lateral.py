@@ -10,7 +10,7 @@ from scipy import integrate, optimize
 
 from core.plant import slaved_lateral
 from core.plant.equilibrium import fold, slaved_force, stators_of, voltage_at
-from scenarios.lateral_metrics import lateral_metrics
+from scenarios.measure.lateral import lateral_metrics
 from tests.lab import make, play
 
 EPS, N, T, G = 8.8541878128e-12, 87, 2.0, 2.1

@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 
-from scenarios.campaign import Campaign, Stopped
-from scenarios.outcome import Outcome
+from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
 from scenarios.run import run
 from scenarios.schema import Scenario
-from scenarios.sweep import Sweep
-from tests.scenarios.cluster import Cluster, free_port
+from tests.scenarios.campaign.cluster import Cluster, free_port
 
 
 class Memory:
@@ -100,8 +100,8 @@ def test_a_worker_process_that_is_killed_is_replaced() -> None:
 
 
 def test_without_a_scheduler_a_campaign_stops_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.campaign.PATIENCE", 2)
-    monkeypatch.setattr("scenarios.cluster.CONNECT_S", 0.2)
+    monkeypatch.setattr("scenarios.campaign.campaign.PATIENCE", 2)
+    monkeypatch.setattr("scenarios.campaign.cluster.CONNECT_S", 0.2)
     with pytest.raises(Stopped, match=r"lost the scheduler at tcp://127.0.0.1.* 0 of 12"):
         Campaign(small(), Memory(), scheduler=f"tcp://127.0.0.1:{free_port()}").run()
 

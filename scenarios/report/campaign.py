@@ -9,11 +9,11 @@ from typing import Any
 import pyarrow as pa
 
 from core.format import format_count, format_number, format_short, format_si
-from scenarios.html import as_toml, page, say, table
-from scenarios.outcome import Outcome
-from scenarios.svg import Series, chart
-from scenarios.sweep import Sweep
-from scenarios.tally import DiagnosisTally, PointTally
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import DiagnosisTally, PointTally
+from scenarios.report.html import as_toml, page, say, table
+from scenarios.report.svg import Series, chart
 
 USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
 MOST_CURVES = 16

@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner
 
-from scenarios.campaign import Stopped
+from scenarios.campaign.campaign import Stopped
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
@@ -111,7 +111,7 @@ def test_one_that_stops_says_how_to_go_on(sweep: Any, monkeypatch: pytest.Monkey
     def stops(*_: Any) -> None:
         raise Stopped("lost worker processes 5 times in a row; 3 of 12 runs are done")
 
-    monkeypatch.setattr("scenarios.campaign.Campaign.run", stops)
+    monkeypatch.setattr("scenarios.campaign.campaign.Campaign.run", stops)
     ended = sweep("--out", "here")
     assert ended.exit_code == 1 and "3 of 12 runs are done" in ended.stderr
     assert "go on with: combbench sweep mine.toml --out here --resume" in ended.stderr
@@ -119,7 +119,7 @@ def test_one_that_stops_says_how_to_go_on(sweep: Any, monkeypatch: pytest.Monkey
     def interrupted(*_: Any) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("scenarios.campaign.Campaign.run", interrupted)
+    monkeypatch.setattr("scenarios.campaign.campaign.Campaign.run", interrupted)
     ended = sweep("--out", "here", "--resume")
     assert ended.exit_code == 130 and "--resume" in ended.stderr
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import InputError
-from scenarios.metrics import first_peak, fundamental, step_lengths
+from scenarios.measure.metrics import first_peak, fundamental, step_lengths
 from scenarios.run import run
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds

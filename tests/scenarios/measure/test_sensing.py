@@ -8,9 +8,9 @@ import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core import registry
 from scenarios.edit import with_values
 from scenarios.library import get
+from scenarios.measure.sensing import lost_samples
 from scenarios.run import run
 from scenarios.schema import Scenario
-from scenarios.sensing_metrics import lost_samples
 
 
 def test_the_fringe_the_count_began_on_is_left_open():

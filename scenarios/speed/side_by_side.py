@@ -9,7 +9,7 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.schema import Scenario
-from scenarios.timing import cpu_ns
+from scenarios.speed.timing import cpu_ns
 
 SAMPLES = 9000
 DIAGNOSERS: dict[str, dict[str, Any]] = {

@@ -10,8 +10,8 @@ import numpy as np
 from pydantic import BaseModel
 
 from core.block import FloatArray
-from scenarios.outcome import EVIDENCE, Diagnosis, Outcome
-from scenarios.sweep import Sweep
+from scenarios.campaign.outcome import EVIDENCE, Diagnosis, Outcome
+from scenarios.campaign.sweep import Sweep
 
 
 class Spread(BaseModel):

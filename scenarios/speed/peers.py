@@ -13,7 +13,7 @@ from core.board.board import Board
 from core.device.oscillator import transition
 from core.kernel import kernel
 from core.record import Record, Vector, vector
-from scenarios.timing import cpu_ns
+from scenarios.speed.timing import cpu_ns
 
 
 def filterpy_step(board: Board, steps: int = 300) -> Callable[[], float]:
@@ -46,7 +46,7 @@ def filterpy_step(board: Board, steps: int = 300) -> Callable[[], float]:
 
 def interconnected_sample(board: Board, samples: int = 20) -> Callable[[], float]:
     """Return the measurement of python-control's simulation of the same adaptive loop, ns per sample of 10 us."""
-    from scenarios.interconnected import adaptive_loop, simulate
+    from scenarios.speed.interconnected import adaptive_loop, simulate
 
     loop = adaptive_loop(board.spec.context())
     return lambda: cpu_ns(lambda: simulate(loop, board.dt_ms * samples), samples)

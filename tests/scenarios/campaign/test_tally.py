@@ -9,14 +9,14 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from scenarios.campaign.outcome import EVIDENCE, Outcome, outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import receiver_operating_characteristic, tally
 from scenarios.edit import with_values
 from scenarios.library import get
-from scenarios.outcome import EVIDENCE, Outcome, outcome
-from scenarios.report import campaign_report, results_table
+from scenarios.report.campaign import campaign_report, results_table
+from scenarios.report.svg import Series, chart, ticks
 from scenarios.run import run
-from scenarios.svg import Series, chart, ticks
-from scenarios.sweep import Sweep
-from scenarios.tally import receiver_operating_characteristic, tally
 
 SWEEP = {
     "schema": 1,

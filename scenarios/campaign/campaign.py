@@ -13,11 +13,11 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from statistics import fmean
 from typing import Any, Protocol
 
-from scenarios.executor import LOST, open_executor, width_of
+from scenarios.campaign.executor import LOST, open_executor, width_of
+from scenarios.campaign.outcome import outcome
+from scenarios.campaign.sweep import Point, Sweep
 from scenarios.key import code_version
-from scenarios.outcome import outcome
 from scenarios.schema import Scenario
-from scenarios.sweep import Point, Sweep
 
 BATCH_S = 1.0
 """A batch is worth this much computing, so that sending it costs nothing beside."""

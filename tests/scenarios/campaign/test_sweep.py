@@ -9,9 +9,9 @@ import pytest
 
 from core.board.document import with_values
 from core.errors import InputError
+from scenarios.campaign.sweep import LatinHypercube, Sweep
 from scenarios.key import content_hash, run_key
 from scenarios.library import get
-from scenarios.sweep import LatinHypercube, Sweep
 
 SEVEN = {"schema": 1, "scenario": "ch5-seven-step", "set": {"samples": 500}}
 NOISE = "sensor.noise_um"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.block import FloatArray
 from core.board.board import Board
-from scenarios.stretch import Stretch
+from scenarios.measure.stretch import Stretch
 
 
 def lost_samples(error: FloatArray, ambiguity_um: float) -> tuple[NDArray[np.bool_], int]:

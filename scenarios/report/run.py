@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from core.format import format_count, format_in, format_number, format_short
-from scenarios.html import as_toml, page, table
+from scenarios.report.html import as_toml, page, table
+from scenarios.report.svg import Mark, Series, chart, thin
 from scenarios.run import Result
-from scenarios.svg import Mark, Series, chart, thin
 
 MOST_EVENTS = 300
 CLOSE_UP = 300

@@ -6,8 +6,8 @@ import time
 from collections.abc import Sequence
 from statistics import median
 
-from scenarios.campaign import Campaign, Found
-from scenarios.sweep import Sweep
+from scenarios.campaign.campaign import Campaign, Found
+from scenarios.campaign.sweep import Sweep
 
 REPEATS = 3
 

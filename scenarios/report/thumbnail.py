@@ -10,8 +10,8 @@ from html import escape
 import numpy as np
 
 from core.block import FloatArray
+from scenarios.report.svg import COLOURS
 from scenarios.run import Result
-from scenarios.svg import COLOURS
 
 WIDTH, HEIGHT = 240, 120
 LANE = 9

@@ -11,10 +11,11 @@ import numpy as np
 from core import registry
 from core.board.board import CHUNK, Board
 from core.device.response import held_response
-from scenarios.campaign_speed import scaling
 from scenarios.edit import with_values
 from scenarios.library import get
-from scenarios.peers import (
+from scenarios.run import build
+from scenarios.speed.campaign import scaling
+from scenarios.speed.peers import (
     estimate_sample,
     filterpy_step,
     interconnected_sample,
@@ -22,9 +23,8 @@ from scenarios.peers import (
     padasip_sample,
     regressors_of,
 )
-from scenarios.run import build
-from scenarios.side_by_side import DIAGNOSERS, SAMPLES, seven_steps, side_by_side
-from scenarios.timing import ALIVE, advance_cost, block_costs, cpu_ns, interleaved, loop_cost
+from scenarios.speed.side_by_side import DIAGNOSERS, SAMPLES, seven_steps, side_by_side
+from scenarios.speed.timing import ALIVE, advance_cost, block_costs, cpu_ns, interleaved, loop_cost
 
 CAMPAIGN_RUNS = 400
 SECOND = 100_000

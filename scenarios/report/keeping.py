@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from core.signals import CLOCK
+from scenarios.report.run import run_report
+from scenarios.report.script import script
+from scenarios.report.thumbnail import thumbnail
+from scenarios.report.traces import write_json, write_parquet, write_text
 from scenarios.run import Result
-from scenarios.run_report import run_report
-from scenarios.script import script
-from scenarios.thumbnail import thumbnail
-from scenarios.traces import write_json, write_parquet, write_text
 
 
 def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) -> None:

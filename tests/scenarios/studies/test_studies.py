@@ -11,10 +11,10 @@ from core.device.identification import tone
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
+from scenarios.measure.sweep_sine import sweep_sine
 from scenarios.run import run
 from scenarios.schema import Scenario
 from scenarios.studies import studies
-from scenarios.sweep_sine import sweep_sine
 from tests.lab import QUIET, do, make, play
 
 CHAPTER_1 = ["ch1-table-1-1", "ch1-bode-tolerances", "ch1-beam-width", "ch1-process-spread"]

@@ -12,10 +12,10 @@ from core.board.board import Board
 from core.board.environment import Environment
 from core.board.score import Scores
 from core.board.spec import Spec
-from scenarios.lateral_metrics import lateral_metrics
-from scenarios.sensing_metrics import sensing_metrics
-from scenarios.stretch import Stretch
-from scenarios.verdict_metrics import verdict_metrics
+from scenarios.measure.lateral import lateral_metrics
+from scenarios.measure.sensing import sensing_metrics
+from scenarios.measure.stretch import Stretch
+from scenarios.measure.verdicts import verdict_metrics
 
 IDENTIFIED_PCT = 10.0
 """Error of the worst coefficient within which an identifier counts as settled."""

@@ -14,11 +14,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from scenarios.edit import with_values
-from scenarios.keeping import keep
 from scenarios.library import get
+from scenarios.report.keeping import keep
+from scenarios.report.svg import Mark, Series, chart, thin
+from scenarios.report.thumbnail import HEALTHY, thumbnail
 from scenarios.run import run
-from scenarios.svg import Mark, Series, chart, thin
-from scenarios.thumbnail import HEALTHY, thumbnail
 
 SVG = "{http://www.w3.org/2000/svg}"
 

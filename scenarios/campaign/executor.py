@@ -11,7 +11,7 @@ from concurrent.futures import CancelledError, Executor, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 
-from scenarios.cluster import Cluster, open_cluster
+from scenarios.campaign.cluster import Cluster, open_cluster
 
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
 """What a future or a connection says when a worker, the scheduler or the line to it is gone."""
