@@ -167,6 +167,10 @@ class Context:
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
 
 
+LOOP = "board"
+"""The family of the blocks in ``core/loop``, which every bench has."""
+
+
 class Block:
     """Base of every block; a subclass declares, ``pack`` and ``state`` turn the declaration into records."""
 
@@ -190,7 +194,8 @@ class Block:
         """Name the block after its file and its family after its folder; sort its ports by kind."""
         path = cls.__module__.split(".")
         cls.name = path[-1]
-        cls.family = path[-2] if len(path) > 1 else ""
+        folder = path[-2] if len(path) > 1 else ""
+        cls.family = LOOP if folder == "loop" else folder
         cls.inputs, cls.outputs, cls.taps = (
             tuple(port for port in cls.Ports.declared if port.kind == kind) for kind in KINDS
         )

@@ -11,11 +11,11 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from core.block import Block, BlockParams, Equation
+from core.block import LOOP, Block, BlockParams, Equation
 from core.errors import unknown
 from core.ports import Port
 
-FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", "board")
+FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", LOOP)
 
 
 class PortCard(BaseModel):
@@ -81,10 +81,11 @@ def blocks(family: str) -> dict[str, type[Block]]:
     """
     if family not in FAMILIES:
         raise unknown("family", family, FAMILIES)
-    package = importlib.import_module(f"core.{family}")
+    folder = "core.loop" if family == LOOP else f"core.{family}"
+    package = importlib.import_module(folder)
     found: dict[str, type[Block]] = {}
     for module_info in pkgutil.iter_modules(package.__path__):
-        module = importlib.import_module(f"core.{family}.{module_info.name}")
+        module = importlib.import_module(f"{folder}.{module_info.name}")
         for value in vars(module).values():
             if (
                 isinstance(value, type)

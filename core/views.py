@@ -1,7 +1,7 @@
 """Records and ports as compiled steps see them: views with attributes whose layout is part of their type.
 
-Only the way to an address differs. A number of a record is at ``base[offset]``, the signal behind a port at
-the place it names among all signals; a vector is a pointer, a nested record a view at an offset. So the names cost nothing.
+Only the way to an address differs. A number of a record is at ``base[offset]``, the signal behind a port at the place
+that the port names; a vector is a pointer, a nested record a view at an offset. So the names cost nothing.
 """
 
 from __future__ import annotations

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from core.block import FloatArray
-from core.board.spec import Spec, parse
+from core.board.parse import parse
+from core.board.spec import Spec
 from core.device.frequency import Band, response, tolerance_band
 from core.device.geometry import Geometry
 from core.device.spread import Spread, Tolerances, draw, evaluate, sensitivity

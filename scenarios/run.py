@@ -15,6 +15,7 @@ from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
 from core.board.observer import cautions
+from core.board.parse import changed
 from core.errors import InputError
 from core.signals import Signal, SignalTable
 from scenarios.measure.metrics import device_metrics, measure
@@ -146,8 +147,8 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     """
     spec, twins = scenario.spec, scenario.twins
     if seed is not None:
-        spec = spec.changed({"seed": seed})
-        twins = {name: twin.changed({"seed": seed}) for name, twin in twins.items()}
+        spec = changed(spec, {"seed": seed})
+        twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
     board = make(spec, twins, compiled=compiled)
     for position, event in enumerate(scenario.head.events):
         for command in event.commands():

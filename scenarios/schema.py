@@ -10,7 +10,8 @@ from pydantic import Field, ValidationError, model_validator
 from core.board.commands import LONGEST_MS, Command, Timed, parse_command
 from core.board.document import Document
 from core.board.ensemble import twin_specs
-from core.board.spec import FIELDS, parse
+from core.board.parse import parse
+from core.board.spec import FIELDS
 from core.errors import InputError, from_validation, unknown_field
 from core.format import format_short
 from core.nesting import read_toml

@@ -9,18 +9,21 @@ from typing import Any
 import numpy as np
 
 from core.block import BlockParams
-from core.board import changes, fold, program, score
+from core.board import changes, fold, program, words
 from core.board.commands import Command, LogEntry, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import Document
-from core.board.guard import REASONS
+from core.board.instances import scored
 from core.board.log import Log
 from core.board.observer import Observer
+from core.board.parse import parse
 from core.board.pending import Pending, Queue
 from core.board.rows import Rows
-from core.board.spec import Section, Spec, parse
-from core.board.wiring import Wiring, scored, wire
+from core.board.spec import Section, Spec
+from core.board.wiring import Wiring, wire
 from core.errors import InputError
+from core.loop import score
+from core.loop.guard import REASONS
 from core.signals import SignalTable
 
 CHUNK = 512
@@ -68,7 +71,7 @@ class Board:
         self.used: set[str] = set()
         self._observer = Observer(self.spec, self.wiring)
         self._allocate()
-        self._link()
+        self.link()
 
     # -- what it is
 
@@ -135,7 +138,7 @@ class Board:
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
             for finding in self._observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
-                self._note("board", **finding)
+                self.note("board", **finding)
             if ran:
                 self.used |= {self.spec.active, self.spec.measuring}
             done += ran
@@ -165,7 +168,7 @@ class Board:
         )
         return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
-    def _link(self) -> None:
+    def link(self) -> None:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
         wiring = self.wiring
         running = wiring.rest(self.spec)
@@ -206,23 +209,23 @@ class Board:
     def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
         changes.check(self, command)
         self.pending.add(Pending(command, actor, tick, condition, self.tick))
-        return self._note(actor, "scheduled", f"waiting: {changes.describe(command)}", command=command)
+        return self.note(actor, "scheduled", f"waiting: {words.describe(command)}", command=command)
 
     def _apply_due(self) -> None:
         for entry in self.pending.take_due(self.tick):
             try:
                 self._do(entry.command, entry.actor)
             except InputError as error:
-                self._note("board", "refused", f"{changes.describe(entry.command)}: {error}", command=entry.command)
+                self.note("board", "refused", f"{words.describe(entry.command)}: {error}", command=entry.command)
 
     def _do(self, command: Command, actor: str) -> LogEntry:
         untimed = command.model_copy(update={"at_sample": None, "at_ms": None, "when": None})
         old, new = changes.carry_out(self, untimed)
-        return self._note(actor, untimed.kind, changes.describe(untimed), command=untimed, old=old, new=new)
+        return self.note(actor, untimed.kind, words.describe(untimed), command=untimed, old=old, new=new)
 
     # -- log
 
-    def _note(
+    def note(
         self,
         actor: str,
         kind: str,
@@ -233,6 +236,7 @@ class Board:
         old: Any = None,
         new: Any = None,
     ) -> LogEntry:
+        """Write an entry of the log, at this tick unless another is named."""
         at = self.tick if tick is None else tick
         return self.log.add(at, at * self.dt_ms, actor, kind, text, command=command, old=old, new=new)
 
@@ -254,7 +258,7 @@ class Board:
             value=value if np.isfinite(value) else None,
         )
         changes.disengage(self)
-        self._note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())
+        self.note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())
 
     # -- copies
 
@@ -277,7 +281,7 @@ class Board:
         """Make what copies do not share."""
         self.log = self.log.copy()
         self._allocate()
-        self._link()
+        self.link()
 
     def save(self) -> Document:
         """Return the bench as a scenario document: what it started from, and what was done to it.
@@ -285,7 +289,7 @@ class Board:
         Run headless it gives the same bits.
         """
         done = [
-            {**changes.event(entry.command), "at_sample": entry.tick}
+            {**words.event(entry.command), "at_sample": entry.tick}
             for entry in self.log
             if entry.command is not None and entry.kind not in ("scheduled", "refused")
         ]

@@ -15,10 +15,11 @@ from core.block import FloatArray
 from core.board.board import Board, Checkpoint
 from core.board.commands import LogEntry, parse_command
 from core.board.document import IDENTIFIER, Document, with_values
+from core.board.parse import parse
 from core.board.rows import Rows
-from core.board.score import Scores
-from core.board.spec import Section, Spec, parse
+from core.board.spec import Section, Spec
 from core.errors import InputError, short, unknown
+from core.loop.score import Scores
 from core.signals import Signal, SignalTable
 
 MOST = 3
@@ -206,7 +207,7 @@ class Ensemble(Board):
             kind = NOTED.get(entry.kind)
             if kind is None or (kind == "warning" and any(entry.text == own.text for own in self.log)):
                 continue
-            self._note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
+            self.note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
         self._mirrored = self.log.last
 
     def checkpoint(self) -> Checkpoint:

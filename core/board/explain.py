@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
+from core.board.instances import scored
 from core.board.spec import Section, Spec
-from core.board.wiring import scored
 from core.errors import InputError
 
 SMALLEST = 1e-30

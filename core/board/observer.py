@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from core.block import FloatArray, IntArray
+from core.board.instances import scored
 from core.board.spec import Spec
-from core.board.wiring import Wiring, scored
+from core.board.wiring import Wiring
 from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
 from core.diagnose.regions import REGIONS

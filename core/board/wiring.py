@@ -5,40 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core import registry
-from core.block import Block, BlockParams, BoolArray, FloatArray, IntArray
+from core.block import BoolArray, FloatArray, IntArray
 from core.board import program
-from core.board.effects import Effects
-from core.board.measurement import Measurement
-from core.board.score import Score
+from core.board.instances import Instance, feeds_forward, instances
+from core.board.spec import Spec
 from core.faults.fault import Fault
+from core.loop.effects import Effects
 from core.plain import plain
 from core.ports import RESERVED, Port
 from core.sense.sensor import Sensor
 from core.signals import Signal, SignalTable
 
-if TYPE_CHECKING:
-    from core.board.spec import Spec
-
 N = TypeVar("N", np.float64, np.int64)
 
 NOTHING = "@nothing"
 """A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
-
-
-class Instance(NamedTuple):
-    """One block on the board: ``prefix`` is the first part of its signals' names."""
-
-    key: str
-    prefix: str
-    block: type[Block]
-    params: BlockParams
-    every: int = 1
 
 
 @dataclass
@@ -120,70 +106,6 @@ class Wiring:
         return idle[self.tap_rows]
 
 
-def instances(spec: Spec) -> list[Instance]:
-    """Return the blocks of a bench in the order of a tick.
-
-    The plant comes first: it integrates the sample that ends now, under the voltage and the effects that were held
-    over it. Then the environment and the faults of this moment, what is measured and concluded, and the voltage to hold
-    next.
-    """
-
-    def usual(key: str, section: Any) -> Instance:
-        return Instance(key, key, section.block, section.params, section.every)
-
-    def waiting(key: str, section: Any) -> Instance:
-        return Instance(key, key, section.block, section.params, spec.turns(section))
-
-    order = [usual("plant", spec.plant), usual("environment", spec.environment)]
-    order.append(Instance("effects", "effects", Effects, Effects.Params()))
-    for name, block in registry.blocks("faults").items():
-        order.append(Instance(f"faults.{name}", f"faults.{name}", block, spec.faults.get(name) or _usual(block)))
-    # first what only detects, then what recovers a displacement from it
-    for recovers in (False, True):
-        order += [
-            usual(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers
-        ]
-    order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
-    order += [waiting(name, section) for name, section in spec.identifiers.items()]
-    for name, section in spec.diagnosers.items():
-        order.append(waiting(name, section))
-        if scored(section.block):
-            order.append(Instance(f"{name}.score", name, Score, _scored(section.params), spec.turns(section)))
-    order += [usual("reference", spec.reference), usual("model", spec.model)]
-    order += [usual(name, section) for name, section in spec.controllers.items()]
-    order += [usual("drive", spec.drive), usual("guard", spec.guard)]
-    return order
-
-
-_USUAL: dict[type[Block], BlockParams] = {}
-
-
-def _usual(block: type[Block]) -> BlockParams:
-    """Return the parameters of a fault that is not there, always the same ones."""
-    if block not in _USUAL:
-        _USUAL[block] = block.Params()
-    return _USUAL[block]
-
-
-def recovered(block: type[Block]) -> bool:
-    """Say whether a sensor puts out a displacement."""
-    return any(port.name == "displacement" for port in block.outputs)
-
-
-def feeds_forward(block: type[Block]) -> bool:
-    """Say whether a controller puts out its voltage between samples too, so that the drive may be analogue."""
-    return any(port.name == "voltage_middle" for port in block.outputs)
-
-
-def scored(block: type[Block]) -> bool:
-    """Say whether a diagnoser chooses between hypotheses, so that it can be right or wrong."""
-    return any(port.name == "probability" and port.each == "hypotheses" for port in block.outputs)
-
-
-def _scored(params: BlockParams) -> BlockParams:
-    return Score.Params.model_construct(hypotheses=getattr(params, "hypotheses"))  # noqa: B009
-
-
 def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
     """Lay out the arrays of a bench and connect its ports.
 
@@ -206,7 +128,7 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
         context = spec.context(instance.every)
         p, s = instance.block.packed(instance.params, context), instance.block.initial(instance.params, context)
         io = ports_of(spec, instance, index)
-        table[row, 1:] = (p_size, s_size, io_size, _every(instance))
+        table[row, 1:] = (p_size, s_size, io_size, every_of(instance))
         p_parts.append(p)
         s_parts.append(s)
         io_parts.append(io)
@@ -231,77 +153,8 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
     )
 
 
-def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
-    """Make the wiring of one bench that of another with the same blocks, in place; say whether it could.
-
-    Only rows whose parameters or context differ are packed again; states go on. When a block refuses its parameters
-    nothing has changed.
-
-    Raises
-    ------
-    InputError
-        As ``Block.pack``.
-    """
-    order = _after(wiring, before, spec)
-    if [entry.block for entry in order] != [entry.block for entry in wiring.instances]:
-        return False
-    other = {
-        every for every in {entry.every for entry in order} if _differs(spec.context(every), before.context(every))
-    }
-    packed = {
-        row: new.block.packed(new.params, spec.context(new.every))
-        for row, (new, old) in enumerate(zip(order, wiring.instances, strict=True))
-        if new.every in other or _differs(new, old)
-    }
-    for row, numbers in packed.items():
-        wiring.packed(row)[:] = numbers
-        wiring.table[row, program.EVERY] = _every(order[row])
-    wiring.instances = order
-    if spec.active != before.active or spec.measuring != before.measuring:
-        for row, instance in enumerate(order):
-            if any(port.source.startswith("@") for port in instance.block.inputs):
-                wiring.ports(row)[:] = ports_of(spec, instance, wiring.index)
-        engage(spec, wiring.index, wiring.w)
-    if spec.sensors is not before.sensors or spec.measuring != before.measuring:
-        wiring.unread = unread(spec, order)
-    return True
-
-
-def _after(wiring: Wiring, before: Spec, spec: Spec) -> list[Instance]:
-    """Return the blocks of a bench, most often those of another but for a fault."""
-    if any(getattr(spec, name) is not getattr(before, name) for name in PARTS):
-        return instances(spec)
-    order = [*wiring.instances]
-    for name in {*before.faults, *spec.faults}:
-        row = wiring.rows[f"faults.{name}"]
-        order[row] = order[row]._replace(params=spec.faults.get(name) or _usual(order[row].block))
-    return order
-
-
-PARTS = (
-    "frame",
-    "device",
-    "environment",
-    "plant",
-    "reference",
-    "model",
-    "drive",
-    "guard",
-    "measuring",
-    "sensors",
-    "active",
-    "controllers",
-    "identifiers",
-    "diagnosers",
-)
-"""Parts of a bench without its faults."""
-
-
-def _differs(one: object, other: object) -> bool:
-    return one is not other and one != other
-
-
-def _every(instance: Instance) -> int:
+def every_of(instance: Instance) -> int:
+    """Return the ticks between two calls of a step."""
     return 1 if instance.block.every_tick else instance.every
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from pydantic import BaseModel
 
 from core.block import FloatArray
-from core.board.score import Scores
 from core.errors import InputError
+from core.loop.score import Scores
 from scenarios.run import Result, run
 from scenarios.schema import Scenario
 

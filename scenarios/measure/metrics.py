@@ -9,9 +9,9 @@ import numpy as np
 
 from core.block import FloatArray
 from core.board.board import Board
-from core.board.environment import Environment
-from core.board.score import Scores
 from core.board.spec import Spec
+from core.loop.environment import Environment
+from core.loop.score import Scores
 from scenarios.measure.lateral import lateral_metrics
 from scenarios.measure.sensing import sensing_metrics
 from scenarios.measure.stretch import Stretch

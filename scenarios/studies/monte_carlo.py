@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.block import BlockParams, parameter
-from core.board.score import Scores
 from core.errors import InputError, unknown
+from core.loop.score import Scores
 from scenarios.studies.study import Study
 
 if TYPE_CHECKING:

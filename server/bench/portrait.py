@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from core.board.changes import describe
+from core.board.words import describe
 from core.faults.fault import FaultParams
 from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
 

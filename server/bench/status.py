@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field
 
 from core.board.commands import Trip
-from core.board.score import Scores
+from core.loop.score import Scores
 from core.signals import Signal
 
 State = Literal["running", "paused", "tripped"]

@@ -10,8 +10,9 @@ import numpy as np
 
 from core.block import Block
 from core.board import program
+from core.board.instances import Instance
 from core.board.spec import Spec
-from core.board.wiring import Instance, Wiring, signal_name
+from core.board.wiring import Wiring, signal_name
 from core.faults.fault import Fault
 from core.plain import plain
 from core.ports import TICK, TIME_MS

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from core import registry
 from core.block import Block
 from core.board.board import Board
-from core.board.spec import parse
+from core.board.parse import parse
 from core.board.wiring import wire
 from core.device.catalogue import device
 from core.errors import InputError

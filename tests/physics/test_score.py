@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.block import Context
-from core.board import score
 from core.diagnose.hypothesis import Hypothesis
 from core.faults.fault import FaultParams
+from core.loop import score
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.board import spec
+from core.board import parse
 from core.board.board import Board
 from core.board.ensemble import Ensemble, make, twin_documents
 from core.errors import InputError
@@ -29,13 +29,13 @@ def bench(**more: Any) -> dict[str, Any]:
 @pytest.fixture
 def parsed(monkeypatch):
     calls = []
-    original = spec._parse
+    original = parse._parse
 
     def counting(doc: Any, before: Any) -> Any:
         calls.append("anew" if before is None else "changed")
         return original(doc, before)
 
-    monkeypatch.setattr(spec, "_parse", counting)
+    monkeypatch.setattr(parse, "_parse", counting)
     return calls
 
 
@@ -55,7 +55,7 @@ def test_a_run_with_twins_parses_each_once(parsed):
 def test_another_seed_checks_the_seed_and_no_section_again(parsed, monkeypatch):
     scenario = Scenario.load(bench(twins=TWINS))
     parsed.clear()
-    monkeypatch.setattr(spec, "_params", None)  # whatever checks the parameters of a block would fail
+    monkeypatch.setattr(parse, "_params", None)  # whatever checks the parameters of a block would fail
     board = build(scenario, 7)
     assert parsed == ["changed"] * 3
     assert isinstance(board, Ensemble)
