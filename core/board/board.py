@@ -21,6 +21,7 @@ from core.board.pending import Pending, Queue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
 from core.board.wiring import Wiring, wire
+from core.diagnose.hypothesis import hypotheses_of
 from core.errors import InputError
 from core.loop import score
 from core.loop.guard import REASONS
@@ -114,7 +115,7 @@ class Board:
         for name, section in self.spec.diagnosers.items():
             if not scored(section.block):
                 continue
-            names = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
+            names = [item.name for item in hypotheses_of(section.params)]
             found[name] = score.read(self.wiring.state(f"{name}.score"), names, int(self.value(f"{name}.winner")))
         return found
 

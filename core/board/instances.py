@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from core import registry
 from core.block import Block, BlockParams
 from core.board.spec import Spec
+from core.diagnose.hypothesis import hypotheses_of
 from core.loop.effects import Effects
 from core.loop.measurement import Measurement
 from core.loop.score import Score
@@ -83,4 +84,4 @@ def scored(block: type[Block]) -> bool:
 
 
 def _scored(params: BlockParams) -> BlockParams:
-    return Score.Params.model_construct(hypotheses=getattr(params, "hypotheses"))  # noqa: B009
+    return Score.Params.model_construct(hypotheses=hypotheses_of(params))

@@ -29,6 +29,7 @@ from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.guard import Guard
 from core.loop.model import Model
+from core.plant.shuttle import ShuttleParams
 from core.signals import CLOCK
 
 MOST_GROWTH = 100.0
@@ -156,7 +157,7 @@ def _driven(doc: Document, before: Spec | None) -> tuple[Device, Section, Sectio
     if "model" not in plant:
         doc["plant"] = {**doc["plant"], "model": usual}
     section = _section("plant", plant.pop("model", usual), plant, "plant", "model")
-    gap = getattr(section.params, "gap_um", None)
+    gap = section.params.gap_um if isinstance(section.params, ShuttleParams) else None
     if gap is not None:  # one comb, one gap: of the force, of the sensors, of the model a diagnoser believes in
         device = device.model_copy(update={"finger_gap_um": gap})
     if before is not None and before.device == device:
@@ -188,8 +189,7 @@ def _suited(spec: Spec) -> Spec:
         "controller.kind": spec.controllers[spec.active].block,
         "sensor.kind": spec.sensors[spec.measuring].block,
     }
-    analogue = getattr(spec.drive.params, "kind", "held") == "analogue"
-    if analogue and not feeds_forward(spec.controllers[spec.active].block):
+    if spec.is_analogue and not feeds_forward(spec.controllers[spec.active].block):
         able = " or ".join(name for name, block in registry.blocks("control").items() if feeds_forward(block))
         text = f"analogue is for {able} only: what {spec.active} asks for is held over a sample"
         raise InputError(text, "drive.kind", f"hold the drive, or let {able} drive")

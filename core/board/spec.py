@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 from pydantic import Field
 
@@ -15,6 +15,8 @@ from core.board.document import (
     Document,
 )
 from core.device.device import Device
+from core.loop.drive import Drive
+from core.loop.environment import Environment
 from core.loop.model import Model
 from core.table import Table
 
@@ -77,6 +79,17 @@ class Spec:
         """Seed of all noise."""
         return self.frame.seed
 
+    @property
+    def tone_hz(self) -> float:
+        """Frequency of the reference in Hz, 0 where it has no tone or more than one."""
+        reference: Any = self.reference.block
+        return float(reference.tone_hz(self.reference.params))
+
+    @property
+    def is_analogue(self) -> bool:
+        """Whether the drive moves between samples."""
+        return bool(cast(Drive.Params, self.drive.params).kind == "analogue")
+
     @cached_property
     def nominal(self) -> Oscillator:
         """The nominal device."""
@@ -114,12 +127,12 @@ class Spec:
             device=nominal,
             model=Model.oscillator(self.model.params, nominal),
             drawing=self.device.drawing,
-            temperature_k=float(getattr(self.environment.params, "temperature_k", 300.0)),
+            temperature_k=cast(Environment.Params, self.environment.params).temperature_k,
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
-            analogue=getattr(self.drive.params, "kind", "held") == "analogue",
-            limit_v=float(getattr(self.drive.params, "limit_v", 30.0)),
-            tone_hz=float(getattr(self.reference.params, "frequency_hz", 0.0)),
+            analogue=self.is_analogue,
+            limit_v=cast(Drive.Params, self.drive.params).limit_v,
+            tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
         )
 

@@ -202,7 +202,11 @@ def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
 def needed(spec: Spec) -> set[str]:
     """Return the sensor in use, those that always run or that a diagnoser reads, and all they read from."""
     found: set[str] = set()
-    always = [name for name, section in spec.sensors.items() if getattr(section.params, "always", False)]
+    always = [
+        name
+        for name, unit in spec.sensors.items()
+        if issubclass(unit.block, Sensor) and unit.block.runs_always(unit.params)
+    ]
     read = [port.source.split(".")[0] for section in spec.diagnosers.values() for port in section.block.inputs]
     waiting = [spec.measuring, *always, *read]
     while waiting:

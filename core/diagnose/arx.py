@@ -8,12 +8,13 @@ The two voltages are means over their intervals, weighed as the nominal device d
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
 from core import voltage
-from core.block import Block, Context, Oscillator, parameter
-from core.diagnose.hypothesis import BankParams, assumed_noise, lacking
-from core.diagnose.kalman import gaussian, shuttle_memory
+from core.block import Context, Oscillator, parameter
+from core.diagnose.bank import Bank
+from core.diagnose.hypothesis import BankParams, assumed_noise
+from core.diagnose.kalman import shuttle_memory
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored
 from core.estimation import triangle
@@ -133,7 +134,7 @@ class ArxParams(BankParams):
     )
 
 
-class ArxBank(Block):
+class ArxBank(Bank):
     """Base of every self-tuning bank."""
 
     class Packed(Record):
@@ -179,28 +180,10 @@ class ArxBank(Block):
         residual: Vector = tap("um", "what the difference equation does not explain", each="hypotheses")
         nis: Vector = tap("1", "the same squared over its variance", each="hypotheses")
 
-    every_tick: ClassVar[bool] = True
-
-    sample_by_sample: ClassVar[bool] = True
-    """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
-
     @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse plants without mass or spring."""
-        return lacking(device)
-
-    @classmethod
-    def prior(cls, params: Any, before: list[float]) -> list[float]:
-        """Return the probabilities before a measurement from those after the one before."""
-        return before
-
-    evidence: ClassVar[str] = ""
-    """What `log_likelihood` is, in LaTeX; nothing for the logarithm of the normal density."""
-
-    @classmethod
-    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
-        """Return the logarithm of the density of a residual."""
-        return gaussian(residual, covariance)
+    def filters_signals(cls, params: Any) -> bool:
+        """Say whether voltage and measurement pass the filter 1/A(q) of the healthy device."""
+        return False
 
     @classmethod
     def fill_equations(cls, p: Packed, params: Any, context: Context) -> None:
@@ -210,7 +193,7 @@ class ArxBank(Block):
         :math:`\sigma^2(1+a_1^2+a_2^2)`; behind the filter 1/A it is white again, and as large as the noise.
         """
         variance = (params.sensor_noise_um or assumed_noise(context)) ** 2 * params.assumed_noise_scale
-        filtered = getattr(params, "prefilter", False)
+        filtered = cls.filters_signals(params)
         _, _, a1, a2 = coefficients(context.device, context.dt_ms)
         p.count = len(params.hypotheses)
         p.every = context.every
@@ -243,6 +226,11 @@ class WeighedBank(ArxBank):
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
+
+    @classmethod
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
 
     @classmethod
     def fill_bank(cls, p: Packed, params: Any, context: Context) -> None:

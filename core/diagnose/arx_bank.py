@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from core.block import Equation, parameter
 from core.diagnose.arx import ArxParams, WeighedBank, between_updates, gather_voltage, judge, predicted, regress
@@ -30,6 +31,11 @@ class FixedBank(WeighedBank):
 
         probability_floor: float = parameter(1e-3, "smallest probability", equation="5.2.3.2.6", ge=0, le=0.05)
         prefilter: bool = parameter(False, "pass both signals through 1/A(q) of the healthy device", live=False)
+
+    @classmethod
+    def filters_signals(cls, params: Any) -> bool:
+        """Say whether voltage and measurement pass the filter 1/A(q) of the healthy device."""
+        return bool(params.prefilter)
 
     @staticmethod
     def step(p: WeighedBank.Packed, s: WeighedBank.State, x: WeighedBank.Ports) -> None:

@@ -67,6 +67,11 @@ class BankParams(BlockParams):
         return self
 
 
+def hypotheses_of(params: BlockParams) -> list[Hypothesis]:
+    """Return the hypotheses a diagnoser chooses between; none where it chooses between none."""
+    return params.hypotheses if isinstance(params, BankParams) else []
+
+
 def assumed_noise(context: Context) -> float:
     """Return the sensor noise a bank assumes: what the sensor has, at least a thousandth of a micrometre."""
     return max(context.sensor_noise_um, 1e-3)

@@ -8,9 +8,10 @@ from typing import Any, ClassVar, Literal, TypeVar
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, BlockParams, Context, FloatArray, Oscillator, parameter
+from core.block import BlockParams, Context, FloatArray, parameter
+from core.diagnose.bank import Bank
 from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
-from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
+from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
 from core.diagnose.lanes import Filters, PackedFilters
 from core.format import format_short
 from core.voltage import MOST_LOST, tick_of
@@ -46,7 +47,7 @@ class KalmanParams(FilterParams, BankParams):
     """Assumptions of a bank of Kalman filters, and its hypotheses."""
 
 
-class KalmanBank(Block):
+class KalmanBank(Bank):
     """Base of every bank of Kalman filters: the filters, not what is concluded from them."""
 
     Params: ClassVar[type[BlockParams]] = KalmanParams
@@ -60,28 +61,15 @@ class KalmanBank(Block):
     class Ports(BankPorts):
         """Ports of every bank."""
 
-    every_tick: ClassVar[bool] = True
-
-    sample_by_sample: ClassVar[bool] = True
-    """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+    @classmethod
+    def takes_steady_gains(cls, params: Any) -> bool:
+        """Say whether the gains are those in the limit."""
+        return False
 
     @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse plants without mass or spring."""
-        return lacking(device)
-
-    @classmethod
-    def prior(cls, params: Any, before: list[float]) -> list[float]:
-        """Return the probabilities before a measurement from those after the one before."""
-        return before
-
-    evidence: ClassVar[str] = ""
-    """What `log_likelihood` is, in LaTeX; nothing for the logarithm of the normal density."""
-
-    @classmethod
-    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
-        """Return the logarithm of the density of a residual."""
-        return gaussian(residual, covariance)
+    def leaves_sensor_noise_out(cls, params: Any) -> bool:
+        """Say whether the residual covariance is that of the text, without R."""
+        return False
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
@@ -100,8 +88,7 @@ class KalmanBank(Block):
         scale = params.assumed_noise_scale
         q = params.process_noise_v**2 * scale
         r = (params.sensor_noise_um or assumed_noise(context)) ** 2 * scale
-        steady = getattr(params, "form", "") == "steady"
-        printed = getattr(params, "residual_covariance", "") == "printed"
+        steady, printed = cls.takes_steady_gains(params), cls.leaves_sensor_noise_out(params)
         for i, hypothesis in enumerate(hypotheses):
             device = hypothesis.oscillator(context.device)
             tick = tick_of(device, device.force, context.dt_ms / context.every, context.analogue)
@@ -151,11 +138,6 @@ def _taken(params: Any, context: Context) -> int:
     if params.voltage == "start":
         return TAKE_START
     return TAKE_PARABOLA if context.analogue and params.voltage == "parabola" else TAKE_MIDDLE
-
-
-def gaussian(residual: float, covariance: float) -> float:
-    """Return the logarithm of the normal density."""
-    return -0.5 * (residual * residual / covariance + math.log(2.0 * math.pi * covariance))
 
 
 def shuttle_memory(context: Context) -> float:

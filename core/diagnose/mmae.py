@@ -119,6 +119,21 @@ class Mmae(KalmanBank):
         unexcited: float = tap("1", "1 while the drive hardly tells the winner from its nearest rival")
 
     @classmethod
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
+    def takes_steady_gains(cls, params: Any) -> bool:
+        """Say whether the gains are those in the limit."""
+        return bool(params.form == "steady")
+
+    @classmethod
+    def leaves_sensor_noise_out(cls, params: Any) -> bool:
+        """Say whether the residual covariance is that of the text, without R."""
+        return bool(params.residual_covariance == "printed")
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.filters(cls.Packed.blank(), params, context)

@@ -110,6 +110,11 @@ class MovingBank(KalmanBank):
         nis: Vector = tap("1", "normalised residual squared", labels=THREE)
 
     @classmethod
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         models = params.models

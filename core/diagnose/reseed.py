@@ -66,6 +66,11 @@ class Reseed(KalmanBank):
         counter: float
 
     @classmethod
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.filters(cls.Packed.blank(), params, context)

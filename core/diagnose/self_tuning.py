@@ -180,6 +180,11 @@ class SelfTuning(ArxBank):
         trace: float = tap("1", "trace of the covariance")
 
     @classmethod
+    def filters_signals(cls, params: Any) -> bool:
+        """Say whether voltage and measurement pass the filter 1/A(q) of the healthy device."""
+        return bool(params.prefilter)
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()

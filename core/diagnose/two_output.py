@@ -80,6 +80,11 @@ class TwoOutput(KalmanBank):
         velocity_residual: Vector = tap("um/ms", "measured velocity minus that expected by then", each="hypotheses")
 
     @classmethod
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         known = getattr(context.sensors.get("velocimeter"), "noise_um_ms", 0.0)

@@ -29,6 +29,11 @@ class Sine(Waveform):
         phase: float
 
     @classmethod
+    def tone_hz(cls, params: Any) -> float:
+        """Return its frequency in Hz."""
+        return float(params.frequency_hz)
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack frequency and phase."""
         p: Sine.Packed = super().pack(params, context)

@@ -31,6 +31,11 @@ class Square(Waveform):
         duty: float
 
     @classmethod
+    def tone_hz(cls, params: Any) -> float:
+        """Return its frequency in Hz."""
+        return float(params.frequency_hz)
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the frequency."""
         p: Square.Packed = super().pack(params, context)

@@ -88,6 +88,11 @@ class Waveform(Block):
         raise NotImplementedError
 
     @classmethod
+    def tone_hz(cls, params: Any) -> float:
+        """Return the frequency of its one tone in Hz; 0 where there is none, or more than one."""
+        return 0.0
+
+    @classmethod
     def tones(cls, params: Any, context: Context) -> list[tuple[float, float]]:
         """Return frequency in Hz and amplitude in V of its lines, a constant at 0 Hz; none when it is broad."""
         lines = [(hz, params.volts(context) * share) for hz, share in cls.lines(params)]

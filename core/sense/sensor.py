@@ -42,9 +42,14 @@ class Sensor(Block):
     """A sensor; it says what noise filters fed by it should assume, and which displacements it cannot tell apart."""
 
     @classmethod
+    def runs_always(cls, params: Any) -> bool:
+        """Say whether it runs even while nothing reads it."""
+        return bool(params.always)
+
+    @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the standard deviation of the equivalent white noise of one sample."""
-        return float(getattr(params, "noise_um", 0.0))
+        return 0.0
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:

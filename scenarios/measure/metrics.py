@@ -72,7 +72,7 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
         found["control.overshoot_pct"] = 100.0 * (peak / abs(rise) - 1.0)
     if (peak_of := first_peak(x, model)) is not None:
         found["control.first_peak_pct"] = peak_of
-    frequency = getattr(board.spec.reference.params, "frequency_hz", 0.0)
+    frequency = board.spec.tone_hz
     if frequency:
         first = len(u) - len(u[tail])
         asked = abs(fundamental(r[tail], frequency, dt, first))

@@ -81,7 +81,7 @@ def sweep_sine(
         raise InputError("must be below stop_hz", "study.start_hz")
     if stop > 400.0 * copy.spec.frame.sample_rate_khz:
         raise InputError("too close to half the sample rate", "study.stop_hz")
-    held = getattr(copy.spec.drive.params, "kind", "held") == "held"
+    held = not copy.spec.is_analogue
 
     def measure(frequencies: FloatArray) -> list[Tone]:
         ticks = (len(frequencies) * settle * decay_ms + cycles * float(np.sum(1e3 / frequencies))) / copy.dt_ms

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.block import BlockParams, FloatArray, parameter
 from core.board import fold, program
+from core.diagnose.hypothesis import hypotheses_of
 from core.errors import InputError
 from core.ports import TICK, TIME_MS
 from scenarios.studies.monte_carlo import again
@@ -50,7 +51,7 @@ class JoinedRecords(Study):
         joined = {name: np.concatenate([before[name][params.settle_samples :], after[name][joint:]]) for name in before}
         found: dict[str, float] = {}
         for name, section in board.spec.diagnosers.items():
-            hypotheses = list(getattr(section.params, "hypotheses", ()))
+            hypotheses = hypotheses_of(section.params)
             if len(hypotheses) != 2:
                 raise InputError("needs two hypotheses, one for each record", f"diagnosers.{name}.hypotheses")
             believed = _play(board, name, hypotheses[1].name, joined)[params.first_samples :] > 0.5
