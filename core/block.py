@@ -177,6 +177,10 @@ class Block:
     family: ClassVar[str]
     name: ClassVar[str]
     title: ClassVar[str]
+    changes: ClassVar[str] = ""
+    shows: ClassVar[str] = ""
+    suggested: ClassVar[float | None] = None
+    """Of a fault: the parts of the device it changes, the part it is seen on, a severity to begin with."""
     Params: ClassVar[type[BlockParams]]
     Packed: ClassVar[type[Record]] = Record
     State: ClassVar[type[Record]] = Record
@@ -187,6 +191,8 @@ class Block:
     equations: ClassVar[tuple[Equation, ...]] = ()
     weaknesses: ClassVar[tuple[str, ...]] = ()
     """Where the block is known to be weak, in plain sentences with figures; read before it is trusted."""
+    lengths: ClassVar[tuple[str, ...]] = ()
+    """Parameters that set the length of the tail of ``State``; none of them may change while the board runs."""
     every_tick: ClassVar[bool] = False
     """Whether the step is called at every tick though the block runs every N, because it has to do between."""
 

@@ -98,7 +98,25 @@ def blocks(family: str) -> dict[str, type[Block]]:
         loaded: type[Block] = entry.load()
         loaded.name, loaded.family = entry.name, family
         found[entry.name] = loaded
+    for loaded in found.values():
+        _check_lengths(loaded)
     return dict(sorted(found.items()))
+
+
+def _check_lengths(entry: type[Block]) -> None:
+    """Refuse a block whose state could change its length while the board runs.
+
+    Raises
+    ------
+    TypeError
+        When the parameters that set the length are not named, not there, or tunable while running.
+    """
+    if entry.State.layout.tails and not entry.lengths:
+        raise TypeError(f"{entry.__module__}: the state has a tail; name the parameters of its length in lengths")
+    for name in entry.lengths:
+        info = entry.Params.model_fields.get(name)
+        if info is None or is_live(info):
+            raise TypeError(f"{entry.__module__}: {name} sets the length of the state, so it must be there, live=False")
 
 
 def block(family: str, name: object, field: str = "") -> type[Block]:
@@ -147,9 +165,9 @@ def card(entry: type[Block]) -> BlockCard:
         name=entry.name,
         title=entry.title,
         summary=" ".join((entry.__doc__ or "").strip().split("\n\n")[0].split()),
-        changes=getattr(entry, "changes", None),
-        shows=getattr(entry, "shows", None),
-        suggested=getattr(entry, "suggested", None),
+        changes=entry.changes or None,
+        shows=entry.shows or None,
+        suggested=entry.suggested,
         weaknesses=list(entry.weaknesses),
         equations=[equation_card(equation) for equation in entry.equations],
         parameters=parameter_cards(entry.Params),

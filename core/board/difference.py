@@ -9,7 +9,9 @@ from core.board.wiring import Wiring, engage, every_of, ports_of, unread
 
 
 def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
-    """Make the wiring of one bench that of another with the same blocks, in place; say whether it could.
+    """Make the wiring of one bench that of another with the same blocks, in place; say whether that was possible.
+
+    It is not where a block reads more numbers than before.
 
     Only rows whose parameters or context differ are packed again; states go on. When a block refuses its parameters
     nothing has changed.
@@ -30,6 +32,8 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
         for row, (new, old) in enumerate(zip(order, wiring.instances, strict=True))
         if new.every in other or _differs(new, old)
     }
+    if any(len(numbers) != len(wiring.packed(row)) for row, numbers in packed.items()):
+        return False
     for row, numbers in packed.items():
         wiring.packed(row)[:] = numbers
         wiring.table[row, program.EVERY] = every_of(order[row])

@@ -34,6 +34,7 @@ class Consistency(KalmanBank):
 
     sample_by_sample = False
     title = "Consistency test"
+    lengths = ("window",)
     equations = (
         Equation(
             "behaviour",

@@ -28,6 +28,7 @@ class LockIn(KalmanBank):
     """
 
     title = "Residual-correlation bank (lock-in)"
+    lengths = ("window",)
     equations = (
         Equation(
             "tone",

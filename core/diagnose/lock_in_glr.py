@@ -29,6 +29,7 @@ class LockInGlr(KalmanBank):
 
     sample_by_sample = False
     title = "Lock-in detector (GLR)"
+    lengths = ("window",)
     equations = (
         Equation(
             "ratio",

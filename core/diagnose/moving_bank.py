@@ -29,6 +29,7 @@ class MovingBank(KalmanBank):
 
     sample_by_sample = False
     title = "Moving bank"
+    lengths = ("reach",)
     equations = (Equation("estimate", r"\hat f=\sum_kp_kf_k", "Maybeck and Hentz 1987"),)
 
     class Params(FilterParams):

@@ -67,9 +67,7 @@ def severity(unit: str, meaning: str) -> Any:
 class Fault(Block):
     """A fault multiplies effect channels, or adds to them; ``shows`` names the part it is seen on."""
 
-    shows: ClassVar[str]
-    changes: ClassVar[str]
-    suggested: ClassVar[float] = 0.05
+    suggested = 0.05
 
     @classmethod
     def rests(cls, params: Any) -> bool:

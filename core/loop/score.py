@@ -43,6 +43,7 @@ class Score(Block):
     """
 
     title = "Score"
+    lengths = ("hypotheses",)
     Params = BankParams
 
     class Packed(Record):
