@@ -60,12 +60,12 @@ class Layout:
     fields: tuple[Field, ...]
     size: int
 
-    @property
+    @cached_property
     def tails(self) -> int:
         """How many fields stand behind the fixed ones."""
         return sum(field.tail for field in self.fields)
 
-    @property
+    @cached_property
     def scalars(self) -> dict[int, str]:
         """The names of single numbers by place, those of nested records with a dot."""
         found = {}
@@ -75,6 +75,11 @@ class Layout:
             elif field.kind == RECORD and field.inner is not None:
                 found |= {field.offset + at: f"{field.name}.{name}" for at, name in field.inner.scalars.items()}
         return found
+
+    @cached_property
+    def scalar_places(self) -> NDArray[np.int64]:
+        """The places of single numbers."""
+        return np.array([*self.scalars], dtype=np.int64)
 
     def numbers(self, length: int) -> int:
         """Return the numbers of a record whose tails have a length."""
@@ -142,7 +147,7 @@ class Record:
     def blank(cls, length: int = 0) -> Self:
         """Return a record whose fixed numbers are still to be packed."""
         record = cls.zeros(length)
-        record.array.view(np.uint64)[[*cls.layout.scalars]] = BLANK
+        record.array.view(np.uint64)[cls.layout.scalar_places] = BLANK
         return record
 
     @cached_property

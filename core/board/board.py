@@ -71,6 +71,9 @@ class Board:
         self.folds = fold.begin(self.wiring.signals.outputs)
         self.used: set[str] = set()
         self._observer = Observer(self.spec, self.wiring)
+        self._linked: Wiring | None = None
+        self._running: list[int] = []
+        self._table = self.wiring.table
         self._allocate()
         self.link()
 
@@ -173,6 +176,10 @@ class Board:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
         wiring = self.wiring
         running = wiring.rest(self.spec)
+        if wiring is self._linked and running == self._running:
+            self._table[:, program.EVERY] = wiring.table[running, program.EVERY]
+            return
+        self._linked, self._running = wiring, running
         self._table = wiring.table[running]
         self._idle = wiring.idle(running)
         if self.compiled:
@@ -281,6 +288,7 @@ class Board:
     def _revive(self) -> None:
         """Make what copies do not share."""
         self.log = self.log.copy()
+        self._linked = None
         self._allocate()
         self.link()
 

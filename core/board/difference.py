@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from core.board import program
 from core.board.instances import Instance, instances, usual_params
 from core.board.spec import Spec
@@ -21,16 +23,14 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     InputError
         As ``Block.pack``.
     """
-    order = _after(wiring, before, spec)
-    if [entry.block for entry in order] != [entry.block for entry in wiring.instances]:
+    order, rows = _after(wiring, before, spec)
+    if any(order[row].block is not wiring.instances[row].block for row in rows):
         return False
-    other = {
-        every for every in {entry.every for entry in order} if _differs(spec.context(every), before.context(every))
-    }
+    other = {every for every in {order[row].every for row in rows} if spec.context(every) != before.context(every)}
     packed = {
-        row: new.block.packed(new.params, spec.context(new.every))
-        for row, (new, old) in enumerate(zip(order, wiring.instances, strict=True))
-        if new.every in other or _differs(new, old)
+        row: order[row].block.packed(order[row].params, spec.context(order[row].every))
+        for row in rows
+        if order[row].every in other or order[row] != wiring.instances[row]
     }
     if any(len(numbers) != len(wiring.packed(row)) for row, numbers in packed.items()):
         return False
@@ -48,15 +48,17 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     return True
 
 
-def _after(wiring: Wiring, before: Spec, spec: Spec) -> list[Instance]:
-    """Return the blocks of a bench, most often those of another but for a fault."""
+def _after(wiring: Wiring, before: Spec, spec: Spec) -> tuple[list[Instance], Iterable[int]]:
+    """Return the blocks of a bench, and the rows that may differ: most often it is only that of a fault."""
     if any(getattr(spec, name) is not getattr(before, name) for name in PARTS):
-        return instances(spec)
+        order = instances(spec)
+        return order, range(len(order))
     order = [*wiring.instances]
-    for name in {*before.faults, *spec.faults}:
-        row = wiring.rows[f"faults.{name}"]
-        order[row] = order[row]._replace(params=spec.faults.get(name) or usual_params(order[row].block))
-    return order
+    rows = [wiring.rows[f"faults.{name}"] for name in {**before.faults, **spec.faults}]
+    for row in rows:
+        key, prefix, block, _, every = order[row]
+        order[row] = Instance(key, prefix, block, spec.faults.get(block.name) or usual_params(block), every)
+    return order, rows
 
 
 PARTS = (
@@ -76,7 +78,3 @@ PARTS = (
     "diagnosers",
 )
 """Parts of a bench without its faults."""
-
-
-def _differs(one: object, other: object) -> bool:
-    return one is not other and one != other

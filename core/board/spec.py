@@ -137,9 +137,9 @@ class Spec:
         )
 
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:
-        """Return this bench with other faults."""
-        spec = replace(self, faults=faults)
-        vars(spec).update(_contexts=self._contexts, nominal=self.nominal)
+        """Return this bench with other faults; it goes on with all that was worked out of this one."""
+        spec = object.__new__(Spec)
+        vars(spec).update(vars(self), faults=faults)
         return spec
 
 

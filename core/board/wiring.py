@@ -84,20 +84,23 @@ class Wiring:
 
     def rest(self, spec: Spec) -> list[int]:
         """Return the rows that run; make those that rest as new, and their signals 0."""
-        running = []
-        for row, instance in enumerate(self.instances):
-            if not (self.unread[row] or instance.block.rests(instance.params)):
-                running.append(row)
-                self.resting.discard(row)
-                continue
-            if row in self.resting:
-                continue
-            self.resting.add(row)
+        running = [
+            row
+            for row, instance in enumerate(self.instances)
+            if not self.unread[row] and not instance.block.rests(instance.params)
+        ]
+        if len(running) + len(self.resting) != len(self.instances) or not self.resting.isdisjoint(running):
+            self._put_to_rest(spec, set(range(len(self.instances))) - {*running} - self.resting)
+            self.resting = set(range(len(self.instances))) - {*running}
+        return running
+
+    def _put_to_rest(self, spec: Spec, rows: set[int]) -> None:
+        for row in rows:
+            instance = self.instances[row]
             self.state_of(instance.key)[:] = instance.block.initial(instance.params, spec.context(instance.every))
             for port in (*instance.block.outputs, *instance.block.taps):
                 start = self.index[signal_name(instance, port.name)]
                 self.w[start : start + len(port.names(instance.params))] = 0.0
-        return running
 
     def idle(self, running: list[int]) -> BoolArray:
         """Return which taps stay 0 while these rows run."""
