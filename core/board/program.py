@@ -108,6 +108,7 @@ def run(
     return n, DONE
 
 
+@np.errstate(all="ignore")  # numbers overflow as quietly as in compiled code
 def run_uncompiled(
     steps: list[Callable[[], None]],
     n: int,

@@ -126,7 +126,6 @@ def board_of(case: dict[str, Any], *, compiled: bool = True) -> Board:
 # -- the same bits, however it is run
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # plain numbers warn where compiled ones quietly overflow
 @every_block
 def test_compiled_steps_give_the_bits_of_plain_python(entry):
     for name, case in OF_BLOCK[name_of(entry)].items():
@@ -151,7 +150,6 @@ def test_deterministic_and_finite(entry):
         assert again.digest() == board.digest() and inner_digest(again) == inner_digest(board), name
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 @every_block
 def test_steps_touch_only_their_own_parameters_state_and_ports(entry):
     for case in OF_BLOCK[name_of(entry)].values():

@@ -172,7 +172,6 @@ def keeps_its_promise() -> bool:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("mutant", ["", *MUTANTS])
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # plain numbers warn where compiled ones quietly overflow
 def test_a_mutilated_law_breaks_its_promise(mutant: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     source = inspect.getsource(mrac)
     if mutant:

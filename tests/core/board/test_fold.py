@@ -82,7 +82,6 @@ def test_blocks_are_joined_by_name() -> None:
     assert fold.digest(a, [*"aa"]) == fold.digest(both, ["a", "a", "", ""]) == alone
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # plain numbers warn where compiled ones quietly overflow
 @pytest.mark.parametrize("base", [lab.QUIET, lab.RICH])
 def test_compiled_and_uncompiled_boards_agree(base: dict[str, Any]) -> None:
     first, second = (lab.make(commands=lab.STORY, base=base, compiled=compiled) for compiled in (True, False))

@@ -31,7 +31,6 @@ def test_a_command_among_many_costs_no_more_than_one_among_few() -> None:
     assert calls(800) < 5 * calls(200)
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # plain numbers warn where compiled ones quietly overflow
 @pytest.mark.parametrize("compiled", [True, False])
 def test_commands_of_one_tick_take_effect_in_the_order_asked(compiled: bool) -> None:
     """Also when others were asked for in between, and when what was asked for first waits for a condition."""

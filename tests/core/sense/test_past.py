@@ -120,7 +120,6 @@ def test_a_copy_takes_over_like_the_board_itself(before):
         assert inner_digest(fork) == inner_digest(straight)
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # plain numbers warn where compiled ones quietly overflow
 def test_plain_code_takes_over_like_compiled_code():
     found = []
     for compiled in (True, False):

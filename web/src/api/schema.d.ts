@@ -1113,7 +1113,7 @@ export interface paths {
         };
         /**
          * Ready
-         * @description Answer 200 when the engine turns, the database can be written and the kernels are loaded.
+         * @description Answer 200 when the engine turns, the database can be written and the kernels of a bench are loaded.
          */
         get: operations["ready_health_ready_get"];
         put?: never;
