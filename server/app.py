@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator
 
 from fastapi import FastAPI
 
-from server import errors, openapi
+from server import document, errors
 from server.api import (
     aliases,
     benches,
@@ -89,7 +89,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.service, app.state.identity = service, identity
     errors.install(app)
-    openapi.install(app)
+    document.install(app)
     for module in ROUTERS:
         app.include_router(module.router, prefix=API)
     for module in (health, metrics):

@@ -13,6 +13,7 @@ from server.api.bodies import StrictRoute
 from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.events import Event
+from server.bench.portrait import document_of
 from server.bench.status import Bench
 
 router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
@@ -127,7 +128,7 @@ async def list_events(
 async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
     """Return what happened as a scenario in TOML; run headless it gives the same bits, whose digest it begins with."""
     document, tick, digest = await service.engine.call(
-        lambda: (session.document(), session.board.tick, session.board.digest())
+        lambda: (document_of(session), session.board.tick, session.board.digest())
     )
     name = f'attachment; filename="{document["id"]}.toml"'
     text = f"# {tick} ticks, digest {digest}\n{Scenario.load(document).toml()}"

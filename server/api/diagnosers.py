@@ -17,6 +17,7 @@ from core.reference.waveform import Waveform
 from server.api.bodies import StrictRoute
 from server.api.deps import SessionDep
 from server.bench.session import Session
+from server.bench.tape import Tape
 
 router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"], route_class=StrictRoute)
 
@@ -71,7 +72,8 @@ def map_aliases(
 
 def found(session: Session, name: str) -> tuple[Spec, Section]:
     """Return the bench a diagnoser is on, the first or a twin, and its section."""
-    board = cast(Ensemble, session.board)
+    source = session.board
+    board = cast(Ensemble, source.recorded_board if isinstance(source, Tape) else source)
     if name not in board.diagnosers:
         raise unknown("diagnoser", name, board.diagnosers, "name")
     twin = name.rpartition(":")[0]

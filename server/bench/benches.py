@@ -24,11 +24,12 @@ from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.portrait import design_of
+from server.bench.portrait import design_of, document_of
 from server.bench.recorder import CLOSED, WANTED, Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
 from server.bench.tape import REFUSAL, Tape
+from server.bench.tick_source import TickSource
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
@@ -257,7 +258,7 @@ class Benches:
         if len(session.recordings) >= 2:
             raise ApiError(409, "conflict", "two recordings of this bench are under way already")
         condition = parse_condition(wanted.when, session.column_of) if wanted.when is not None else None
-        document = await self._engine.call(session.document)
+        document = await self._engine.call(document_of, session)
         file_says = {
             "version": VERSION,
             "scenario": document,
@@ -315,7 +316,7 @@ class Benches:
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
 
-    def _kept(self, board: Board | Tape) -> int:
+    def _kept(self, board: TickSource) -> int:
         """Return for how many ticks the signals of a board are kept."""
         affordable = History.ticks_within(self._settings.history_mb, board.signals.outputs, len(board.signals.taps))
         return min(self._settings.history_ticks, affordable)

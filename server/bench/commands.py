@@ -14,6 +14,8 @@ DEFAULT_SCALE = 0.002
 MIN_SCALE, MAX_SCALE = 1e-6, 1.0
 
 MAX_STEP = 10_000
+MAX_PENDING = 100
+"""Commands that may wait for their moment."""
 
 
 class RunCommand(BaseModel):

@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections import deque
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from core.errors import InputError
-from server.bench.commands import Step, StepPeriod
+from server.bench.commands import MAX_PENDING, Step, StepPeriod
 from server.bench.events import Event
-from server.bench.portrait import MAX_PENDING
-
-if TYPE_CHECKING:
-    from server.bench.session import Session
+from server.bench.live_bench import LiveBench
 
 LONGEST_PERIOD = 100_000
 """Most ticks of a step by one period of the drive."""
@@ -43,12 +39,12 @@ class Steps:
 
     Parameters
     ----------
-    session : Session
+    bench : LiveBench
         The bench.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, bench: LiveBench) -> None:
+        self._bench = bench
         self._asked: deque[Asked] = deque()
 
     def __len__(self) -> int:
@@ -66,7 +62,7 @@ class Steps:
             raise InputError(f"{MAX_PENDING} steps wait for their turn already", code="limit")
         ticks = command.ticks if isinstance(command, Step) else self._period()
         last = self._asked[-1] if self._asked else None
-        start = self._session.board.tick if last is None else last.start + last.ticks
+        start = self._bench.board.tick if last is None else last.start + last.ticks
         asked = Asked(command, actor, start, ticks)
         asked.ended.set_running_or_notify_cancel()  # who no longer waits for it does not stop it
         self._asked.append(asked)
@@ -74,10 +70,10 @@ class Steps:
 
     def slice(self) -> bool:
         """Advance by one slice of the first; true while there is more to do."""
-        session, first = self._session, self._asked[0]
-        ran = session.advance(first.ticks - first.done)
+        bench, first = self._bench, self._asked[0]
+        ran = bench.advance(first.ticks - first.done)
         first.done += ran
-        if not ran or session.board.trip is not None:  # the end of a recording that is played, or a trip
+        if not ran or bench.board.trip is not None:  # the end of a recording that is played, or a trip
             self.end()
         elif first.done == first.ticks:
             self._answer(self._asked.popleft())
@@ -91,13 +87,13 @@ class Steps:
     def _answer(self, asked: Asked) -> None:
         """Note what was done of a step at the tick it began, and tell who waits for it."""
         command = asked.command
-        event = self._session.note(asked.actor, command.kind, asked.text(), command.model_dump(), tick=asked.start)
-        self._session.look()
+        event = self._bench.note(asked.actor, command.kind, asked.text(), command.model_dump(), tick=asked.start)
+        self._bench.refresh_status()
         asked.ended.set_result(event)
 
     def _period(self) -> int:
         """Return the drive period as a number of ticks one may step."""
-        period = self._session.drive_period_ticks
+        period = self._bench.drive_period_ticks
         if period is None:
             raise InputError("the reference has no period", "kind", "step a number of ticks", "conflict")
         return max(1, min(LONGEST_PERIOD, round(period)))

@@ -10,9 +10,13 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from core.board.board import Board
+from core.board.document import Document
+from core.board.log import Log
 from core.board.pending import Queue
 from core.board.rows import Rows
+from core.board.spec import Section, Spec
 from core.errors import InputError
+from core.signals import SignalTable
 from server.store.recording import first_tick
 
 REFUSAL = "this bench plays a recording"
@@ -47,9 +51,45 @@ class Tape:
         self.pending = Queue()
         self.faults: dict[str, Any] = {}
 
-    def __getattr__(self, name: str) -> Any:
-        """Answer for the board in all that does not change: specification, signals, log, sample interval."""
-        return getattr(self._board, name)
+    @property
+    def recorded_board(self) -> Board:
+        """The board the recording was made with, at its first tick."""
+        return self._board
+
+    @property
+    def chunk(self) -> int:
+        """Most ticks of one call of ``advance``."""
+        return self._board.chunk
+
+    @property
+    def dt_ms(self) -> float:
+        """Sample interval, ms."""
+        return self._board.dt_ms
+
+    @property
+    def spec(self) -> Spec:
+        """The blocks and their parameters."""
+        return self._board.spec
+
+    @property
+    def base(self) -> Document:
+        """The document the board was made from."""
+        return self._board.base
+
+    @property
+    def signals(self) -> SignalTable:
+        """Table of traced signals."""
+        return self._board.signals
+
+    @property
+    def diagnosers(self) -> dict[str, Section]:
+        """Every diagnoser by its id."""
+        return self._board.diagnosers
+
+    @property
+    def log(self) -> Log:
+        """The log of the board: only the commands its scenario lets wait."""
+        return self._board.log
 
     def advance(self, n: int) -> Rows:
         """Read up to ``n`` ticks, to the end of the recording or of a piece of its file."""
