@@ -267,17 +267,17 @@ def bench(as_json: JsonOption = False) -> None:
     """Measure speed, each figure as a ratio to a peer in the same run."""
     from scenarios.speed import speed
 
-    found = speed()
+    report = speed()
     if as_json:
-        say_json(found)
+        say_json(report)
         return
-    for figure in found["figures"]:
+    for figure in report["figures"]:
         mark = "ok  " if figure["ok"] else "MISS"
         say(f"{mark} {figure['name']:<60} {figure['value']:>10.4g} {figure['unit']:<3} {figure['target']}")
     say("cost of each block, ns per tick:")
-    say("  " + "  ".join(f"{name} {value:g}" for name, value in found["blocks_ns"].items()))
-    if found["missing"]:
-        say(found["missing"])
+    say("  " + "  ".join(f"{name} {value:g}" for name, value in report["blocks_ns"].items()))
+    if report["missing"]:
+        say(report["missing"])
 
 
 @app.command()

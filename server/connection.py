@@ -34,9 +34,9 @@ class Connection(HttpToolsProtocol):
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Wait for a request; make room for it."""
         if self.limit_concurrency is not None and len(self.connections) >= self.limit_concurrency - 1:
-            idle = [one for one in self.connections if isinstance(one, Connection) and one.is_idle]
+            idle = [link for link in self.connections if isinstance(link, Connection) and link.is_idle]
             if idle:
-                longest = min(idle, key=lambda one: one._since)
+                longest = min(idle, key=lambda link: link._since)
                 self.connections.discard(longest)
                 longest.transport.abort()
         super().connection_made(transport)

@@ -121,7 +121,7 @@ def clear_line(errors: Sequence[Any]) -> ErrorBody:
     if not field and kind in ("missing", "model_attributes_type", "dict_type"):
         hint = "send JSON with the header Content-Type: application/json"
         return ErrorBody(code=code, message="the body must be a JSON object", hint=hint)
-    reasons = (_reason(one) for one in errors if field_of(one) == field_of(first))
+    reasons = (_reason(complaint) for complaint in errors if field_of(complaint) == field_of(first))
     reason = either(reasons, "should be") + _given(first)
     return ErrorBody(code=code, message=f"{field or 'body'}: {reason}", field=field)
 

@@ -48,13 +48,13 @@ class Kernels:
             preexec_fn=_step_back if os.name == "posix" else None,
         )
         assert process.stdout is not None
-        told = 0
+        reported = 0
         try:
             while text := await process.stdout.read(4096):
                 for match in PROGRESS.finditer(text):
                     self.done, self.total = int(match[1]), int(match[2])
-                if self.total and 4 * self.done // self.total > told:
-                    told = 4 * self.done // self.total
+                if self.total and 4 * self.done // self.total > reported:
+                    reported = 4 * self.done // self.total
                     log.info("compiled %d of %d kernels", self.done, self.total)
             if await process.wait() != 0:
                 log.warning("kernels could not be compiled ahead; each is compiled when it is used")

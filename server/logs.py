@@ -76,5 +76,5 @@ def configure(settings: Settings) -> None:
     # What Python itself would print goes the same way.
     logging.captureWarnings(True)
     sys.excepthook = log_uncaught
-    threading.excepthook = lambda found: log_uncaught(found.exc_type, found.exc_value, found.exc_traceback)
-    sys.unraisablehook = lambda found: log_uncaught(found.exc_type, found.exc_value, found.exc_traceback)
+    threading.excepthook = lambda failure: log_uncaught(failure.exc_type, failure.exc_value, failure.exc_traceback)
+    sys.unraisablehook = lambda failure: log_uncaught(failure.exc_type, failure.exc_value, failure.exc_traceback)

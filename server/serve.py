@@ -68,7 +68,7 @@ class Server(uvicorn.Server):
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Tell the pages, then close."""
-        await self._service.farewell()
+        await self._service.close_streams()
         await super().shutdown(sockets)
 
 

@@ -28,7 +28,7 @@ from server.store.recordings import Recordings
 from server.stream.hub import Hub
 
 if TYPE_CHECKING:
-    from server.view3d.theatre import Theatre
+    from server.view3d.viewers import Viewers
 
 log = logging.getLogger(__name__)
 
@@ -56,7 +56,7 @@ class Service:
         self.keeping = Keeping(self.database, settings)
         self.sweeps = Sweeps(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
-        self.theatre = _theatre()
+        self.viewers = _viewers()
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
         self.kernels = Kernels()
         self.is_ready = False
@@ -83,8 +83,8 @@ class Service:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.kernels.stop()
-            if self.theatre is not None:
-                await self.theatre.close()
+            if self.viewers is not None:
+                await self.viewers.close()
             await self.sweeps.close()
             await self.jobs.close()
             await self.benches.close()
@@ -93,18 +93,18 @@ class Service:
 
     def view(self, session: Session) -> Bench:
         """Describe a bench in full."""
-        view3d = f"/benches/{session.id}/3d/" if self.theatre is not None else None
+        view3d = f"/benches/{session.id}/3d/" if self.viewers is not None else None
         return bench_of(session, self.hub.around(session), view3d)
 
     def views(self) -> list[Bench]:
         """Describe the benches, oldest first; one that cannot be described does not hide the others."""
-        found = []
+        descriptions = []
         for session in self.benches.all():
             try:
-                found.append(self.view(session))
+                descriptions.append(self.view(session))
             except Exception:
                 log.exception("bench %s cannot be described", session.id)
-        return found
+        return descriptions
 
     async def opened(self, session: Session) -> Bench:
         """Describe a bench just made; one that cannot be described is closed again."""
@@ -118,10 +118,10 @@ class Service:
         """Close a bench and everything that shows it."""
         await self.benches.close_bench(session)
         self.hub.close_bench(session.id)
-        if self.theatre is not None:
-            await self.theatre.drop(session.id)
+        if self.viewers is not None:
+            await self.viewers.drop(session.id)
 
-    async def farewell(self) -> None:
+    async def close_streams(self) -> None:
         """Tell every page that the server goes, and close its stream."""
         self.hub.close_all("the server is stopping")
         await asyncio.sleep(0.1)
@@ -138,10 +138,10 @@ class Service:
                 loop.call_soon_threadsafe(self.hub.publish)
 
 
-def _theatre() -> Theatre | None:
+def _viewers() -> Viewers | None:
     """Return the 3D views, if their folder is there."""
     if importlib.util.find_spec("server.view3d") is None:
         return None
-    from server.view3d.theatre import Theatre
+    from server.view3d.viewers import Viewers
 
-    return Theatre()
+    return Viewers()

@@ -15,7 +15,7 @@ from core.diagnose.hypothesis import Hypothesis
 from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import SessionDep
-from server.api.diagnosers import found, hypotheses_of, tones_of
+from server.api.diagnosers import hypotheses_of, spec_and_section, tones_of
 from server.bench.session import Session
 
 router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosis"], route_class=StrictRoute)
@@ -73,7 +73,7 @@ async def get_aliases(session: SessionDep, name: Name, body: AliasSource) -> Ali
 
 
 def _aliases(session: Session, name: str, body: AliasSource) -> AliasReport:
-    spec, section = found(session, name)
+    spec, section = spec_and_section(session, name)
     hypotheses = body.hypotheses or hypotheses_of(section)
     context = spec.context(spec.turns(section))
     tones = [(tone.frequency_hz, tone.amplitude_v) for tone in body.tones] if body.tones else tones_of(spec)

@@ -59,11 +59,11 @@ def strict_json(text: str | bytes) -> Any:
         return table
 
     try:
-        found = json.loads(text, parse_constant=refuse, parse_float=number, object_pairs_hook=unique)
-        if depth(found) > DEEPEST:
+        document = json.loads(text, parse_constant=refuse, parse_float=number, object_pairs_hook=unique)
+        if depth(document) > DEEPEST:
             raise json.JSONDecodeError(TOO_DEEP, "", 0)
-        json.dumps(found, ensure_ascii=False).encode()
-        return found
+        json.dumps(document, ensure_ascii=False).encode()
+        return document
     except UnicodeDecodeError:
         raise json.JSONDecodeError("not UTF-8", "", 0) from None
     except UnicodeEncodeError:

@@ -140,7 +140,7 @@ def get_devices() -> Devices:
 def evaluate(body: Design) -> Evaluation:
     """Work out the figures of a device in its environment."""
     spec = designed(body.device, body.environment)
-    found, geometry = device_figures(spec), spec.device.geometry
+    figures, geometry = device_figures(spec), spec.device.geometry
     return Evaluation(
         title=spec.device.title,
         source=spec.device.source,
@@ -149,13 +149,13 @@ def evaluate(body: Design) -> Evaluation:
                 name=quantity.name,
                 label=quantity.label,
                 unit=quantity.unit,
-                value=found[quantity.name],
+                value=figures[quantity.name],
                 equation=equation_card(quantity.equation),
             )
             for quantity in QUANTITIES
-            if quantity.name in found
+            if quantity.name in figures
         ],
-        metrics=found,
+        metrics=figures,
         geometry=None if geometry is None else geometry.model_dump(),
         sensitivities={} if geometry is None else sensitivities(geometry),
     )
@@ -179,9 +179,9 @@ def bode(body: BodeOf) -> Bode:
 @router.post("/spread")
 def spread(body: SpreadOf) -> ProcessSpread:
     """Draw devices from the process; the same seed gives the same devices."""
-    found = process(designed(body.device, body.environment), body.draws, body.seed)
+    spread = process(designed(body.device, body.environment), body.draws, body.seed)
     return ProcessSpread(
         assumed=asdict(Tolerances()),
-        statistics={name: SpreadStatistics(**asdict(Statistics.of(found, name))) for name in found.found},
-        geometry={name: float(values[0]) for name, values in found.drawn.items()},
+        statistics={name: SpreadStatistics(**asdict(Statistics.of(spread, name))) for name in spread.found},
+        geometry={name: float(values[0]) for name, values in spread.drawn.items()},
     )

@@ -159,14 +159,14 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
     sweep = sweep_sine(board, **body.model_dump(), most_ticks=MOST_TICKS)
     force = board.spec.device.signed_force_n_per_v
     sign = 1.0 if force > 0.0 else -1.0
-    found, nominal = sweep.found, board.spec.device.metrics()
+    identified, nominal = sweep.found, board.spec.device.metrics()
     grid = np.geomspace(sweep.tones[0].frequency_hz, sweep.tones[-1].frequency_hz, CURVE_POINTS)
     unit = abs(force) * UM_PER_M
-    own = response(found.mass_kg, found.damping_ns_m, found.stiffness_n_m, grid) * unit
+    response_found = response(identified.mass_kg, identified.damping_ns_m, identified.stiffness_n_m, grid) * unit
     believed = response(nominal["mass_kg"], nominal["damping_ns_m"], nominal["stiffness_n_m"], grid) * unit
     return Identification(
         tick=kept.tick,
-        found=found,
+        found=identified,
         nominal=nominal,
         tones=[
             MeasuredTone(
@@ -179,8 +179,8 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
         ],
         curve=FittedCurve(
             frequency_hz=grid.tolist(),
-            found_um_per_v=np.abs(own).tolist(),
-            found_deg=np.degrees(np.angle(own)).tolist(),
+            found_um_per_v=np.abs(response_found).tolist(),
+            found_deg=np.degrees(np.angle(response_found)).tolist(),
             nominal_um_per_v=np.abs(believed).tolist(),
             nominal_deg=np.degrees(np.angle(believed)).tolist(),
         ),
@@ -188,12 +188,12 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
 
 
 def _map(kept: Checkpoint, drive_v: float) -> UnstableRegionMap:
-    found = unstable_region(Board.restore(kept), drive_v)
-    edge = found.boundary
+    region = unstable_region(Board.restore(kept), drive_v)
+    edge = region.boundary
     return UnstableRegionMap(
         tick=kept.tick,
-        plant=found.plant,
+        plant=region.plant,
         drive_v=drive_v,
-        folds=[FoldPoint(**asdict(fold)) for fold in found.folds],
+        folds=[FoldPoint(**asdict(fold)) for fold in region.folds],
         boundary=edge and SafeBoundary(x_um=edge.x_um.tolist(), speed_um_ms=edge.speed_um_ms.tolist()),
     )

@@ -114,9 +114,9 @@ def _card(scenario: Scenario, run: Run | None) -> GalleryCard:
                 expected=entry.text(),
                 verdict=entry.verdict or head.verdict,
                 note=entry.note,
-                measured=found.get("measured"),
-                ok=found.get("ok"),
+                measured=measurement.get("measured"),
+                ok=measurement.get("ok"),
             )
-            for entry, found in zip(head.expect, measured, strict=True)
+            for entry, measurement in zip(head.expect, measured, strict=True)
         ],
     )

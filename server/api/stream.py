@@ -84,9 +84,9 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         hub.remove(client)
         for task in tasks:
             task.cancel()
-        for found in await asyncio.gather(*tasks, return_exceptions=True):
-            if isinstance(found, Exception):
-                log.error("a stream of bench %s broke off", bench_id, exc_info=found)
+        for outcome in await asyncio.gather(*tasks, return_exceptions=True):
+            if isinstance(outcome, Exception):
+                log.error("a stream of bench %s broke off", bench_id, exc_info=outcome)
                 client.close(CLOSE_FAILED, "the server failed on this stream; its log says why")
         await _close(socket, client)
 
@@ -123,11 +123,11 @@ class Conversation:
 
     def hear(self, text: bytes) -> bool:
         """Take an acknowledgement as it comes: there are as many of them as frames, and nothing waits for them."""
-        found = ACK.fullmatch(text)
-        if found is None or int(found[1]) >= 2**32:
+        acknowledged = ACK.fullmatch(text)
+        if acknowledged is None or int(acknowledged[1]) >= 2**32:
             return False
         if self._is_heard():
-            self._client.acknowledge(int(found[1]))
+            self._client.acknowledge(int(acknowledged[1]))
         return True
 
     async def run(self, socket: WebSocket) -> None:
@@ -197,11 +197,11 @@ class Conversation:
         def done(event: Event) -> None:
             self._client.post(Reply(id=message.id, ok=True, tick=event.tick))
 
-        found = await self._service.benches.begin(self._client.session, message.command, self._client.name)
-        if isinstance(found, Event):
-            done(found)
+        outcome = await self._service.benches.begin(self._client.session, message.command, self._client.name)
+        if isinstance(outcome, Event):
+            done(outcome)
         else:
-            asyncio.wrap_future(found).add_done_callback(lambda step: done(step.result()))
+            asyncio.wrap_future(outcome).add_done_callback(lambda step: done(step.result()))
 
     def _subscribe(self, message: Subscribe) -> None:
         """Show signals in a panel."""
@@ -236,4 +236,4 @@ class Conversation:
 
 def _line(error: ValidationError) -> ErrorBody:
     """Say what is wrong with a message; pydantic puts its type into the place, people do not."""
-    return clear_line([{**one, "loc": one["loc"][1:]} for one in error.errors(include_url=False)])
+    return clear_line([{**complaint, "loc": complaint["loc"][1:]} for complaint in error.errors(include_url=False)])

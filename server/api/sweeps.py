@@ -51,10 +51,10 @@ async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -
     """Start a campaign, or go on with one that was stopped; asked twice, the same one answers."""
     document = body.sweep if isinstance(body.sweep, dict) else await asyncio.to_thread(read_toml, body.sweep, "sweep")
     await service.keeping.room()
-    found, is_new = await service.sweeps.start(document)
+    sweep, is_new = await service.sweeps.start(document)
     response.status_code = 202 if is_new else 200
-    response.headers["Location"] = f"/api/v1/sweeps/{found.id}"
-    return found
+    response.headers["Location"] = f"/api/v1/sweeps/{sweep.id}"
+    return sweep
 
 
 @router.get("")

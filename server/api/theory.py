@@ -158,13 +158,13 @@ def judge_positive_real(body: TransferFunctionSource) -> PositiveRealReport:
 @router.post("/positive-definite")
 def judge_positive_definite(body: MatrixSource) -> DefinitenessReport:
     """Judge a matrix."""
-    found = definiteness(body.matrix)
+    verdict = definiteness(body.matrix)
     return DefinitenessReport(
-        positive_definite=found.positive_definite,
-        semidefinite=found.semidefinite,
-        symmetric=found.symmetric,
-        eigenvalues=list(found.eigenvalues),
-        minors=list(found.minors),
+        positive_definite=verdict.positive_definite,
+        semidefinite=verdict.semidefinite,
+        symmetric=verdict.symmetric,
+        eigenvalues=list(verdict.eigenvalues),
+        minors=list(verdict.minors),
     )
 
 
@@ -174,13 +174,13 @@ def judge_persistency(body: ExcitationSource) -> ExcitationReport:
     if len({tone.frequency for tone in body.tones}) < len(body.tones):
         raise InputError("two tones have the same frequency", "tones")
     lines = [(tone.amplitude, tone.frequency) for tone in body.tones]
-    found = excitation(gram_of_tones(lines, (body.gain, body.a1, body.a2), body.filter_pole))
+    judged = excitation(gram_of_tones(lines, (body.gain, body.a1, body.a2), body.filter_pole))
     return ExcitationReport(
-        eigenvalues=[float(value) for value in found.eigenvalues],
-        smallest=found.smallest,
-        relative=found.relative,
-        condition=_finite(found.condition),
-        exciting=found.relative > 0.0,
+        eigenvalues=[float(value) for value in judged.eigenvalues],
+        smallest=judged.smallest,
+        relative=judged.relative,
+        condition=_finite(judged.condition),
+        exciting=judged.relative > 0.0,
     )
 
 

@@ -216,8 +216,8 @@ class Benches:
         InputError
             If it cannot be; nothing has changed then.
         """
-        found = await self.begin(session, command, actor)
-        return found if isinstance(found, Event) else await asyncio.wrap_future(found)
+        outcome = await self.begin(session, command, actor)
+        return outcome if isinstance(outcome, Event) else await asyncio.wrap_future(outcome)
 
     async def begin(self, session: Session, command: Any, actor: str) -> Event | Future[Event]:
         """Carry out a command at the next tick edge; what is returned for a step has its event when it has ended."""

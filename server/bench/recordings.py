@@ -151,10 +151,10 @@ class Recordings:
         for key, waiting in list(self.armed.items()):
             column = self._bench.column_of[waiting.condition.signal]
             values = np.hstack((rows.outputs, rows.taps))[:, column]
-            found = np.flatnonzero(waiting.condition.sign * (values - waiting.condition.threshold) > 0.0)
-            if found.size:
+            holding = np.flatnonzero(waiting.condition.sign * (values - waiting.condition.threshold) > 0.0)
+            if holding.size:
                 del self.armed[key]
-                at = rows.first_tick + int(found[0])
+                at = rows.first_tick + int(holding[0])
                 text = f"a recording began: its condition held at tick {at}"
                 self._bench.note("board", "recording_started", text)
                 self._begin(waiting.recorder, at, waiting.past, waiting.ticks)

@@ -16,7 +16,7 @@ LONGEST_PERIOD = 100_000
 
 
 @dataclass
-class Asked:
+class StepRequest:
     """A step somebody asked for and waits for, and how far it has come."""
 
     command: Step | StepPeriod
@@ -45,10 +45,10 @@ class Steps:
 
     def __init__(self, bench: LiveBench) -> None:
         self._bench = bench
-        self._asked: deque[Asked] = deque()
+        self._requests: deque[StepRequest] = deque()
 
     def __len__(self) -> int:
-        return len(self._asked)
+        return len(self._requests)
 
     def add(self, command: Step | StepPeriod, actor: str) -> Future[Event]:
         """Ask for a step, behind those asked for before; the event is there when it has ended.
@@ -61,35 +61,35 @@ class Steps:
         if len(self) >= MAX_PENDING:
             raise InputError(f"{MAX_PENDING} steps wait for their turn already", code="limit")
         ticks = command.ticks if isinstance(command, Step) else self._period()
-        last = self._asked[-1] if self._asked else None
+        last = self._requests[-1] if self._requests else None
         start = self._bench.board.tick if last is None else last.start + last.ticks
-        asked = Asked(command, actor, start, ticks)
-        asked.ended.set_running_or_notify_cancel()  # who no longer waits for it does not stop it
-        self._asked.append(asked)
-        return asked.ended
+        request = StepRequest(command, actor, start, ticks)
+        request.ended.set_running_or_notify_cancel()  # who no longer waits for it does not stop it
+        self._requests.append(request)
+        return request.ended
 
     def slice(self) -> bool:
         """Advance by one slice of the first; true while there is more to do."""
-        bench, first = self._bench, self._asked[0]
+        bench, first = self._bench, self._requests[0]
         ran = bench.advance(first.ticks - first.done)
         first.done += ran
         if not ran or bench.board.trip is not None:  # the end of a recording that is played, or a trip
             self.end()
         elif first.done == first.ticks:
-            self._answer(self._asked.popleft())
-        return bool(self._asked)
+            self._answer(self._requests.popleft())
+        return bool(self._requests)
 
     def end(self) -> None:
         """End all of them here."""
-        while self._asked:
-            self._answer(self._asked.popleft())
+        while self._requests:
+            self._answer(self._requests.popleft())
 
-    def _answer(self, asked: Asked) -> None:
+    def _answer(self, request: StepRequest) -> None:
         """Note what was done of a step at the tick it began, and tell who waits for it."""
-        command = asked.command
-        event = self._bench.note(asked.actor, command.kind, asked.text(), command.model_dump(), tick=asked.start)
+        command = request.command
+        event = self._bench.note(request.actor, command.kind, request.text(), command.model_dump(), tick=request.start)
         self._bench.refresh_status()
-        asked.ended.set_result(event)
+        request.ended.set_result(event)
 
     def _period(self) -> int:
         """Return the drive period as a number of ticks one may step."""

@@ -99,9 +99,9 @@ class Tape:
         number = int(np.searchsorted(self._edges, self.tick, "right")) - 1
         samples = self._read(number)
         start = self.tick - int(self._edges[number])
-        found = self._rows(samples[start : start + count])
-        self.tick += found.count
-        return found
+        rows = self._rows(samples[start : start + count])
+        self.tick += rows.count
+        return rows
 
     def seek(self, tick: int) -> None:
         """Go to a tick of the recording."""

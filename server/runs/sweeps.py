@@ -142,10 +142,10 @@ class Sweeps:
 
     async def cancel(self, sweep_id: str) -> SweepRun:
         """Stop a campaign after the runs in hand; what is done stays, and the same campaign goes on from there."""
-        found = await self.get(sweep_id)
+        sweep = await self.get(sweep_id)
         task = self._tasks.get(sweep_id)
         if task is None:
-            raise ApiError(409, "conflict", f"the campaign is {found.state}; it cannot be cancelled any more")
+            raise ApiError(409, "conflict", f"the campaign is {sweep.state}; it cannot be cancelled any more")
         campaign = self._campaigns.get(sweep_id)
         if campaign is not None:
             campaign.cancel()
@@ -240,10 +240,10 @@ class Sweeps:
         self._metrics.runs.labels(state).inc()
         await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC), **values)
 
-    def _live(self, found: SweepRun) -> SweepRun:
+    def _live(self, sweep: SweepRun) -> SweepRun:
         """Add how far it is."""
-        campaign = self._campaigns.get(found.id)
-        return found if campaign is None else found.model_copy(update={"done": campaign.done})
+        campaign = self._campaigns.get(sweep.id)
+        return sweep if campaign is None else sweep.model_copy(update={"done": campaign.done})
 
     async def _row(self, sweep_id: str) -> SweepRow | None:
         return await self._database.run(lambda session: session.get(SweepRow, sweep_id))

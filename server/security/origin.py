@@ -31,8 +31,8 @@ class OriginPolicy:
 
     def __init__(self, host: str, allowed_hosts: list[str], public: PublicOrigin = DIRECT) -> None:
         bound = f"[{host}]" if ":" in host else host
-        own = set() if bound in ("0.0.0.0", "[::]") else {bound.lower()}
-        self._names = LOOPBACK_NAMES | own | {name.lower() for name in [*allowed_hosts, public.host] if name}
+        bound_names = set() if bound in ("0.0.0.0", "[::]") else {bound.lower()}
+        self._names = LOOPBACK_NAMES | bound_names | {name.lower() for name in [*allowed_hosts, public.host] if name}
         self._origin = public.origin
 
     def refusal(self, connection: HTTPConnection, has_bearer: bool) -> str | None:

@@ -74,10 +74,10 @@ class Keeping:
         for table, folder in ((RecordingRow, "recordings"), (RunRow, "runs")):
             query = select(table.id).where(table.finished < before)
             ids = await self._database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
-            for one in ids:
+            for key in ids:
                 # The files first: on a full disk the row can only go once they have made room.
-                await asyncio.to_thread(_remove, self._settings.data / folder, one)
-                statement = delete(table).filter_by(id=one)
+                await asyncio.to_thread(_remove, self._settings.data / folder, key)
+                statement = delete(table).filter_by(id=key)
                 await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
             count += len(ids)
         if count:

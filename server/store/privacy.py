@@ -24,7 +24,7 @@ def keep_private(data: Path) -> None:
     """
     os.umask(OTHERS)
     data.mkdir(parents=True, exist_ok=True)
-    for path in (found for pattern in KEPT for found in data.glob(pattern)):
+    for path in (path for pattern in KEPT for path in data.glob(pattern)):
         mode = path.stat().st_mode
         if mode & OTHERS:
             try:

@@ -133,7 +133,7 @@ def convert(path: Path) -> int:
             for batch in _whole_batches(reader):
                 held.append(batch)
                 ticks += batch.num_rows
-                if sum(one.num_rows for one in held) >= GROUP_TICKS:
+                if sum(held_batch.num_rows for held_batch in held) >= GROUP_TICKS:
                     writer.write_table(pa.Table.from_batches(held))
                     held = []
             if held:

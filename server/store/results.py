@@ -29,15 +29,15 @@ class Results:
 
     def have(self, keys: Sequence[str]) -> set[str]:
         """Return which of the keys are there."""
-        found: set[str] = set()
+        keys_there: set[str] = set()
         for start in range(0, len(keys), AT_ONCE):
             query = select(ResultRow.key).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
-            found |= set(self._database.transact(lambda session, q=query: list(session.scalars(q))))  # type: ignore[misc]
-        return found
+            keys_there |= set(self._database.transact(lambda session, q=query: list(session.scalars(q))))  # type: ignore[misc]
+        return keys_there
 
-    def put(self, found: list[tuple[str, dict[str, Any]]]) -> None:
+    def put(self, outcomes: list[tuple[str, dict[str, Any]]]) -> None:
         """Add outcomes in one transaction; one that is there already stays as it is."""
-        rows = [{"key": key, "outcome": outcome} for key, outcome in found]
+        rows = [{"key": key, "outcome": outcome} for key, outcome in outcomes]
         if rows:
             self._database.transact(lambda session: session.execute(self._insert(), rows))
 

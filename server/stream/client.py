@@ -148,16 +148,16 @@ class Client:
 
     def _events(self) -> list[bytes]:
         """Return some of the events behind the cursor; if the log has forgotten some, say how many."""
-        said, self._cursor = self._news.events(self._cursor)
-        self._wants_events = bool(said)
-        return said
+        messages, self._cursor = self._news.events(self._cursor)
+        self._wants_events = bool(messages)
+        return messages
 
     def _status(self) -> list[bytes]:
         """Return the status; the scenario as it is now only if it has changed since."""
         self._wants_status = False
-        said = self._news.status(self._edition, self.dropped)
+        status = self._news.status(self._edition, self.dropped)
         self._edition = self._news.edition
-        return [said]
+        return [status]
 
     def _picture(self) -> list[bytes]:
         """Return the pictures that have changed as one frame."""

@@ -47,8 +47,8 @@ class News:
                 self.edition += 1
         key = (known_edition != self.edition, dropped)
         if key not in self._statuses:
-            told = f'"dropped_frames":{dropped}'
-            self._statuses[key] = text_message(self._text(key[0]).replace(UNTOLD, told))
+            dropped_field = f'"dropped_frames":{dropped}'
+            self._statuses[key] = text_message(self._text(key[0]).replace(UNTOLD, dropped_field))
         return self._statuses[key]
 
     def events(self, after: int) -> tuple[list[bytes], int]:
@@ -58,12 +58,12 @@ class News:
             self._events = {}
         if after not in self._events:
             lost, events = self._session.events.after(after, EVENTS_AT_ONCE)
-            said = (
+            notices = (
                 [Notice(code="events_lost", message=f"{lost} events are older than this bench keeps")] if lost else []
             )
-            messages = [*said, Events(events=events)] if events else said
+            messages = [*notices, Events(events=events)] if events else notices
             last = events[-1].seq if events else after
-            self._events[after] = ([text_message(one.model_dump_json()) for one in messages], last)
+            self._events[after] = ([text_message(message.model_dump_json()) for message in messages], last)
         return self._events[after]
 
     def _text(self, with_parameters: bool) -> str:

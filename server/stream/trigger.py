@@ -76,15 +76,15 @@ class Trigger:
         if not history.first_tick <= self.next_tick <= history.end_tick:
             # Forgotten, or the bench went back in time.
             self.restart(min(max(self.next_tick, history.first_tick), history.end_tick))
-        found: list[int] = []
+        crossings: list[int] = []
         while self.next_tick < history.end_tick:
             end = min(self.next_tick + BLOCK, history.end_tick)
             samples = history.read([self.index], self.next_tick, end)[0]
-            found += self._crossings(samples, first_only)
-            if found and first_only:
-                return found
+            crossings += self._crossings(samples, first_only)
+            if crossings and first_only:
+                return crossings
             self.next_tick = end
-        return found
+        return crossings
 
     def _crossings(self, samples: NDArray[np.float32], first_only: bool) -> list[int]:
         """Scan one block; both directions, merged in order."""

@@ -156,10 +156,10 @@ class Marks:
 
 def marks(faults: Sequence[Active], layout: Layout) -> Marks:
     """Return the marks of all faults that act."""
-    found = Marks(layout)
+    shown = Marks(layout)
     for fault in faults:
-        found.show(fault)
-    return found
+        shown.show(fault)
+    return shown
 
 
 def place_of(part: str, layout: Layout) -> Place:
@@ -184,8 +184,8 @@ def words(fault: Active) -> str:
     unit, severity = fault.block.outputs[0].unit, fault.severity
     if unit == "1":
         return fault.block.title
-    said = format_count(severity, unit) if unit == "week" else format_short(severity, unit, 3)
-    return f"{fault.block.title} {said}"
+    amount = format_count(severity, unit) if unit == "week" else format_short(severity, unit, 3)
+    return f"{fault.block.title} {amount}"
 
 
 def ball(centre: Place, radius: float, stretch: Place = (1.0, 1.0, 1.0)) -> Mesh:

@@ -29,7 +29,7 @@ CLOSE_VERSION, CLOSE_NO_BENCH, CLOSE_FULL, CLOSE_LOST = 4001, 4404, 1013, 1012
 async def get_page(bench_id: str, service: ServiceDep) -> HTMLResponse:
     """Return the page of the 3D view."""
     from server.view3d.page import POLICY, page
-    from server.view3d.theatre import layout_of
+    from server.view3d.viewers import layout_of
 
     layout = layout_of(service.benches.get(bench_id))
     return HTMLResponse(page(layout), headers={POLICY_HEADER: POLICY})
@@ -39,7 +39,7 @@ async def get_page(bench_id: str, service: ServiceDep) -> HTMLResponse:
 async def join(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> None:
     """Connect a page to the scene of its bench."""
     session = service.benches.find(bench_id)
-    show = service.theatre.show_of(session) if session is not None and service.theatre is not None else None
+    show = service.viewers.show_of(session) if session is not None and service.viewers is not None else None
     offered = socket.scope["subprotocols"]
     refusal: tuple[int, str] | None = None
     if SUBPROTOCOL not in offered:

@@ -98,15 +98,15 @@ class Scene:
 
     def _show_faults(self, pose: Pose) -> None:
         """Show each fault on the part it acts on."""
-        before, found = self._marks, marks(pose.faults, self._layout)
-        self._marks = found
+        before, now = self._marks, marks(pose.faults, self._layout)
+        self._marks = now
         for handle in self._added:
             handle.remove()
         self._added = []
-        for solid in found.solids:
+        for solid in now.solids:
             path = f"/shuttle/{solid.name}" if solid.on_shuttle else f"/{solid.name}"
             self._added.append(self._mesh(path, solid.mesh, ATTENTION))
-        labels: dict[Place, list[str]] = dict(found.labels)
+        labels: dict[Place, list[str]] = dict(now.labels)
         if pose.contact:
             side = 1 if abs(pose.combs_um[0]) >= abs(pose.combs_um[1]) else -1
             place = (side * self._layout.stator_um, 0.45 * self._layout.comb_um, self._layout.top_um)
@@ -117,21 +117,21 @@ class Scene:
                 f"/labels/{number}", "\n".join(lines), position=(x, y, z + 0.12), anchor="bottom-center"
             )
             self._added.append(label)
-        if (found.damage, found.share) != (before.damage, before.share):
-            self._bend(found)
-        for beams, share, earlier in zip(self._beams, found.beams, before.beams, strict=True):
+        if (now.damage, now.share) != (before.damage, before.share):
+            self._bend(now)
+        for beams, share, earlier in zip(self._beams, now.beams, before.beams, strict=True):
             if share != earlier:
                 beams.color = blend(SILICON, ATTENTION, share)
-        if found.film != before.film:
-            self._film.visible = found.film > 0.0
-            self._film.opacity = 0.3 * found.film
-        if found.bases != before.bases:
-            self._bases.color = blend(FIXED, ATTENTION, found.bases)
+        if now.film != before.film:
+            self._film.visible = now.film > 0.0
+            self._film.opacity = 0.3 * now.film
+        if now.bases != before.bases:
+            self._bases.color = blend(FIXED, ATTENTION, now.bases)
 
-    def _bend(self, found: Marks) -> None:
+    def _bend(self, now: Marks) -> None:
         """Let the suspension follow the shuttle as a damaged one does; only the side at +y can be damaged."""
         for i, side in enumerate((1, -1)):
-            self._flexures[i] = flexure(self._layout, side, found.damage, found.share)
+            self._flexures[i] = flexure(self._layout, side, now.damage, now.share)
             self._beams[i].faces = self._flexures[i].faces.astype(np.uint32)
 
     def _show_lasers(self, lasers: tuple[Laser, ...]) -> None:
@@ -187,11 +187,11 @@ class Scene:
         scene.add_line_segments(f"{name}/outline", outline, color, thickness=2.0, thickness_units="screen")
         return ghost
 
-    def _mesh(self, name: str, mesh: Mesh, color: Color, **more: Any) -> Any:
+    def _mesh(self, name: str, mesh: Mesh, color: Color, **options: Any) -> Any:
         """Add a rigid mesh, or one whose vertices are moved."""
         vertices, faces = mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32)
         return self._server.scene.add_mesh_simple(
-            name, vertices, faces, color=color, flat_shading=True, side="double", **more
+            name, vertices, faces, color=color, flat_shading=True, side="double", **options
         )
 
     def _comb(self, name: str, places: Any, color: Color) -> Any:

@@ -88,7 +88,7 @@ class Show:
             await asyncio.sleep(due - time.monotonic())
 
 
-class Theatre:
+class Viewers:
     """One show per bench."""
 
     def __init__(self) -> None:
