@@ -1,4 +1,4 @@
-"""The running service: everything one application owns, from start to stop."""
+"""The running service: the parts of one application, from start to stop."""
 
 from __future__ import annotations
 
@@ -115,23 +115,23 @@ class Service:
             raise
 
     async def close_bench(self, session: Session) -> None:
-        """Close a bench and everything that shows it."""
+        """Close a bench, its streams and its 3D view."""
         await self.benches.close_bench(session)
         self.hub.close_bench(session.id)
         if self.viewers is not None:
             await self.viewers.drop(session.id)
 
     async def close_streams(self) -> None:
-        """Tell every page that the server goes, and close its stream."""
+        """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")
         await asyncio.sleep(0.1)
 
     def _lateness(self) -> dict[str, float]:
-        """Say how late the event loop and the engine are."""
+        """Return the lateness of the event loop and of the engine."""
         return {"loop_lag_ms": self.lag.p99_ms(), "wake_late_ms": self.engine.lateness.p99_ms()}
 
     def _after_round(self) -> None:
-        """Let the loop publish what the engine did; called on the engine thread."""
+        """Let the event loop publish the round of the engine; called on the engine thread."""
         loop = self._loop
         if loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop may be closing

@@ -1,4 +1,4 @@
-"""Settings of the service: one model, four sources, every value explained."""
+"""Settings of the service: one model with an explanation of every value, read from four sources."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PREFIX = "COMBBENCH_"
 
 
 class Settings(BaseSettings):
-    """Everything the service can be told; command line > environment > combbench.toml > default."""
+    """All settings of the service; command line > environment > combbench.toml > default."""
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", toml_file=CONFIG_FILE)
 
@@ -162,7 +162,7 @@ def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting
 
 def without_password(address: str) -> str:
     """Return the address of a database as it may be shown."""
-    from sqlalchemy import make_url  # takes a while, and only who asks for the settings needs it
+    from sqlalchemy import make_url  # a slow import that only this function needs
     from sqlalchemy.exc import ArgumentError
 
     try:

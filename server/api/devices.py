@@ -31,7 +31,7 @@ class DeviceCard(BaseModel):
 
 
 class Devices(BaseModel):
-    """Every device of the catalogue, and what can be chosen about a drawing."""
+    """Every device of the catalogue, and the choices of a drawing."""
 
     devices: list[DeviceCard]
     geometry: list[ParameterCard]
@@ -55,7 +55,7 @@ class Figure(BaseModel):
 
 
 class Evaluation(BaseModel):
-    """What a device would be."""
+    """The figures of a device, worked out before it is built."""
 
     title: str
     source: str
@@ -68,7 +68,7 @@ class Evaluation(BaseModel):
 
 
 class BodeOf(Design):
-    """Which Bode diagram."""
+    """A request for a Bode diagram."""
 
     start_hz: float = Field(200.0, gt=0, le=1e8)
     stop_hz: float = Field(20_000.0, gt=0, le=1e8)
@@ -91,18 +91,18 @@ class Bode(BaseModel):
     magnitude_db: Curve
     phase_deg: Curve
     static_gain_um_per_v: float
-    band: str = Field(description="What the band is")
+    band: str = Field(description="Meaning of the band")
 
 
 class SpreadOf(Design):
-    """Which devices to draw from the process."""
+    """A request for devices drawn from the process."""
 
     seed: int = Field(1, ge=0, le=2**53)
     draws: int = Field(2000, ge=2, le=20_000)
 
 
 class SpreadStatistics(BaseModel):
-    """How far one parameter lies apart."""
+    """The spread of one parameter."""
 
     variation_pct: float
     p01: float

@@ -1,4 +1,4 @@
-"""Diagnosers of a live bench: one sample explained, and what the drive cannot tell apart."""
+"""Diagnosers of a live bench: one sample explained, and the hypotheses that look alike under the drive."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def explain_sample(
     name: str,
     tick: Annotated[int | None, Query(ge=0, le=2**53, description="The sample; the last one unless given")] = None,
 ) -> Account:
-    """Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior."""
+    """Work out how a sample changed every hypothesis: prior, residual, likelihood, posterior."""
     spec, section = spec_and_section(session, name)
     signals = signals_of(section)
     columns = session.indices([f"{name}.{signal}" for signal in signals])
@@ -61,7 +61,7 @@ def map_aliases(
         float | None, Query(gt=0, le=1e6, description="One tone as large as the reference; those it has unless given")
     ] = None,
 ) -> AliasMap:
-    """Map the response of every hypothesis to the tones of the drive, and name what has the same."""
+    """Map the response of every hypothesis to the tones of the drive, and name those with the same response."""
     spec, section = spec_and_section(session, name)
     context = spec.context()
     tones = [(frequency_hz, volts_of(spec))] if frequency_hz else tones_of(spec)

@@ -33,7 +33,7 @@ T = TypeVar("T")
 
 
 class SweptSine(Body):
-    """How to sweep."""
+    """The settings of a swept sine."""
 
     amplitude_v: float = Field(2.0, ge=1e-6, le=1000)
     points: int = Field(31, ge=4, le=200, description="Tones of each of the two passes")
@@ -63,7 +63,7 @@ class FittedCurve(BaseModel):
 
 
 class Identification(BaseModel):
-    """What a swept sine tells of a bench as it is now."""
+    """The device that a swept sine identifies on a bench as it is now."""
 
     tick: int
     found: Identified
@@ -73,7 +73,7 @@ class Identification(BaseModel):
 
 
 class FoldPoint(BaseModel):
-    """Where the rest under a slowly rising drive ends: travel, voltage, place of the worst corner sideways."""
+    """The last rest position under a slowly rising drive: travel, voltage, place of the worst corner sideways."""
 
     x_um: float
     volts: float
@@ -88,7 +88,7 @@ class SafeBoundary(BaseModel):
 
 
 class UnstableRegionMap(BaseModel):
-    """Where a bench as it is now pulls in; empty where its plant cannot."""
+    """The region where a bench as it is now pulls in; empty if its plant cannot."""
 
     tick: int
     plant: str
@@ -129,7 +129,7 @@ async def region(
 
 @router.get("/plants", dependencies=[RateLimited])
 async def plants(session: SessionDep, service: ServiceDep) -> MeasuredPlants:
-    """Measure what a tick costs with each plant."""
+    """Measure the cost of a tick with each plant."""
     costs = await _on_copy(session, service, plant_costs)
     return MeasuredPlants(plants=[MeasuredPlant(**asdict(cost)) for cost in costs], tick_ns=1e6 * session.dt_ms)
 
@@ -138,17 +138,19 @@ async def plants(session: SessionDep, service: ServiceDep) -> MeasuredPlants:
 async def flops(
     session: SessionDep,
     service: ServiceDep,
-    board_mflops: Annotated[float, Query(gt=0, le=1e9, description="What the board does per second")] = 50.0,
-    function_flops: Annotated[float, Query(ge=0, le=1e4, description="What an exponential is worth")] = 20.0,
+    board_mflops: Annotated[float, Query(gt=0, le=1e9, description="Millions of operations per second")] = 50.0,
+    function_flops: Annotated[
+        float, Query(ge=0, le=1e4, description="Operations that an exponential counts as")
+    ] = 20.0,
 ) -> Budget:
-    """Count the operations of every diagnoser as it is now, and hold them against a board of some speed."""
+    """Count the operations of every diagnoser as it is now, and compare them with a board of some speed."""
     return await _on_copy(
         session, service, lambda kept: budget(Board.restore(kept), board_mflops * 1e6, function_flops)
     )
 
 
 async def _on_copy(session: Session, service: Service, work: Callable[[Checkpoint], T]) -> T:
-    """Do something to a copy of a bench, one at a time, beside the loop and the engine."""
+    """Run one experiment at a time on a copy of a bench, in a thread beside the event loop and the engine."""
     async with service.experiment_turn:
         kept = await service.engine.call(lambda: session.board.checkpoint())
         return await asyncio.to_thread(work, kept)

@@ -1,4 +1,4 @@
-"""Theory: what can be said of a system before anything is run."""
+"""Theory: properties of a system that need no run."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class ExcitationReport(BaseModel):
 
 
 class MapSource(Body):
-    """Which rule, on which plant kv/(b2 s^2 + b1 s + 1), and the axes of the map."""
+    """A rule, a plant kv/(b2 s^2 + b1 s + 1), and the axes of the map."""
 
     rule: Literal["mit", "parks", "lyapunov", "dressler", "price", "monopoli"] = "mit"
     b1: float = Field(0.2, gt=0, le=100)
@@ -186,7 +186,7 @@ def judge_persistency(body: ExcitationSource) -> ExcitationReport:
 
 @router.post("/aliases")
 def map_aliases(body: HypothesesSource) -> AliasMap:
-    """Map the responses of hypotheses to tones, and name what has the same."""
+    """Map the responses of hypotheses to tones, and name those with the same response."""
     if len({item.name for item in body.hypotheses}) < len(body.hypotheses):
         raise InputError("names must differ", "hypotheses")
     device = designed(body.device, {}).device.oscillator()
@@ -198,7 +198,7 @@ def map_aliases(body: HypothesesSource) -> AliasMap:
 
 @router.post("/instability-map")
 async def map_instability(body: MapSource) -> InstabilityMap:
-    """Map where a rule of appendix B is unstable under a sine."""
+    """Map the region where a rule of appendix B is unstable under a sine."""
     if body.lowest_frequency >= body.highest_frequency:
         raise InputError("must be below highest_frequency", "lowest_frequency")
     if body.frequencies * body.gains > MOST_CELLS:

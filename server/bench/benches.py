@@ -1,4 +1,4 @@
-"""All live benches: made, found, copied, closed."""
+"""The registry of live benches: it makes, finds, copies and closes them."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ from server.store.traces import schema_of
 from server.version import VERSION
 
 MOST_LAYOUT = 200_000
-"""Characters of a layout as JSON: many times what the page writes."""
+"""Most characters of a layout as JSON; the page writes far fewer."""
 
 
 class Wanted(BaseModel):
-    """What to record: from now, or from when a condition holds, with some of the past."""
+    """A recording to make: from now or from a condition on, with some of the past."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
@@ -72,13 +72,13 @@ class Benches:
     Parameters
     ----------
     engine : Engine
-        Advances them.
+        Advances the benches.
     recordings : Recordings
-        Keeps what they record.
+        Keeps the recordings of the benches.
     settings : Settings
         Limits.
     metrics : Metrics
-        Where they are counted.
+        Where benches and commands are counted.
     """
 
     def __init__(self, engine: Engine, recordings: Recordings, settings: Settings, metrics: Metrics) -> None:
@@ -115,7 +115,7 @@ class Benches:
         *,
         own_scale: bool = False,
     ) -> Session:
-        """Make a bench from a library id, a TOML text or a document; at the pace of its device if that is wanted.
+        """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
 
         Raises
         ------
@@ -214,13 +214,13 @@ class Benches:
         Raises
         ------
         InputError
-            If it cannot be; nothing has changed then.
+            If the command cannot be carried out; nothing has changed then.
         """
         outcome = await self.begin(session, command, actor)
         return outcome if isinstance(outcome, Event) else await asyncio.wrap_future(outcome)
 
     async def begin(self, session: Session, command: Any, actor: str) -> Event | Future[Event]:
-        """Carry out a command at the next tick edge; what is returned for a step has its event when it has ended."""
+        """Carry out a command at the next tick edge; for a step, return a future that holds its event at its end."""
         kind = command.kind
         event: Event | Future[Event]
         try:
@@ -249,9 +249,9 @@ class Benches:
         session : Session
             The bench.
         wanted : Wanted
-            What to record.
+            The recording to make.
         actor : str
-            Who asks.
+            The person or program that asks.
         room_bytes : int
             How large the recording may become.
         """
@@ -322,7 +322,7 @@ class Benches:
         return min(self._settings.history_ticks, affordable)
 
     def _check_room(self) -> None:
-        """Refuse one bench too many."""
+        """Refuse a new bench if the limit is reached."""
         if len(self) + self._coming >= self._settings.max_benches:
             raise ApiError(
                 409,

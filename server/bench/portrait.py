@@ -1,4 +1,4 @@
-"""What a live bench looks like from outside: its status, and all that is said of it."""
+"""Descriptions of a live bench: its status, its full description, its scenario."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, 
 
 
 class ShownBench(LiveBench, Protocol):
-    """A live bench as its status, its description and its scenario are made from it."""
+    """The part of a live bench that its status, its description and its scenario are made from."""
 
     id: str
     scenario: Scenario
@@ -34,7 +34,7 @@ class ShownBench(LiveBench, Protocol):
 
     @property
     def is_running(self) -> bool:
-        """Whether time runs, be it to the end of a step."""
+        """Whether time runs, until a pause or to the end of a step."""
 
     @property
     def is_started(self) -> bool:
@@ -42,7 +42,7 @@ class ShownBench(LiveBench, Protocol):
 
 
 def status_of(bench: ShownBench) -> BenchStatus:
-    """Return the status: an object nobody changes afterwards."""
+    """Return the status, an object that is not changed afterwards."""
     board, pacer = bench.board, bench.pacer
     faults: dict[str, Any] = dict(board.faults)
     state: State = "running" if bench.is_running else "paused"
@@ -138,7 +138,7 @@ def document_of(bench: ShownBench) -> dict[str, Any]:
     }
     graded = {key: value for key, value in bench.scenario.document.items() if key in ("expect", "metrics")}
     document = {**head, **bench.board.save(), **graded}
-    if bench.board.tick == 0:  # nothing has happened yet: what is saved is what would
+    if bench.board.tick == 0:  # the bench has not begun: the scenario keeps its own length
         document.pop("samples", None)
         if bench.scenario.samples is not None:
             document["samples"] = bench.scenario.samples
@@ -146,12 +146,12 @@ def document_of(bench: ShownBench) -> dict[str, Any]:
 
 
 def document_now(bench: ShownBench) -> dict[str, Any]:
-    """Return what the bench is made of now, its twins included."""
+    """Return the document of the bench as it is now, its twins included."""
     board = bench.board
     twins = board.base.get("twins")
     return {**board.spec.document, **({"twins": twins} if twins else {})}
 
 
 def design_of(bench: ShownBench) -> dict[str, Any]:
-    """Return the scenario of a bench as it is set now, from tick 0: live changes, but nothing that happened."""
+    """Return the scenario of a bench as it is set now, from tick 0: with live changes, without events."""
     return {**bench.scenario.document, **document_now(bench)}

@@ -16,12 +16,12 @@ from server.errors import not_found
 
 
 def _concerning(events: Sequence[Event], first: int) -> list[Event]:
-    """Return what happened from a tick on, behind the injections that act at it still."""
+    """Return the injections that still act at a tick, then the events from that tick on."""
     acting: dict[str, Event] = {}
     since: list[Event] = []
     for event in events:
         command = event.command or {}
-        if event.kind in ("reset", "restored"):  # what came after the tick gone back to was undone
+        if event.kind in ("reset", "restored"):  # events after the tick that was gone back to are undone
             last = event.tick if event.kind == "restored" else -1
             acting = {fault: done for fault, done in acting.items() if done.tick <= last}
             since = [done for done in since if done.tick <= last]
@@ -46,7 +46,7 @@ class Armed:
 
 
 class Recordings:
-    """Begins recordings, hands them the rows of their bench and lets go of them; on the engine thread.
+    """Begins recordings, passes them the rows of their bench and forgets those that have ended; on the engine thread.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Recordings:
         ticks : int or None
             Ticks behind the beginning after which it ends by itself.
         condition : Condition or None
-            What it waits for.
+            The condition it waits for.
         """
         bench = self._bench
         bench.must_be_open()
@@ -102,7 +102,7 @@ class Recordings:
         return recorder
 
     def forget(self, recording_id: str) -> None:
-        """Let go of a recording that has ended by itself."""
+        """Forget a recording that has ended by itself."""
         if recording_id in self.under_way or recording_id in self.armed:
             self.stop(recording_id)
 
@@ -116,14 +116,14 @@ class Recordings:
             recorder.note(event.model_dump_json())
 
     def take(self, rows: Rows) -> None:
-        """Record some rows, and begin what waited for them."""
+        """Record some rows, and begin the recordings whose condition they meet."""
         if self.under_way:
             self._record_rows(rows)
         if self.armed:
             self._watch(rows)
 
     def _begin(self, recorder: Recorder, at: int, past: int, ticks: int | None) -> int:
-        """Let a recording begin at a tick that has been or is now."""
+        """Begin a recording at a tick of the past or at this one."""
         bench = self._bench
         history, columns = bench.history, list(range(len(bench.signals)))
         end = bench.board.tick
@@ -139,7 +139,7 @@ class Recordings:
         return first
 
     def _record_rows(self, rows: Rows) -> None:
-        """Hand copies to the recordings; one that has ended by itself is let go."""
+        """Pass copies of rows to the recordings, and forget those that have ended by themselves."""
         samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
         for key, recorder in list(self.under_way.items()):
             recorder.append(rows.first_tick, samples)

@@ -1,7 +1,7 @@
-"""One live bench: a board, its history, its events; touched by the engine thread only.
+"""One live bench: a board, its history, its events. Only the engine thread changes it.
 
-The event loop reads what is safe to read meanwhile: the history (settled ticks), the events (locked) and
-`status`, an object that is replaced whole.
+The event loop reads three parts at any time: the history (settled ticks), the events (locked) and `status`, an object
+that is replaced whole.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
 RUN = get_args(RunsBench)
 STATUS_S = 0.2
 FORK_TICKS = 20_000
-"""Past a fork brings along."""
+"""Ticks of the past that a fork brings along."""
 
 
 class Session(Timeline):
@@ -44,11 +44,11 @@ class Session(Timeline):
     Parameters
     ----------
     scenario : Scenario
-        What it was made from.
+        The scenario of the bench.
     board : TickSource
-        Built from it; or a recording that is played.
+        The board built from the scenario; or a recording that is played.
     time_scale : float or None
-        Device seconds per wall second; none: as fast as possible.
+        Device seconds per wall second; none means as fast as possible.
     history_ticks : int
         Ticks every signal is kept for.
     metrics : Metrics
@@ -60,7 +60,7 @@ class Session(Timeline):
     replay_of = ""
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
-    """Device seconds per wall second that was recorded at."""
+    """Device seconds per wall second of the recording."""
 
     def __init__(
         self,
@@ -89,11 +89,11 @@ class Session(Timeline):
         self._status_due = 0.0
         self.refresh_status()
 
-    # ---- what the engine asks
+    # ---- calls of the engine
 
     @property
     def is_running(self) -> bool:
-        """Whether time runs, be it to the end of a step."""
+        """Whether time runs, until a pause or to the end of a step."""
         return self._running or bool(self.steps)
 
     @property
@@ -102,7 +102,7 @@ class Session(Timeline):
         return self._running
 
     def target(self, now: float) -> int | None:
-        """Return the tick to reach in this round; the end of the scenario is not passed unasked."""
+        """Return the tick to reach in this round; the bench stops once at the end of its scenario."""
         if self.steps:
             return None
         target = self.pacer.target(self.board.tick, now)
@@ -122,30 +122,28 @@ class Session(Timeline):
         return self._running and (target is None or self.board.tick < target)
 
     def finish_round(self, target: int | None, now: float) -> None:
-        """Account for a round; renew the status now and then."""
+        """Account for a round; refresh the status now and then."""
         if self._running:
             self.pacer.record(self.board.tick, target if self.pacer.scale is not None else None, now)
         overruns, given_up = self._counted
-        if self.pacer.overruns > overruns:
-            self._metrics.overruns.inc(self.pacer.overruns - overruns)
-        if self.pacer.given_up_s > given_up:
-            self._metrics.given_up_seconds.inc(self.pacer.given_up_s - given_up)
+        self._metrics.overruns.inc(max(0, self.pacer.overruns - overruns))
+        self._metrics.given_up_seconds.inc(max(0.0, self.pacer.given_up_s - given_up))
         self._counted = (self.pacer.overruns, self.pacer.given_up_s)
         if now >= self._status_due:
             self._status_due = now + STATUS_S
             self.refresh_status()
 
     def fail(self, error: Exception) -> None:
-        """Pause after an error nobody expected, and say so."""
+        """Pause after an unexpected error, and note it."""
         self._running = False
         self.steps.end()
         self.note("board", "failed", f"stopped by an internal error: {error}")
         self.refresh_status()
 
-    # ---- what people do; all run as jobs of the engine
+    # ---- actions of people; the engine runs all of them as jobs
 
     def begin(self, start: bool) -> None:
-        """Come to life, running or paused."""
+        """Begin, running or paused."""
         self._running = start
         self.pacer.anchor(self.board.tick, self._clock())
         self._journal.follow(self.board.log)
@@ -153,17 +151,17 @@ class Session(Timeline):
         self.refresh_status()
 
     def execute(self, command: Any, actor: str) -> Event | Future[Event]:
-        """Carry out a command at this tick edge; what is returned for a step has its event when it has ended.
+        """Carry out a command at this tick edge; for a step, return a future that holds its event at its end.
 
         Raises
         ------
         InputError
-            If it cannot be; nothing has changed then.
+            If the command cannot be carried out; nothing has changed then.
         """
         self.must_be_open()
         if isinstance(command, RUN):
             event = self._run_command(command, actor)
-            if isinstance(event, Future):  # a short one is over before its status is worth a look
+            if isinstance(event, Future):  # its end refreshes the status
                 return event
         else:
             if len(self.board.pending) >= MAX_PENDING:
@@ -183,8 +181,7 @@ class Session(Timeline):
 
     def reset(self, scenario: Scenario, board: Board, actor: str) -> Event:
         """Begin again with a new board of the same signals."""
-        names = [signal.name for signal in board.signals]
-        if names != list(self._index):
+        if [signal.name for signal in board.signals] != list(self._index):
             raise InputError(
                 "these values give the bench other signals", "values", "make a new bench for them", "conflict"
             )
@@ -199,7 +196,7 @@ class Session(Timeline):
         return event
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
-        """Go back to a moment."""
+        """Go back to a snapshot."""
         kept = self.snapshots.get(snapshot_id)
         self.board = Board.restore(kept.checkpoint)
         self._journal.skip_to(self.board.log.last)
@@ -209,7 +206,7 @@ class Session(Timeline):
         return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
 
     def fork(self, snapshot_id: str | None) -> Session:
-        """Return a second bench that goes on from this moment or a kept one."""
+        """Return a second bench that goes on from this moment or from a snapshot."""
         checkpoint = self.snapshots.get(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
         board = Board.restore(checkpoint)
         twin = Session(self.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
@@ -221,7 +218,7 @@ class Session(Timeline):
         return twin
 
     def close(self) -> list[Recorder]:
-        """Stop for good; returns the recordings that were under way."""
+        """Stop for good; return the recordings that were under way."""
         self._running, self._closed = False, True
         self.steps.end()
         return self.recordings.close()
@@ -271,11 +268,6 @@ class Session(Timeline):
             self.refresh_status()
         return rows.count
 
-    def _has_due(self) -> bool:
-        """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
-        due = self.board.pending.next_tick
-        return due is not None and due <= self.board.tick
-
     def _finish(self) -> None:
         """Pause at the end of the scenario; starting again goes beyond it."""
         self._running, self._ends_at = False, None
@@ -298,5 +290,5 @@ class Session(Timeline):
         return self._journal.add(self.board.tick if tick is None else tick, actor, kind, text, command)
 
     def refresh_status(self) -> None:
-        """Renew the status: an object nobody changes afterwards."""
+        """Replace the status by that of now."""
         self.status = status_of(self)

@@ -1,4 +1,4 @@
-"""Moments of a bench that can be gone back to; taken and forgotten on the engine thread."""
+"""Snapshots: moments a bench can go back to; taken and forgotten on the engine thread."""
 
 from __future__ import annotations
 

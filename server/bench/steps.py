@@ -1,4 +1,4 @@
-"""Steps of a bench: so many ticks and no more, taken in slices of the engine like those of a bench that runs."""
+"""Steps of a bench: a number of ticks, taken in the same slices of the engine as those of a bench that runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LONGEST_PERIOD = 100_000
 
 @dataclass
 class StepRequest:
-    """A step somebody asked for and waits for, and how far it has come."""
+    """A step that a caller waits for, and how far it has come."""
 
     command: Step | StepPeriod
     actor: str
@@ -27,7 +27,7 @@ class StepRequest:
     done: int = 0
 
     def text(self) -> str:
-        """Say what was done of it."""
+        """Return in words how much of the step was done."""
         plural = "s" if self.ticks != 1 else ""
         if self.done < self.ticks:
             return f"stepped {self.done} of {self.ticks} tick{plural}"
@@ -35,7 +35,7 @@ class StepRequest:
 
 
 class Steps:
-    """The steps of a bench that are not at their end yet, one behind the other; on the engine thread.
+    """The queue of steps of a bench; on the engine thread.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Steps:
         return len(self._requests)
 
     def add(self, command: Step | StepPeriod, actor: str) -> Future[Event]:
-        """Ask for a step, behind those asked for before; the event is there when it has ended.
+        """Queue a step; return a future that holds its event when the step has ended.
 
         Raises
         ------
@@ -64,12 +64,12 @@ class Steps:
         last = self._requests[-1] if self._requests else None
         start = self._bench.board.tick if last is None else last.start + last.ticks
         request = StepRequest(command, actor, start, ticks)
-        request.ended.set_running_or_notify_cancel()  # who no longer waits for it does not stop it
+        request.ended.set_running_or_notify_cancel()  # a caller that no longer waits does not stop the step
         self._requests.append(request)
         return request.ended
 
     def slice(self) -> bool:
-        """Advance by one slice of the first; true while there is more to do."""
+        """Advance the first step by one slice; true while steps are queued."""
         bench, first = self._bench, self._requests[0]
         ran = bench.advance(first.ticks - first.done)
         first.done += ran
@@ -80,19 +80,19 @@ class Steps:
         return bool(self._requests)
 
     def end(self) -> None:
-        """End all of them here."""
+        """End all steps at this tick."""
         while self._requests:
             self._answer(self._requests.popleft())
 
     def _answer(self, request: StepRequest) -> None:
-        """Note what was done of a step at the tick it began, and tell who waits for it."""
+        """Note at the tick where a step began how much of it was done, and answer its caller."""
         command = request.command
         event = self._bench.note(request.actor, command.kind, request.text(), command.model_dump(), tick=request.start)
         self._bench.refresh_status()
         request.ended.set_result(event)
 
     def _period(self) -> int:
-        """Return the drive period as a number of ticks one may step."""
+        """Return the drive period in ticks, at most the longest step allowed."""
         period = self._bench.drive_period_ticks
         if period is None:
             raise InputError("the reference has no period", "kind", "step a number of ticks", "conflict")

@@ -1,4 +1,4 @@
-"""A recording played where a bench has its board: the same ticks, the same signals, nothing computed."""
+"""A recording in the place of a board: it reads the same ticks and signals from its file and computes nothing."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ REFUSAL = "this bench plays a recording"
 
 
 class Tape:
-    """Stands for a board and advances by reading.
+    """Takes the place of a board and advances by reading a recording.
 
     Parameters
     ----------
     board : Board
-        Made from the scenario of the recording; says what the signals and blocks are.
+        Built from the scenario of the recording; gives its signals and blocks.
     path : Path
         The file of the recording.
     """
@@ -114,21 +114,21 @@ class Tape:
         return {}
 
     def digest(self) -> str:
-        """Return nothing: what is recorded is rounded."""
+        """Return nothing: the recorded values are rounded."""
         return ""
 
     def apply(self, *_: Any) -> NoReturn:
-        """Refuse: the past cannot be changed."""
+        """Refuse: a recording cannot be changed."""
         raise InputError(REFUSAL, "command", "run its scenario to change something", "conflict")
 
     def checkpoint(self) -> NoReturn:
-        """Refuse: there is no state."""
+        """Refuse: a recording has no state of a board."""
         raise InputError(REFUSAL, "bench", "run its scenario to branch off", "conflict")
 
     save = checkpoint
 
     def _read(self, number: int) -> NDArray[np.float32]:
-        """Return a row group as ``(ticks, signals)``; what was not recorded is not a number."""
+        """Return a row group as ``(ticks, signals)``; signals that were not recorded are NaN."""
         if self._group is None or self._group[0] != number:
             table = self._file.read_row_group(number, columns=[name for _, name in self._columns])
             samples = np.full((table.num_rows, self._width), np.nan, np.float32)

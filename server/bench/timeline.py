@@ -75,6 +75,11 @@ class Timeline:
             self.history.append(rows)
         return rows
 
+    def _has_due(self) -> bool:
+        """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
+        due = self.board.pending.next_tick
+        return due is not None and due <= self.board.tick
+
     def _empty_history(self) -> History:
         """Return a history with nothing in it."""
         signals = self.board.signals

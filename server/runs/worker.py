@@ -1,4 +1,4 @@
-"""What a worker process does: run a scenario for its seeds and keep what came out."""
+"""The work of a worker process: it runs a scenario for its seeds and keeps the results."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ STEM, PROGRESS, CANCEL = "run", "progress", "cancel"
 
 
 class Cancelled(Exception):
-    """Somebody asked for the run to end."""
+    """The run was cancelled."""
 
 
 class Watch:
-    """Writes how far a run is, and looks whether it is still wanted.
+    """Writes the progress of a run, and checks whether it was cancelled.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Watch:
         self._place, self._total, self._due = place, total, 0.0
 
     def at(self, before: int) -> Callable[[int], None]:
-        """Return what to call after every chunk, when so many ticks were done by earlier seeds."""
+        """Return the function to call after every chunk, when earlier seeds took so many ticks."""
 
         def look(tick: int) -> None:
             if time.monotonic() < self._due:

@@ -13,7 +13,7 @@ OTHERS = 0o077
 
 
 def keep_private(data: Path) -> None:
-    """Make the data folder if there is none, and let nobody else read what is kept in it, from before or from now on.
+    """Make the data folder if there is none, and let nobody else read its old and its new files.
 
     An existing folder keeps its mode, because it may also hold files of others.
 

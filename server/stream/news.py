@@ -15,7 +15,7 @@ UNTOLD = '"dropped_frames":-1'
 
 
 class News:
-    """The words on one bench.
+    """The messages about one bench: its status and its events.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class News:
         self._session, self._around = session, around
         self._document = document_now(session)
         self.edition = 1
-        """Changes whenever the parameters do."""
+        """Number of the present parameters; it rises when they change."""
         self._status: object = None
         self._texts: dict[bool, str] = {}
         self._statuses: dict[tuple[bool, int], bytes] = {}
@@ -67,7 +67,7 @@ class News:
         return self._events[after]
 
     def _text(self, with_parameters: bool) -> str:
-        """Return the status but for one number that differs from page to page."""
+        """Return the status without the one number that differs from page to page."""
         if with_parameters not in self._texts:
             message = Status(
                 **{**dict(self._session.status), **self._around()},

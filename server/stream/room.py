@@ -1,4 +1,4 @@
-"""All pages of one bench, and what is new to them."""
+"""All pages of one bench, and the news for them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from server.stream.cuts import SharedCuts
 from server.stream.news import News
 
 STATUS_S = 0.05
-"""After an event the status follows at once, but not more often than this."""
+"""The status follows an event at once, but not more often than this."""
 
 
 PAGES_AT_ONCE = 25
@@ -38,7 +38,7 @@ class Room:
         self._told_at = 0.0
 
     def publish(self, now: float) -> Iterator[None]:
-        """Offer every page what is new, with breaks."""
+        """Offer every page the news; pause between groups of pages."""
         head, last = self.cuts.refresh(), self.session.events.last
         status = last != self._told and now - self._told_at >= STATUS_S
         if status:

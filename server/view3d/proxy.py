@@ -1,4 +1,4 @@
-"""The way to a scene: its page and its WebSocket, on our port and behind our gate."""
+"""The proxy of a scene: it serves its page and its WebSocket on our port and behind our gate."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ async def _relay(socket: WebSocket, path: Path) -> None:
 
 
 async def _down(socket: WebSocket, scene: ClientConnection) -> None:
-    """From the scene to the page."""
+    """Pass messages from the scene to the page."""
     with contextlib.suppress(ConnectionClosed, WebSocketDisconnect, RuntimeError):
         async for message in scene:
             if isinstance(message, bytes):
@@ -98,6 +98,6 @@ async def _down(socket: WebSocket, scene: ClientConnection) -> None:
 
 
 async def _until_gone(socket: WebSocket) -> None:
-    """Let the page say what it likes; the scene is only looked at, and viser breaks at what it does not know."""
+    """Drop the messages of the page: the scene takes no input, and viser fails on unknown messages."""
     while (await socket.receive())["type"] != "websocket.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""The scene of one bench: a shuttle that moves and turns, beams that bend, faults where they act."""
+"""The scene of one bench: the shuttle moves and turns, the beams bend, marks show the faults."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ REFERENCE, ESTIMATE, LIGHT = (223, 228, 234), (31, 184, 143), (240, 110, 190)
 ATTENTION = (232, 64, 52)
 SIDES = ((1, "right", RIGHT), (-1, "left", LEFT))
 BEAM_UM, ABOVE_UM, BELOW_UM, SPOT_UM = 3.0, 130.0, 90.0, 5.0
-"""Sizes of the light that are seen."""
+"""Sizes of the light, large enough to see."""
 
 
 class Scene:
@@ -46,7 +46,7 @@ class Scene:
 
     @property
     def path(self) -> Path:
-        """Where the scene is watched: a Unix socket of this user alone."""
+        """The Unix socket of the scene, which only this user can open."""
         return self._private.path
 
     def show(self, pose: Pose) -> None:
@@ -71,18 +71,18 @@ class Scene:
         self._server.flush()
 
     def close(self) -> None:
-        """Stop the server and let its clients go."""
+        """Stop the server and disconnect its clients."""
         self._private.stop()
 
     def _move(self, pose: Pose, before: Pose) -> None:
-        """Put everything that moves where it is."""
+        """Place all moving parts."""
         x, y, turn = pose.displacement_um, pose.shift_um, pose.turn
         self._shuttle.position = (x / UM_PER_UNIT, y / UM_PER_UNIT, 0.0)
         if turn != before.turn:
             self._shuttle.wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
         for (_, name, _), lateral in zip(SIDES, pose.combs_um, strict=True):
             fingers = self._fingers[name]
-            # true to scale in their gaps, whatever the exaggeration of the arm that carries them
+            # the fingers are true to scale in their gaps; only the arm that carries them is exaggerated
             fingers.position = (x / UM_PER_UNIT, lateral / UM_PER_UNIT, 0.0)
             if turn != before.turn:
                 places = self._places[name].copy()
@@ -129,7 +129,7 @@ class Scene:
             self._bases.color = blend(FIXED, ATTENTION, now.bases)
 
     def _bend(self, now: Marks) -> None:
-        """Let the suspension follow the shuttle as a damaged one does; only the side at +y can be damaged."""
+        """Choose the shape of the suspension by its damage; only the side at +y can be damaged."""
         for i, side in enumerate((1, -1)):
             self._flexures[i] = flexure(self._layout, side, now.damage, now.share)
             self._beams[i].faces = self._flexures[i].faces.astype(np.uint32)
@@ -151,7 +151,7 @@ class Scene:
             ]
 
     def _build(self) -> None:
-        """Put everything in place, once."""
+        """Build all parts, once."""
         scene, layout = self._server.scene, self._layout
         # viser's own lights bleach every colour to white
         scene.configure_default_lights(False)
@@ -217,12 +217,12 @@ def blend(first: Color, second: Color, share: float) -> Color:
 
 
 def in_batch(color: Color) -> NDArray[np.uint8]:
-    """Return a colour as batches want it: viser takes theirs as linear, all others as sRGB."""
+    """Return a colour for a batch: viser takes colours of batches as linear, all others as sRGB."""
     share = np.array(color) / 255.0
     linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
     return np.asarray(np.round(255.0 * linear), dtype=np.uint8)
 
 
 def _seen(faults: tuple[Active, ...]) -> list[Any]:
-    """Return what of the faults is seen: a ramp moves in steps of two figures, not at every frame."""
+    """Return the visible part of the faults; a ramp moves in steps of two figures, not at every frame."""
     return [(fault.block, fault.params, f"{fault.severity:.2g}") for fault in faults]
