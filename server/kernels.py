@@ -20,7 +20,7 @@ NICE = 10
 
 
 class Kernels:
-    """The server loads the kernels of the first bench before it serves anyone, and compiles all others meanwhile."""
+    """Loads the kernels of the first bench before the server serves anyone, and compiles all others meanwhile."""
 
     def __init__(self) -> None:
         self.are_loaded = False

@@ -139,9 +139,7 @@ async def flops(
     session: SessionDep,
     service: ServiceDep,
     board_mflops: Annotated[float, Query(gt=0, le=1e9, description="Millions of operations per second")] = 50.0,
-    function_flops: Annotated[
-        float, Query(ge=0, le=1e4, description="Operations that an exponential counts as")
-    ] = 20.0,
+    function_flops: Annotated[float, Query(ge=0, le=1e4, description="Operations for one exponential")] = 20.0,
 ) -> Budget:
     """Count the operations of every diagnoser as it is now, and compare them with a board of some speed."""
     return await _on_copy(

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 NICE = 10
-LOOK_S = 0.1
+REPORT_S = 0.1
 STEM, PROGRESS, CANCEL = "run", "progress", "cancel"
 
 
@@ -34,15 +34,15 @@ class Watch:
     def at(self, before: int) -> Callable[[int], None]:
         """Return the function to call after every chunk, when earlier seeds took so many ticks."""
 
-        def look(tick: int) -> None:
+        def report(tick: int) -> None:
             if time.monotonic() < self._due:
                 return
-            self._due = time.monotonic() + LOOK_S
+            self._due = time.monotonic() + REPORT_S
             if (self._place / CANCEL).exists():
                 raise Cancelled
             (self._place / PROGRESS).write_text(str((before + tick) / self._total))
 
-        return look
+        return report
 
 
 def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: int) -> dict[str, Any]:

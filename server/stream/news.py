@@ -11,7 +11,7 @@ from server.stream.line import text_message
 from server.stream.wire import Events, Notice, Status
 
 EVENTS_AT_ONCE = 100
-UNTOLD = '"dropped_frames":-1'
+UNKNOWN_DROPPED = '"dropped_frames":-1'
 
 
 class News:
@@ -48,7 +48,7 @@ class News:
         key = (known_edition != self.edition, dropped)
         if key not in self._statuses:
             dropped_field = f'"dropped_frames":{dropped}'
-            self._statuses[key] = text_message(self._text(key[0]).replace(UNTOLD, dropped_field))
+            self._statuses[key] = text_message(self._text(key[0]).replace(UNKNOWN_DROPPED, dropped_field))
         return self._statuses[key]
 
     def events(self, after: int) -> tuple[list[bytes], int]:

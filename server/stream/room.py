@@ -34,15 +34,15 @@ class Room:
         self.clients: set[Client] = set()
         self.cuts = SharedCuts(session)
         self.news = News(session, around)
-        self._head = self._last = self._told = -1
-        self._told_at = 0.0
+        self._head = self._last = self._status_event = -1
+        self._status_at = 0.0
 
     def publish(self, now: float) -> Iterator[None]:
         """Offer every page the news; pause between groups of pages."""
         head, last = self.cuts.refresh(), self.session.events.last
-        status = last != self._told and now - self._told_at >= STATUS_S
+        status = last != self._status_event and now - self._status_at >= STATUS_S
         if status:
-            self._told, self._told_at = last, now
+            self._status_event, self._status_at = last, now
         new = {"events": last != self._last, "frame": head != self._head, "status": status}
         self._head, self._last = head, last
         if any(new.values()):

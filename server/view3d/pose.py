@@ -117,7 +117,7 @@ class Observer:
         self._known: dict[str, Any] = {}
         self._factor = self._turn_factor = 1.0
 
-    def look(self) -> Pose:
+    def pose(self) -> Pose:
         """Return the pose of now, or of the moment that the strobe shows."""
         session, history = self._session, self._session.history
         head, spec = history.end_tick, session.board.spec

@@ -80,7 +80,7 @@ class Show:
         due = time.monotonic()
         while True:
             try:
-                scene.show(observer.look())
+                scene.show(observer.pose())
             except Exception:
                 log.exception("the 3D view of bench %s failed", self._session.id)
                 return

@@ -189,7 +189,7 @@ def pose_of(live: Any, bench: dict[str, Any]) -> tuple[Any, Any]:
     from server.view3d.viewers import layout_of
 
     session = live.service.benches.get(bench["id"])
-    return session, Observer(session, layout_of(session)).look()
+    return session, Observer(session, layout_of(session)).pose()
 
 
 def test_a_shuttle_in_the_plane_shifts_turns_and_warns(live: Any) -> None:
@@ -251,7 +251,7 @@ def test_the_picture_of_a_pose_is_light(live: Any) -> None:
         for _ in range(60):
             live.command(bench["id"], "step", ticks=7)
             start = time.thread_time()
-            scene.show(observer.look())
+            scene.show(observer.pose())
             spent.append(time.thread_time() - start)
     finally:
         scene.close()

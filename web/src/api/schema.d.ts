@@ -4747,7 +4747,7 @@ export interface operations {
             query?: {
                 /** @description Millions of operations per second */
                 board_mflops?: number;
-                /** @description Operations that an exponential counts as */
+                /** @description Operations for one exponential */
                 function_flops?: number;
             };
             header?: never;
