@@ -1,4 +1,4 @@
-"""What `combbench doctor` tells: settings and their sources, versions, caches."""
+"""The report of `combbench doctor`: settings and their sources, versions, caches."""
 
 from __future__ import annotations
 

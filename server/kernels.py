@@ -16,11 +16,11 @@ log = logging.getLogger(__name__)
 
 PROGRESS = re.compile(rb"(\d+) of (\d+)")
 NICE = 10
-"""How far compiling steps back behind benches that run."""
+"""Niceness of the compiler: benches that run come first."""
 
 
 class Kernels:
-    """The kernels of the first bench are loaded before anyone is served; all others are compiled meanwhile."""
+    """Loads the kernels of the first bench before the server serves anyone, and compiles all others meanwhile."""
 
     def __init__(self) -> None:
         self.are_loaded = False
@@ -28,7 +28,7 @@ class Kernels:
         self._task: asyncio.Task[None] | None = None
 
     async def start(self) -> None:
-        """Load the kernels of the first bench, and begin with the rest unless they are kept already."""
+        """Load the kernels of the first bench, and start compiling the rest unless the cache has them."""
         await asyncio.to_thread(kernels.load)
         self.are_loaded = True
         complete = kernels.complete()
@@ -36,7 +36,7 @@ class Kernels:
             self._task = asyncio.create_task(self._compile())
 
     async def _compile(self) -> None:
-        """Run the compiler in a process of its own; how far it is goes to the log at each quarter."""
+        """Run the compiler in a process of its own, and log its progress at each quarter."""
         process = await asyncio.create_subprocess_exec(
             sys.executable,
             "-m",
@@ -44,17 +44,17 @@ class Kernels:
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,
-            start_new_session=True,  # so that its processes end with it
+            start_new_session=True,  # so that the compiler's processes end with it
             preexec_fn=_step_back if os.name == "posix" else None,
         )
         assert process.stdout is not None
-        told = 0
+        reported = 0
         try:
             while text := await process.stdout.read(4096):
                 for match in PROGRESS.finditer(text):
                     self.done, self.total = int(match[1]), int(match[2])
-                if self.total and 4 * self.done // self.total > told:
-                    told = 4 * self.done // self.total
+                if self.total and 4 * self.done // self.total > reported:
+                    reported = 4 * self.done // self.total
                     log.info("compiled %d of %d kernels", self.done, self.total)
             if await process.wait() != 0:
                 log.warning("kernels could not be compiled ahead; each is compiled when it is used")

@@ -1,4 +1,4 @@
-"""The running service: everything one application owns, from start to stop."""
+"""The running service: the parts of one application, from start to stop."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from server.store.recordings import Recordings
 from server.stream.hub import Hub
 
 if TYPE_CHECKING:
-    from server.view3d.theatre import Theatre
+    from server.view3d.viewers import Viewers
 
 log = logging.getLogger(__name__)
 
@@ -56,7 +56,7 @@ class Service:
         self.keeping = Keeping(self.database, settings)
         self.sweeps = Sweeps(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
-        self.theatre = _theatre()
+        self.viewers = _viewers()
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
         self.kernels = Kernels()
         self.is_ready = False
@@ -83,8 +83,8 @@ class Service:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.kernels.stop()
-            if self.theatre is not None:
-                await self.theatre.close()
+            if self.viewers is not None:
+                await self.viewers.close()
             await self.sweeps.close()
             await self.jobs.close()
             await self.benches.close()
@@ -93,18 +93,18 @@ class Service:
 
     def view(self, session: Session) -> Bench:
         """Describe a bench in full."""
-        view3d = f"/benches/{session.id}/3d/" if self.theatre is not None else None
+        view3d = f"/benches/{session.id}/3d/" if self.viewers is not None else None
         return bench_of(session, self.hub.around(session), view3d)
 
     def views(self) -> list[Bench]:
         """Describe the benches, oldest first; one that cannot be described does not hide the others."""
-        found = []
+        descriptions = []
         for session in self.benches.all():
             try:
-                found.append(self.view(session))
+                descriptions.append(self.view(session))
             except Exception:
                 log.exception("bench %s cannot be described", session.id)
-        return found
+        return descriptions
 
     async def opened(self, session: Session) -> Bench:
         """Describe a bench just made; one that cannot be described is closed again."""
@@ -115,33 +115,33 @@ class Service:
             raise
 
     async def close_bench(self, session: Session) -> None:
-        """Close a bench and everything that shows it."""
+        """Close a bench, its streams and its 3D view."""
         await self.benches.close_bench(session)
         self.hub.close_bench(session.id)
-        if self.theatre is not None:
-            await self.theatre.drop(session.id)
+        if self.viewers is not None:
+            await self.viewers.drop(session.id)
 
-    async def farewell(self) -> None:
-        """Tell every page that the server goes, and close its stream."""
+    async def close_streams(self) -> None:
+        """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")
         await asyncio.sleep(0.1)
 
     def _lateness(self) -> dict[str, float]:
-        """Say how late the event loop and the engine are."""
+        """Return the lateness of the event loop and of the engine."""
         return {"loop_lag_ms": self.lag.p99_ms(), "wake_late_ms": self.engine.lateness.p99_ms()}
 
     def _after_round(self) -> None:
-        """Let the loop publish what the engine did; called on the engine thread."""
+        """Let the event loop publish the round of the engine; called on the engine thread."""
         loop = self._loop
         if loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop may be closing
                 loop.call_soon_threadsafe(self.hub.publish)
 
 
-def _theatre() -> Theatre | None:
+def _viewers() -> Viewers | None:
     """Return the 3D views, if their folder is there."""
     if importlib.util.find_spec("server.view3d") is None:
         return None
-    from server.view3d.theatre import Theatre
+    from server.view3d.viewers import Viewers
 
-    return Theatre()
+    return Viewers()

@@ -80,7 +80,7 @@ def get_scenario(scenario_id: str) -> ScenarioText:
 
 @router.post("/check")
 def check_scenario(body: ScenarioSource) -> ScenarioText:
-    """Check a scenario without running it; 422 says what is wrong with it."""
+    """Check a scenario without running it; the answer 422 says what is wrong with it."""
     scenario, _ = prepare(body.scenario, {}, None)
     try:
         return ScenarioText(document=scenario.document, toml=scenario.toml())

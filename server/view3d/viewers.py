@@ -1,4 +1,4 @@
-"""The 3D scenes of all benches: built when someone comes to watch, moved while someone does, then closed."""
+"""The 3D scenes of all benches: each is built for its first viewer, and closed after its last one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FRAME_S = 1.0 / 60.0
 
 
 class Show:
-    """The scene of one bench and who watches it.
+    """The scene of one bench and the number of its viewers.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Show:
         return self._watchers
 
     async def enter(self) -> Path:
-        """Count a watcher in; return the socket of the scene."""
+        """Count a new viewer; return the socket of the scene."""
         self._watchers += 1
         try:
             async with self._ready:
@@ -55,10 +55,10 @@ class Show:
             raise
 
     async def leave(self) -> None:
-        """Count a watcher out; the last one turns off the light.
+        """Count a viewer that leaves; close the scene after the last one.
 
-        A scene keeps a number for every message it ever sent, and walks them for each newcomer: a fresh
-        scene for fresh watchers keeps that short.
+        A scene keeps a number for every message it has sent, and goes through all of them for each new viewer. A new
+        scene keeps that short.
         """
         self._watchers -= 1
         async with self._ready:
@@ -80,7 +80,7 @@ class Show:
         due = time.monotonic()
         while True:
             try:
-                scene.show(observer.look())
+                scene.show(observer.pose())
             except Exception:
                 log.exception("the 3D view of bench %s failed", self._session.id)
                 return
@@ -88,7 +88,7 @@ class Show:
             await asyncio.sleep(due - time.monotonic())
 
 
-class Theatre:
+class Viewers:
     """One show per bench."""
 
     def __init__(self) -> None:
