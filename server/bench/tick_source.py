@@ -12,8 +12,8 @@ from core.board.document import Document
 from core.board.log import Log
 from core.board.pending import Queue
 from core.board.rows import Rows
-from core.board.score import Scores
 from core.board.spec import Section, Spec
+from core.loop.score import Scores
 from core.signals import SignalTable
 
 
