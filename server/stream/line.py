@@ -11,7 +11,7 @@ from starlette.websockets import WebSocket
 from uvicorn.config import Config
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from uvicorn.server import ServerState
-from websockets.frames import Frame, Opcode, apply_mask  # type: ignore[attr-defined]
+from websockets.frames import CloseCode, Frame, Opcode, apply_mask  # type: ignore[attr-defined]
 from websockets.http11 import Request
 
 EXTENSION = "combbench.line"
@@ -123,6 +123,14 @@ class Line(WebSocketsSansIOProtocol):
                     return
             self._is_whole = ends_whole(data)
         super().data_received(data)
+
+    def handle_parser_exception(self) -> None:
+        """Cut a client that breaks the rules before it was answered: no close can be sent yet."""
+        if self.conn.close_sent is None:
+            self.queue.put_nowait({"type": "websocket.disconnect", "code": CloseCode.PROTOCOL_ERROR, "reason": ""})
+            self.transport.abort()
+        else:
+            super().handle_parser_exception()
 
     def handle_text(self, event: Frame) -> None:
         """Offer a whole message to `hear`."""
