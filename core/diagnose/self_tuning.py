@@ -26,9 +26,9 @@ from core.record import Vector, vector
 
 MODES = ("fixed", "direct", "stepped", "printed")
 FIXED, DIRECT, STEPPED, PRINTED = 0.0, 1.0, 2.0, 3.0
-"""What becomes of the forgetting factor, as numbers."""
+"""Codes of the ways to set the forgetting factor."""
 HUGE = 1e300
-"""Where the printed recursion, which grows beyond all bounds, is stopped so that it stays a number."""
+"""Bound of the printed recursion, which would grow without end."""
 
 
 @kernel
@@ -79,12 +79,12 @@ class SelfTuning(ArxBank):
     distance between coefficients means nothing. Costs over the same memory give the same likelihoods, and are what
     is computed.
 
-    Voltage and measurement may pass 1/A(q) of the healthy device first, which makes the error of the equation white:
-    without it the method is for 10 to 20 kHz.
+    Voltage and measurement may pass 1/A(q) of the healthy device first, which makes the error of the equation white.
+    Without that filter the method works at 10 to 20 kHz.
 
-    The forgetting factor is fixed, or follows the innovations: ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
-    with R over a few samples, when R is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
-    a ramp that does not look at the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
+    The forgetting factor is fixed, or follows the innovations. ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
+    if R, taken over a few samples, is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
+    a ramp that ignores the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
     """
 
     sample_by_sample = False
@@ -172,7 +172,7 @@ class SelfTuning(ArxBank):
         likelihood: Vector = vector(LANE)
 
     class Ports(ArxBank.Ports):
-        """The estimate and what it forgets by."""
+        """The estimate and its forgetting factor."""
 
         estimate: Vector = tap("1", "estimated coefficients", labels=("b0", "b1", "a1", "a2"))
         forgetting: float = tap("1", "forgetting factor")
@@ -190,7 +190,7 @@ class SelfTuning(ArxBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """No estimate, as good as no information; no costs."""
+        """No estimate and almost no information; no costs."""
         s = cls.State.zeros()
         s.covariance[:] = diagonal(SIZE, params.initial_covariance)
         s.forgetting = params.initial_forgetting

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, ClassVar, Literal, Protocol
 
 from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor
 from core.kernel import kernel
 from core.ports import output, reads
 from core.record import Record
@@ -50,7 +50,7 @@ def severity_now(p: PackedFault, tick: float) -> float:
     if p.kind == RAMP:
         return float(p.severity * min(1.0, since / p.length))
     if p.kind == INTERMITTENT:
-        return float(p.severity) if since - p.length * math.floor(since / p.length) < p.on else 0.0
+        return float(p.severity) if since - p.length * floor(since / p.length) < p.on else 0.0
     return float(p.severity)
 
 
