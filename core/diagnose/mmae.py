@@ -106,7 +106,7 @@ class Mmae(KalmanBank):
         log_floor: float
 
     class State(KalmanBank.State):
-        """The filters; logarithms of probabilities, or in linear arithmetic probabilities; those of a sample; separations."""
+        """The filters; logarithms of probabilities (linear: probabilities); those of a sample; separations."""
 
         weight: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)

@@ -62,7 +62,7 @@ class Regions(Block):
         danger_um: float
 
     class State(Record):
-        """Whether it has run, the healthy motion; sums of squares of the error and of that motion, and of how many samples."""
+        """Whether it has run, the healthy motion; sums of squares of the error and of that motion, and their count."""
 
         started: float
         x: float

@@ -75,9 +75,9 @@ class SelfTuning(ArxBank):
         (\hat\theta-\theta_k)^T\eta^{-1}(\hat\theta-\theta_k)=J(\theta_k)-J(\hat\theta),\quad
         J(\theta)=\sum_j\lambda^{i-j}(z_j-h_j^T\theta)^2
 
-    Near in the metric of the information, that is: one sine and white noise pin down two numbers of the four, so
-    distance between coefficients means nothing. Costs over the same memory give the same likelihoods, and are what
-    is computed.
+    Nearness is measured in the metric of the information: one sine and white noise determine two numbers of the four,
+    so the plain distance between coefficients means nothing. Costs over the same memory give the same likelihoods, and
+    the bank computes these.
 
     Voltage and measurement may pass 1/A(q) of the healthy device first, which makes the error of the equation white.
     Without that filter the method works at 10 to 20 kHz.
