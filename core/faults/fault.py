@@ -1,4 +1,4 @@
-"""What every fault shares: severity over time."""
+"""Base of the faults: severity over time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ KINDS = {"step": STEP, "ramp": RAMP, "intermittent": INTERMITTENT}
 
 
 class Profile(BlockParams):
-    """How the severity comes: at once, as a ramp, or on and off."""
+    """Profile of the severity: at once, as a ramp, or on and off."""
 
     kind: Literal["step", "ramp", "intermittent"] = parameter("step", "how the severity comes")
     duration_ms: float = parameter(5.0, "length of the ramp", "ms", gt=0, le=1e9)
@@ -24,7 +24,7 @@ class Profile(BlockParams):
 
 
 class FaultParams(BlockParams):
-    """A fault as injected; severity 0 is bit for bit no fault."""
+    """An injected fault; with severity 0 the results are bit for bit those without the fault."""
 
     severity: float = parameter(0.0, "severity, a share of the nominal value", "1")
     profile: Profile = parameter(Profile(), "how the severity comes")
@@ -60,12 +60,12 @@ def effect(channel: str) -> Any:
 
 
 def severity(unit: str, meaning: str) -> Any:
-    """Declare the severity that is there now."""
+    """Declare the output of the present severity."""
     return output(unit, meaning)
 
 
 class Fault(Block):
-    """A fault multiplies effect channels, or adds to them; ``shows`` names the part it is seen on."""
+    """A fault, which multiplies effect channels or adds to them; ``shows`` names the part it is seen on."""
 
     shows: ClassVar[str]
     changes: ClassVar[str]
@@ -73,14 +73,14 @@ class Fault(Block):
 
     @classmethod
     def rests(cls, params: Any) -> bool:
-        """Say whether the fault is not there."""
+        """Say whether the fault is absent."""
         return bool(params.severity == 0.0)
 
     Packed: ClassVar[type[Record]] = PackedFault
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Any:
-        """Pack severity and profile; the interval and its part that is on in whole ticks."""
+        """Pack severity and profile; the period and its active part are in whole ticks."""
         profile = params.profile
         length = profile.duration_ms if profile.kind == "ramp" else profile.period_ms
         ticks = max(1.0, round(length / context.dt_ms))
