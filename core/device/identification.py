@@ -65,10 +65,10 @@ def tone(frequency_hz: float, dt_ms: float, voltage: FloatArray, displacement: F
 
 @dataclass(frozen=True)
 class Identified:
-    """Parameters of a device identified by a sweep; ``*_error`` are standard errors.
+    """What a sweep tells of a device; ``*_error`` are standard errors.
 
-    The figures of the fit (mass to quality factor) use all tones. Those read off the curve (``read_*``) use only the
-    tones around their feature, and are None if the sweep does not show it.
+    The figures of the fit (mass to quality factor) use all tones; those read off the curve (``read_*``) only the
+    tones around what they describe, and are none where the sweep does not show it.
     """
 
     mass_kg: float

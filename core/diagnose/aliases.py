@@ -24,7 +24,7 @@ SAME = 1e-3
 
 
 class Response(BaseModel):
-    """The motion of a hypothesis at the tones, and the changes of one parameter that cause the same motion."""
+    """The motion of a hypothesis at the tones, and the changes of one parameter that have the same."""
 
     name: str
     amplitudes_um: list[float]
@@ -33,7 +33,7 @@ class Response(BaseModel):
 
 
 class Pair(BaseModel):
-    """Distance of two hypotheses, as rms over the tones; they coincide when noise could hide it."""
+    """How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it."""
 
     first: str
     second: str
@@ -42,7 +42,7 @@ class Pair(BaseModel):
 
 
 class AliasMap(BaseModel):
-    """Responses of all hypotheses, distances between them, and the equivalence of mass and stiffness."""
+    """Responses of all hypotheses, distances between them, and what mass and stiffness are worth in one another."""
 
     tones_hz: list[float]
     stiffness_per_mass: float

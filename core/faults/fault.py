@@ -15,7 +15,7 @@ KINDS = {"step": STEP, "ramp": RAMP, "intermittent": INTERMITTENT}
 
 
 class Profile(BlockParams):
-    """Profile of the severity: at once, as a ramp, or on and off."""
+    """How the severity comes: at once, as a ramp, or on and off."""
 
     kind: Literal["step", "ramp", "intermittent"] = parameter("step", "how the severity comes")
     duration_ms: float = parameter(5.0, "length of the ramp", "ms", gt=0, le=1e9)
