@@ -24,7 +24,7 @@ def packing(schema: pa.Schema) -> dict[str, Any]:
 
 
 def write_parquet(path: Path, columns: dict[str, np.ndarray[Any, Any]], metadata: dict[str, Any]) -> None:
-    """Write columns of one length with metadata under ``combbench``, piece by piece: memory never holds a trace twice."""
+    """Write columns of one length with metadata under ``combbench``, piece by piece: no trace is in memory twice."""
     fields = [pa.field(name, pa.from_numpy_dtype(values.dtype)) for name, values in columns.items()]
     schema = pa.schema(fields, metadata={"combbench": json.dumps(metadata)})
     temporary = path.with_name(path.name + ".part")

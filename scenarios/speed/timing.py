@@ -65,7 +65,7 @@ ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive
 
 
 def block_costs(board: Board, *only: str) -> dict[str, float]:
-    """Return the cost of some blocks or all, ns per tick, with dispatch: a tick that runs them once more."""
+    """Return the cost of some blocks or all, ns per tick, dispatch included: a tick with it run once more."""
     candidates = {"": partial(loop_cost, board, [*ALIVE], 50_000)}
     for instance in board.wiring.instances:
         if not only or instance.key in only:
