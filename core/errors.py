@@ -52,11 +52,11 @@ class InputError(ValueError):
     Parameters
     ----------
     message : str
-        What was wrong and what is allowed.
+        The mistake, and the values that are allowed.
     field : str
         Dotted path of the field, empty when there is none.
     hint : str
-        What to do instead.
+        Advice for the caller.
     code : str
         Stable word for programs: ``invalid``, ``unknown``, ``conflict``, ``not_live``.
     """
@@ -120,7 +120,7 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
     Parameters
     ----------
     error : ValidationError
-        What pydantic raised.
+        The error pydantic raised.
     known : mapping of str to sequence of str, optional
         Field names allowed under each dotted parent, to suggest the one that was meant.
     """

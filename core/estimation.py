@@ -130,7 +130,7 @@ def estimate(
     so that :math:`P^{-1}\leftarrow\mu(P^{-1}+\phi\phi^T/r)`: with :math:`r=\mu` the usual discrete recursion, with
     :math:`r=m^2\mu/h,\;\mu=e^{-Bh}` the exact sample of the continuous law with rate B and normaliser m. A covariance
     whose trace would grow beyond the limit stays as it is (Ioannou and Sun, Robust Adaptive Control, 4.3.6): the
-    estimate goes on learning, and what is not excited does not wind up.
+    estimate goes on learning, and parameters that are not excited do not wind up.
 
     Parameters
     ----------

@@ -182,7 +182,7 @@ def run(
     Parameters
     ----------
     scenario : Scenario
-        What to run; one without a length runs `DEFAULT_SAMPLES`.
+        The scenario to run; one without a length runs `DEFAULT_SAMPLES`.
     seed : int, optional
         Instead of the scenario's own.
     taps : bool

@@ -1,4 +1,4 @@
-"""A scenario: a bench, what happens to it, and what is expected of it."""
+"""A scenario: a bench, its events, and its expectations."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ class Campaign:
     Parameters
     ----------
     sweep : Sweep
-        What to run.
+        The campaign to run.
     table : Table
         The table of results, which also takes new ones.
     workers : int
@@ -180,7 +180,7 @@ class Campaign:
         return [(key, documents[id(point)], seed) for key, point, seed in chosen]
 
     def _take(self, outcomes: Found) -> None:
-        """Put results into the table and learn what a run costs."""
+        """Put results into the table and update the cost of a run."""
         self._table.put(outcomes)
         self._cost = max(fmean(entry["elapsed_s"] for _, entry in outcomes), 1e-6)
         for key, _ in outcomes:

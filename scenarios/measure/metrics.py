@@ -42,7 +42,7 @@ def device_metrics(spec: Spec) -> dict[str, float]:
 
 
 def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
-    """Return how well the shuttle followed the model, and at what effort.
+    """Return the errors of the shuttle against the model, and the effort.
 
     The settling time is the last moment at which the error left the band of 2 % of the model's amplitude, counted from
     ``metrics.since_ms``. The effort is the ratio of the fundamental of the applied voltage to that of the reference in

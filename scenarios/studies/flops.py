@@ -1,4 +1,4 @@
-"""Floating-point operations of the diagnosers, and what a board could carry."""
+"""Floating-point operations of the diagnosers, and the number of models that a board can compute."""
 
 from __future__ import annotations
 

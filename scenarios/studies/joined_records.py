@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from core.board.board import Board
 
 RECORDED = ("sensor.displacement", "drive.voltage", "drive.middle", "drive.end")
-"""What a diagnoser is given."""
+"""Signals that a diagnoser reads."""
 HELD = 20
 """Samples in a row that count as a conclusion."""
 
