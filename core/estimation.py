@@ -1,7 +1,6 @@
 r"""Kernels that controllers and identifiers estimate with: least squares on half a covariance, state filters.
 
-All work on one flat state array and are told where in it things stand. Of a covariance only the lower triangle is kept,
-row by row, so that it stays symmetric whatever the rounding.
+A covariance is stored as its lower triangle, row by row, so that rounding cannot make it asymmetric.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ class StateFilter(Record):
 
 
 class DrivenFilter(StateFilter, Moves):
-    """A state filter of a voltage, and the effect of a volt more in the middle and at the end of an interval."""
+    """A state filter of a voltage, and the effect of one volt more in the middle or at the end than at the start."""
 
 
 def fill_filter(p: StateFilter, pole: float, h: float) -> None:
@@ -61,8 +60,8 @@ def driven_filter_of(pole: float, h: float, analogue: bool) -> DrivenFilter:
     """Return a state filter of a voltage."""
     packed = DrivenFilter.blank()
     fill_filter(packed, pole, h)
-    more = within(1.0, 2.0 * pole, pole * pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
-    packed.middle1, packed.middle2, packed.end1, packed.end2 = more
+    effects = within(1.0, 2.0 * pole, pole * pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
+    packed.middle1, packed.middle2, packed.end1, packed.end2 = effects
     return packed
 
 
@@ -70,8 +69,8 @@ def driven_filter_of(pole: float, h: float, analogue: bool) -> DrivenFilter:
 def filter_input(p: StateFilter, s: Motion, before: float, now: float) -> None:
     r"""Advance :math:`\ddot q+2\lambda\dot q+\lambda^2q=x` over an interval, exact for an input on a straight line.
 
-    A held input has ``before`` equal to ``now``; for a measured one the line between two samples is right to second
-    order, while holding it lags by half a sample.
+    A held input has ``before`` equal to ``now``. For a measured input the line between two samples is right to second
+    order; a held one would lag by half a sample.
 
     Parameters
     ----------
@@ -91,7 +90,7 @@ def filter_input(p: StateFilter, s: Motion, before: float, now: float) -> None:
 
 @kernel
 def filter_voltage(p: DrivenFilter, s: Motion, u: float, middle: float, end: float) -> None:
-    """Advance a state filter under a voltage: at the start, and how much more it was in the middle and at the end."""
+    """Advance a state filter under a voltage ``u``, more by ``middle`` and ``end`` in the middle and at the end."""
     filter_input(p, s, u, u)
     add_moves(p, s, middle, end)
 
@@ -131,7 +130,7 @@ def estimate(
     so that :math:`P^{-1}\leftarrow\mu(P^{-1}+\phi\phi^T/r)`: with :math:`r=\mu` the usual discrete recursion, with
     :math:`r=m^2\mu/h,\;\mu=e^{-Bh}` the exact sample of the continuous law with rate B and normaliser m. A covariance
     whose trace would grow beyond the limit stays as it is (Ioannou and Sun, Robust Adaptive Control, 4.3.6): the
-    estimate goes on learning, and what is not excited does not wind up.
+    estimate goes on learning, and parameters that are not excited do not wind up.
 
     Parameters
     ----------
@@ -140,7 +139,7 @@ def estimate(
     n : int
         Number of parameters.
     error : float
-        What was measured minus what the estimate said.
+        Measured value minus the prediction of the estimate.
     noise : float
         Variance r of that error, > 0.
     forgetting : float
@@ -189,12 +188,12 @@ def estimate(
 
 @kernel
 def project_onto(theta: Vector, covariance: Vector, n: int, which: int, low: float, high: float) -> None:
-    r"""Bring one parameter back into its bounds, and the others along by what is known of them together.
+    r"""Bring one parameter back into its bounds, and move the others with it as their covariance says.
 
     .. math:: \theta\leftarrow\theta+\frac{Pe_i}{P_{ii}}(\text{bound}-\theta_i)
 
-    is the nearest estimate within the bounds in the metric of :math:`P^{-1}`, so the projection never undoes what the
-    update has gained.
+    The result is the nearest estimate within the bounds in the metric of :math:`P^{-1}`, so the projection never undoes
+    what the update has gained.
     """
     value = theta[which]
     missing = min(max(value, low), high) - value

@@ -1,16 +1,17 @@
-r"""The voltage of an interval, as a device feels it: it moves between ticks, and within one when the drive is analogue.
+r"""The effect on a device of a voltage that moves over the interval between two samples.
 
-Over an interval of N ticks the forced response of a device is that of a constant voltage only for one device, and it
-takes two numbers to say: the displacement is :math:`\alpha_i`, and what is left of it an interval later, when the free
-motion is taken out, :math:`\beta_i`:
+The voltage may change at every tick, and within a tick when the drive is analogue. Two numbers describe its effect on a
+device over an interval of N ticks: the displacement :math:`\alpha_i` that it has caused by the end of the interval, and
+the displacement :math:`\beta_i` that is left of it one interval later, once the free motion is taken out:
 
 .. math:: y_i+a_1y_{i-1}+a_2y_{i-2}=\alpha_i+\beta_{i-1},\qquad
     \alpha_i=g_1,\;\beta_i=\Phi_{12}g_2-\Phi_{22}g_1,\quad
     g=\sum_j\varphi^{N-1-j}\int_0^h e^{A(h-\tau)}B\,u_j(\tau)\,d\tau
 
-Under a voltage that is held over the interval :math:`\alpha=b_0u,\;\beta=b_1u`. So :math:`\alpha/b_0` and
-:math:`\beta/b_1` of the nominal device are the voltages a difference equation is to be given: means of the ticks,
-weighed as that device does. For the nominal device they are exact, for its neighbours nearly so (``lost``).
+Under a voltage that is held over the interval, :math:`\alpha=b_0u,\;\beta=b_1u`. A difference equation is therefore
+given the voltages :math:`\alpha/b_0` and :math:`\beta/b_1` of the nominal device: means over the ticks, weighted by the
+response of that device. They are exact for the nominal device and nearly exact for its neighbours (`lost` returns the
+error).
 """
 
 from __future__ import annotations
@@ -29,11 +30,11 @@ from core.ports import BlockPorts, reads
 from core.record import Record
 
 MOST_LOST = 1e-3
-"""Share of the response to a tone that may be lost unsaid."""
+"""Largest share of the response to a tone that may be lost without a caution."""
 
 
 class AppliedPorts(BlockPorts):
-    """The voltage of the tick that ends now; a held voltage is the same in all of them."""
+    """The voltage at the start, middle and end of the tick that ends now, all equal when the drive holds it."""
 
     applied: float = reads("drive.voltage", "V", "voltage applied at the start of the sample that ends now")
     middle: float = reads("drive.middle", "V", "the same in its middle")
@@ -41,17 +42,17 @@ class AppliedPorts(BlockPorts):
 
 
 class MeasuredPorts(BlockPorts):
-    """What was measured."""
+    """The measured displacement."""
 
     measured: float = reads("sensor.displacement", "um", "measured displacement")
 
 
 class ObservedPorts(MeasuredPorts, AppliedPorts):
-    """What was measured, and the voltage that made it: all that an identifier or a bank knows of the device."""
+    """The measured displacement and the voltage that caused it: an identifier or a bank knows no more of the device."""
 
 
 class Moves(Record):
-    """Effect of a volt more in the middle and at the end of a tick than at its start."""
+    """Displacement and velocity gained from one volt more than at the start, in the middle or at the end of a tick."""
 
     middle1: float
     middle2: float
@@ -60,7 +61,7 @@ class Moves(Record):
 
 
 class Tick(Moves):
-    """A device over a tick: transition, effect of a held volt, and of a volt more in the middle and at the end."""
+    """A device over a tick: transition, effect of a held volt, and of one volt more in the middle or at the end."""
 
     phi11: float
     phi12: float
@@ -73,7 +74,7 @@ class Tick(Moves):
 class Interval(Tick):
     r"""A device over a tick and over the interval.
 
-    There :math:`-\Phi_{22},\;\Phi_{12}`, and the inverses of b0 and b1 of a unit gain.
+    Of the interval it holds :math:`-\Phi_{22},\;\Phi_{12}`, and the inverses of b0 and b1 for a unit gain.
     """
 
     later1: float
@@ -90,7 +91,7 @@ class Motion(Record):
 
 
 class Gathered(Record):
-    """Whether an interval has begun, the voltage at its start, the motion that later voltages have made so far."""
+    """Whether an interval has begun, the voltage at its start, and the motion caused by later changes of it."""
 
     begun: float
     start: float
@@ -100,18 +101,18 @@ class Gathered(Record):
 
 @inlined
 def moves(x: AppliedPorts) -> tuple[float, float, float]:
-    """Return the voltage at the start of the tick that ends now, and how much more it was in the middle and the end."""
+    """Return the voltage at the start of the tick that ends now, and by how much its middle and its end exceed that."""
     u = x.applied
     return u, x.middle - u, x.end - u
 
 
 def fill_tick(p: Tick, device: Oscillator, gain: float, h: float, analogue: bool) -> None:
-    """Pack a device over a tick; its stiffness times its displacement at rest is the gain times the voltage."""
+    """Pack a device over a tick; at rest, its stiffness times its displacement is the gain times the voltage."""
     p.phi11, p.phi12, p.phi21, p.phi22 = transition(device.mass, device.damping, device.stiffness, h)
     rest = gain / device.stiffness
     p.push1, p.push2 = (1.0 - p.phi11) * rest, -p.phi21 * rest
-    more = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
-    p.middle1, p.middle2, p.end1, p.end2 = more
+    effects = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
+    p.middle1, p.middle2, p.end1, p.end2 = effects
 
 
 def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
@@ -143,17 +144,17 @@ def advance_motion(p: Tick, s: Motion, u: float) -> None:
 
 @kernel
 def add_moves(p: Moves, s: Motion, middle: float, end: float) -> None:
-    """Add to a motion the effect of a voltage that was more in the middle and at the end than at the start."""
+    """Add the effect on a motion of the volts by which the middle and the end of a tick exceed its start."""
     s.x += p.middle1 * middle + p.end1 * end
     s.v += p.middle2 * middle + p.end2 * end
 
 
 @kernel
 def gather(p: Tick, s: Gathered, u: float, middle: float, end: float) -> None:
-    """Take in a tick: its voltage at the start, in the middle and at the end.
+    """Add a tick to the interval, with its voltage at the start, in the middle and at the end.
 
-    The motion gathered is that by what the voltage is more than at the start of the interval, so that a voltage held
-    over all of it adds nothing, to the bit.
+    The gathered motion is the effect of the voltage less its value at the start of the interval. A voltage that is held
+    over the whole interval therefore adds nothing, to the bit.
     """
     if s.begun == 0.0:
         s.begun = 1.0
@@ -164,18 +165,18 @@ def gather(p: Tick, s: Gathered, u: float, middle: float, end: float) -> None:
     v = s.gained2
     if middle == u and end == u and u == s.start and x == 0.0 and v == 0.0:
         return
-    more = u - s.start
+    rise = u - s.start
     middle -= u
     end -= u
-    gain1 = p.push1 * more + p.middle1 * middle + p.end1 * end
-    gain2 = p.push2 * more + p.middle2 * middle + p.end2 * end
+    gain1 = p.push1 * rise + p.middle1 * middle + p.end1 * end
+    gain2 = p.push2 * rise + p.middle2 * middle + p.end2 * end
     s.gained1 = p.phi11 * x + p.phi12 * v + gain1
     s.gained2 = p.phi21 * x + p.phi22 * v + gain2
 
 
 @kernel
 def weighed_voltages(p: Interval, s: Gathered) -> tuple[float, float]:
-    r"""Return :math:`\alpha/b_0` and :math:`\beta/b_1` of the interval that ends now; the next tick begins another."""
+    r"""Return :math:`\alpha/b_0` and :math:`\beta/b_1` of the interval that ends now; the next tick starts anew."""
     s.begun = 0.0
     x = s.gained1
     if x == 0.0 and s.gained2 == 0.0:
@@ -185,22 +186,22 @@ def weighed_voltages(p: Interval, s: Gathered) -> tuple[float, float]:
 
 
 def difference_equation(device: Oscillator, rest: float, h: float) -> tuple[float, float, float, float]:
-    """Return b0, b1, a1, a2 of a device under a held voltage, of which a volt moves it by ``rest`` in the end."""
+    """Return b0, b1, a1, a2 of a device under a held voltage; one volt displaces it by ``rest`` in the steady state."""
     f11, f12, f21, f22 = transition(device.mass, device.damping, device.stiffness, h)
     g1, g2 = (1.0 - f11) * rest, -f21 * rest
     return g1, f12 * g2 - f22 * g1, -(f11 + f22), f11 * f22 - f12 * f21
 
 
 def lost(nominal: Oscillator, other: Oscillator, context: Context, hz: float) -> float:
-    r"""Return how far the response of a device to a tone is from what its difference equation says of it, as a share.
+    r"""Return the error of a device's difference equation in the response to a tone, as a share of that response.
 
-    When that equation is given the voltages as the nominal device weighs them. In a steady state
-    :math:`g=(e^{j\omega Nh}I-\Phi)X`, with X the phasor of the state.
+    The equation is given the voltages weighted by the nominal device. In a steady state
+    :math:`g=(e^{j\omega Nh}I-\Phi)X`, where X is the phasor of the state.
 
     Parameters
     ----------
     nominal, other : Oscillator
-        The device whose weights are taken, and the one whose response is asked for.
+        The device that weights the voltages, and the device of the response.
     context : Context
         Interval, ticks, and whether the drive is analogue.
     hz : float
@@ -227,17 +228,17 @@ def lost(nominal: Oscillator, other: Oscillator, context: Context, hz: float) ->
     b0, b1, a1, a2 = difference_equation(other, 1.0, context.dt_ms)
     _, alpha, beta = response(nominal)
     true = response(other)[0]
-    said = (b0 / n0 * alpha * shift + b1 / n1 * beta) / (shift * shift + a1 * shift + a2)
-    return abs(said / true - 1.0)
+    predicted = (b0 / n0 * alpha * shift + b1 / n1 * beta) / (shift * shift + a1 * shift + a2)
+    return abs(predicted / true - 1.0)
 
 
 def caution(context: Context, others: Mapping[str, Oscillator], hz: float) -> str:
-    """Say how much of the response of which device a difference equation loses at a tone; nothing when it is little."""
+    """Name the device whose difference equation loses most of its response to a tone, and how much; "" if little."""
     shares = {name: lost(context.device, device, context, hz) for name, device in others.items()}
     worst = max(shares, key=lambda name: shares[name], default="")
     if not worst or shares[worst] <= MOST_LOST:
         return ""
-    what = f"the voltages of {context.every} ticks" if context.every > 1 else "the voltage within a tick"
+    span = f"the voltages of {context.every} ticks" if context.every > 1 else "the voltage within a tick"
     share = format_short(100.0 * shares[worst], "%", 2)
-    text = f"weighs {what} as the nominal device does: {share} of the response of {worst}"
+    text = f"weighs {span} as the nominal device does: {share} of the response of {worst}"
     return f"{text} at {format_short(hz, 'Hz')} are lost to it"

@@ -1,6 +1,6 @@
 """Compiles the kernels that are not kept yet, on all cores.
 
-``python -m scenarios.kernels`` prints how far it is. All processes load what one has compiled.
+``python -m scenarios.kernels`` prints its progress. All processes load the kernels that one has compiled.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from scenarios.library import get
 from scenarios.run import build
 
 HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference")
-"""Families in the order in which they are compiled, so that no core is left with a long one at the end."""
+"""Families in the order of compilation, so that no core still has a long one at the end."""
 FIRST_BENCH = "first-look"
 LOOP = ("", "loop")
-"""The task that compiles what every bench needs beside its blocks."""
+"""The task that compiles the kernels every bench needs beside its blocks."""
 
 Task = tuple[str, str]
 
@@ -43,7 +43,7 @@ def load() -> None:
 
 
 def _loop() -> None:
-    """Compile the loop and the history: no tick of no block."""
+    """Compile the loop and the history, with a run of no ticks and no blocks."""
     none, nothing = np.zeros(RESERVED), np.zeros((0, 0))
     table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
@@ -53,7 +53,7 @@ def _loop() -> None:
 
 
 def tasks(*, first_bench_only: bool = False) -> list[Task]:
-    """Return the blocks that have a kernel, by family and name, those that take long first."""
+    """Return the blocks that have a kernel, by family and name, with the slowest to compile first."""
     if first_bench_only:
         wiring = build(get(FIRST_BENCH)).wiring
         named = {(entry.block.family, entry.block.name) for entry in wiring.instances}
@@ -80,7 +80,7 @@ def _compile(task: Task) -> None:
 
 
 def complete() -> Path | None:
-    """Return the file that says that all kernels of this version are kept; nothing where none are kept."""
+    """Return the file that marks all kernels of this version as kept, or None where no kernels are kept."""
     path = folder()
     return path / f"complete-{code_version()}" if path is not None else None
 

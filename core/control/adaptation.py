@@ -1,4 +1,4 @@
-"""What the laws share that adapt gains along a regressor: leakage, projection, Lyapunov function."""
+"""Leakage, projection and Lyapunov function of the laws that adapt gains along a regressor."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def weight_of(i: int, weight: float) -> float:
 
 @kernel
 def leak(p: AdaptationPacked, theta: float) -> float:
-    """Return what a gain loses in a sample by leakage."""
+    """Return how much of a gain leaks away in a sample."""
     return p.h * p.leakage * p.adaptation_gain * theta
 
 
@@ -45,7 +45,7 @@ def bounded(p: AdaptationPacked, theta: float, weight: float) -> float:
 
 @kernel
 def distance(gains: Vector, ideal: Vector, n: int, weight: float) -> float:
-    r"""Return :math:`\phi^T\Gamma^{-1}\phi` of the gains from the ideal ones, as it stands in a Lyapunov function."""
+    r"""Return :math:`\phi^T\Gamma^{-1}\phi` of a Lyapunov function, with :math:`\phi` the gains less the ideal ones."""
     total = 0.0
     for i in range(n):
         phi = gains[i] - ideal[i]

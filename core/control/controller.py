@@ -24,18 +24,18 @@ class ReferencePorts(BlockPorts):
 
 
 class EngagedPorts(BlockPorts):
-    """Whether the controller drives, and its own would-be voltage."""
+    """Whether the controller drives, and the voltage it would apply itself."""
 
     engaged: float = reads("@engaged", "1", "1 while this controller drives")
     voltage: float = output("V", "voltage this controller asks for")
 
 
 class ControllerPorts(ReferencePorts, AppliedPorts, EngagedPorts):
-    """Ports of every controller; ``applied`` is the voltage of whichever controller drives."""
+    """Ports of every controller; ``applied`` is the voltage of the controller that drives."""
 
 
 class FeedForwardPorts(ControllerPorts):
-    """Ports of a law without feedback: it knows its voltage between samples too, so the drive may be analogue."""
+    """Ports of a law without feedback, which knows its voltage between samples too, so the drive may be analogue."""
 
     reference_middle: float = reads("reference.middle", "V", "reference half a sample later")
     reference_end: float = reads("reference.end", "V", "reference one sample later")
@@ -44,7 +44,7 @@ class FeedForwardPorts(ControllerPorts):
 
 
 class TruthPorts(BlockPorts):
-    """Signals of the device that no controller may use: only ideal values for the taps are made of them."""
+    """True scales of the device, from which the taps compute ideal values; no law may use them."""
 
     mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal, for the ideal values")
     stiffness_scale: float = reads("effects.stiffness_scale", "1", "true stiffness over nominal")
@@ -60,7 +60,7 @@ class VelocityPorts(BlockPorts):
 
 
 class Coefficients(Record):
-    """Those of :math:`x''+a_1x'+a_2x=ku` with time in units of 1/w0; of a first order, :math:`x'+a_2x=ku`."""
+    """Coefficients of :math:`x''+a_1x'+a_2x=ku` with time in units of 1/w0; of a first order, :math:`x'+a_2x=ku`."""
 
     a1: float
     a2: float
@@ -76,9 +76,9 @@ class NormalisedPacked(Record):
 
 
 class Lag(Record):
-    r""":math:`\dot x=-\lambda x+u`: what stays of x over a sample, the effects of a volt held and of one more.
+    r"""A lag :math:`\dot x=-\lambda x+u` over a sample: the share of x that stays, and the effects of the input.
 
-    That is, of a volt more in the middle of a sample and at its end than at its start.
+    The input is one volt held, then one volt more in the middle of a sample, and at its end, than at its start.
     """
 
     decay: float
@@ -118,13 +118,13 @@ def unsuited_order(device: Oscillator, model: Oscillator) -> str:
 
 
 def first_order(oscillator: Oscillator, frequency: float) -> tuple[float, float, float]:
-    r"""Return 0, a and k of :math:`x'+ax=ku` with time in units of 1/frequency; of a second order, its slow end."""
+    r"""Return 0, a and k of :math:`x'+ax=ku` with time in units of 1/frequency; of a second order, its slow mode."""
     inverse = 1.0 / (oscillator.damping * frequency)
     return 0.0, oscillator.stiffness * inverse, oscillator.force * inverse
 
 
 def coefficients(context: Context) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """Return the coefficients of device and model, both of the order of the device, with gains that are not 0."""
+    """Return the coefficients of device and model, both in the order of the device, with gains that are not 0."""
     rate = context.device.natural_frequency
     of = normalised if context.device.mass > 0.0 else first_order
     (a1, a2, gain), (m1, m2, model_gain) = of(context.device, rate), of(context.model, rate)
@@ -140,9 +140,9 @@ def fill_normalised(p: NormalisedPacked, context: Context) -> None:
 
 
 def model_filter(context: Context) -> Tick:
-    """Return a copy of the model without its zero: transition, effect of a volt held over a sample, of one more.
+    """Return a copy of the model without its zero: its transition over a sample and the effects of a voltage.
 
-    That is, of a volt more in the middle of a sample and at its end than at its start.
+    The voltage is one volt held, then one volt more in the middle of a sample, and at its end, than at its start.
     """
     m1, m2, gain = coefficients(context)[1]
     h = context.dt_ms * context.device.natural_frequency
@@ -150,13 +150,13 @@ def model_filter(context: Context) -> Tick:
     tick = Tick.blank()
     tick.phi11, tick.phi12, tick.phi21, tick.phi22, first, second = held(*of)
     tick.push1, tick.push2 = gain * first, gain * second
-    more = within(*of, gain) if context.analogue else (0.0, 0.0, 0.0, 0.0)
-    tick.middle1, tick.middle2, tick.end1, tick.end2 = more
+    effects = within(*of, gain) if context.analogue else (0.0, 0.0, 0.0, 0.0)
+    tick.middle1, tick.middle2, tick.end1, tick.end2 = effects
     return tick
 
 
 def lag(pole: float, h: float, analogue: bool) -> Lag:
-    """Return a lag."""
+    """Pack a lag with its pole in 1/w0, for an interval in 1/w0."""
     packed = Lag.blank()
     packed.decay = math.exp(-pole * h)
     packed.push = (1.0 - packed.decay) / pole
@@ -166,14 +166,14 @@ def lag(pole: float, h: float, analogue: bool) -> Lag:
 
 @kernel
 def advance_lag(p: Lag, x: float, u: float, middle: float, end: float) -> float:
-    """Return a lag a sample later; ``u`` is the voltage at its start, in its middle and at its end it was more."""
-    more = p.middle * middle + p.end * end
-    return flush_tiny(p.decay * x + p.push * u + more)
+    """Return a lag one sample later; the voltage is ``u`` at the start and more by ``middle`` and ``end`` after it."""
+    moved = p.middle * middle + p.end * end
+    return flush_tiny(p.decay * x + p.push * u + moved)
 
 
 @kernel
 def true_plant(x: TruthPorts, plant: Coefficients) -> tuple[float, float, float]:
-    """Return the true coefficients from the nominal ones."""
+    """Scale the nominal coefficients of the plant to the true ones."""
     inverse = 1.0 / x.mass_scale
     a1 = plant.a1 * x.damping_scale * inverse
     return a1, plant.a2 * x.stiffness_scale * inverse, plant.gain * x.drive_gain * inverse
@@ -195,7 +195,7 @@ def matching(a1: float, a2: float, gain: float, model: Coefficients, pole: float
 
 @kernel
 def saturated(value: float, layer: float) -> float:
-    """Return the sign of a value, or its share of a boundary layer inside of it."""
+    """Return the sign of a value; within the boundary layer, return its share of the layer."""
     if abs(value) >= layer:
         return 1.0 if value > 0.0 else -1.0 if value < 0.0 else 0.0
     return value / layer

@@ -71,7 +71,7 @@ class GainAdaptation(Block):
         initial_gain: float = parameter(0.0, "gain at the start", ge=-1e3, le=1e3, live=False)
 
     class Packed(Record):
-        """The rule, sample interval in 1/w0, gains, Monopoli's filter, the gain that would match the nominal plant."""
+        """The rule, sample interval in 1/w0, gains, Monopoli's filter, and the gain that matches the nominal plant."""
 
         rule: float
         h: float
@@ -84,7 +84,7 @@ class GainAdaptation(Block):
         algebraic: float
 
     class State(Record):
-        """Integral, error and reference of the sample before, Monopoli's filter, whether it has run."""
+        """Integral, error and reference of the last sample, Monopoli's filter, whether it has run."""
 
         integral: float
         last_error: float
@@ -93,7 +93,7 @@ class GainAdaptation(Block):
         started: float
 
     class Ports(ControllerPorts):
-        """Ports of a controller, the truth about the gain, and what it shows."""
+        """Ports of a controller, the truth about the gain, and the adaptation."""
 
         stiffness_scale: float = reads(
             "effects.stiffness_scale", "1", "true stiffness over nominal, for the ideal gain"
@@ -105,7 +105,7 @@ class GainAdaptation(Block):
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what has no static gain to match, and resonators, whose gain is known."""
+        """Refuse plants without a static gain to match, and resonators, whose gain is known."""
         if device.time_unit_ms == 0.0:
             return "is for the plants of appendix B; choose first-order-gain or second-order-gain"
         whole = min(device.stiffness, model.stiffness) > 0.0 and device.force != 0.0
@@ -127,7 +127,7 @@ class GainAdaptation(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Start with the gain given, and nothing seen."""
+        """Start with the given gain, before the first sample."""
         s = cls.State.zeros()
         s.integral = params.initial_gain
         return s

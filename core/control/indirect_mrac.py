@@ -122,7 +122,7 @@ class IndirectMrac(Block):
         started: float
 
     class Ports(ControllerPorts, TruthPorts):
-        """Ports of a controller, the truth, and what it shows."""
+        """Ports of a controller, the truth, and the identification."""
 
         parameter: Vector = tap("mixed", "estimates of kp, a1 and a2, time in 1/w0", labels=PARAMETERS)
         parameter_true: Vector = tap("mixed", "what they should be", labels=PARAMETERS)
@@ -163,7 +163,7 @@ class IndirectMrac(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Identify from what was applied, compute the gains, then the voltage."""
+        """Identify from the voltage applied, compute the gains, then the voltage."""
         y = x.measured
         u, middle, end = moves(x)
         last = s.last if s.started != 0.0 else y

@@ -109,9 +109,9 @@ class Mrac(Block):
         bias_v: float
 
     class State(Record):
-        """Gains and alpha, filters, the regressor of the sample before, its own voltage, whether it has run.
+        """Gains and alpha, filters, the last regressor and the last voltage of this law, whether it has run.
 
-        Those filtered by the copy of the model are the regressor and the voltage applied.
+        A copy of the model filters the regressor and the voltage applied.
         """
 
         theta: Vector = vector(N)
@@ -125,7 +125,7 @@ class Mrac(Block):
         started: float
 
     class Ports(ControllerPorts, TruthPorts):
-        """Ports of a controller, the truth, and what it shows."""
+        """Ports of a controller, the truth, and the adaptation."""
 
         drive_offset: float = reads("effects.drive_offset", "V", "voltage at the comb that nobody applied")
         gain: Vector = tap("mixed", "adapted gains on r, w1, w2, y and a constant", labels=LABELS)
@@ -211,7 +211,7 @@ class Mrac(Block):
         ideal = x.gain_ideal
         a1, a2, gain = true_plant(x, p.plant)
         ideal[0], ideal[1], ideal[2], ideal[3] = matching(a1, a2, gain, p.model, p.filter_pole)
-        # what takes a constant voltage at the comb out again
+        # this gain cancels a constant voltage at the comb
         offset = x.drive_offset / x.drive_gain
         ideal[CONSTANT] = -(1.0 - ideal[1] / p.filter_pole) * offset / p.bias_v if n == N else 0.0
         for i in range(N):

@@ -58,8 +58,8 @@ class MracVelocity(Block):
     .. math:: u=\theta^Tw,\quad w=[r,w_1,w_2,y_c],\;y_c=y+\dot y/c,\quad \dot\theta=-\mathrm{sgn}(k_p)\,g\,\Gamma e_cw
 
     With :math:`c<a_{m1}` the model from r to :math:`y_{c}` is strictly positive real, which the plain law needs; on y
-    alone it is not. A plant of first order is so by itself. The error is that of its own voltage: what another
-    controller applied instead is taken out through a copy of the model, so it learns in shadow and in saturation.
+    alone it is not. A plant of first order is so by itself. The error is the one under this law's own voltage: a copy
+    of the model takes out the effect of another controller's voltage, so the law learns in shadow and in saturation.
     """
 
     title = "Direct MRAC with velocity"
@@ -121,7 +121,7 @@ class MracVelocity(Block):
         velocity: PackedVelocity
 
     class State(Record):
-        """Gains, filters, the regressor of the sample before, own voltage, what it would have changed, the velocity."""
+        """Gains, filters, last regressor, last voltage of this law, its effect beyond the one applied, the velocity."""
 
         theta: Vector = vector(4)
         w1: float
@@ -132,7 +132,7 @@ class MracVelocity(Block):
         velocity: VelocityState
 
     class Ports(ControllerPorts, VelocityPorts, TruthPorts):
-        """Ports of a controller, velocities, the truth, and what it shows."""
+        """Ports of a controller, velocities, the truth, and the adaptation."""
 
         gain: Vector = tap("mixed", "adapted gains on r, w1, w2 and y", labels=REGRESSORS)
         gain_ideal: Vector = tap("mixed", "gains that would match the model exactly", labels=REGRESSORS)
@@ -186,7 +186,7 @@ class MracVelocity(Block):
         u, middle, end = moves(x)
         y = x.measured
         y += p.lead * velocity(p.velocity, s.velocity, x.velocity, y, u, middle, end) / p.velocity.rate
-        # what the plant would have done under the voltage asked for here
+        # the motion of the plant, had the voltage of this law been applied
         advance_motion(p.copy, s.missed, s.voltage - u)
         add_moves(p.copy, s.missed, -middle, -end)
         if p.filtering != 0.0:
@@ -197,7 +197,7 @@ class MracVelocity(Block):
 
         first_order = p.first_order != 0.0
         a1, a2, gain = true_plant(x, p.plant)
-        if first_order:  # damping is what moves there
+        if first_order:  # without mass, faults of damping act on these coefficients
             a1, a2, gain = 0.0, a2 * x.mass_scale, gain * x.mass_scale
             a2 /= x.damping_scale
             gain /= x.damping_scale
@@ -205,9 +205,9 @@ class MracVelocity(Block):
         ideal[0], ideal[1], ideal[2], ideal[3] = matching_lead(
             a1, a2, gain, p.model, p.filter_pole, p.lead, first_order
         )
-        # the step of an implicit method: a sample changes the error by ``reach`` times the change of voltage
-        # along the regressor of the sample before, which is the one in the error: with that of now a voltage that turns
-        # at every sample, as in chatter, would turn the sign of the law
+        # The step of an implicit method: a sample changes the error by ``reach`` times the change of the voltage. The
+        # law adapts along the last regressor, which is the one in the error. Along the present one, a voltage that
+        # turns at every sample, as in chatter, would turn the sign of the law.
         size = s.last[0] * s.last[0] + s.last[1] * s.last[1]
         size += p.weight * (s.last[2] * s.last[2] + s.last[3] * s.last[3])
         rate = p.h * p.adaptation_gain * own_error / (1.0 + p.h * p.adaptation_gain * p.reach * size)

@@ -56,7 +56,7 @@ class Pid(Block):
         started: float
 
     class Ports(ControllerPorts):
-        """Ports of a controller, and what it shows."""
+        """Ports of a controller, its error and its integral."""
 
         error: float = tap("um", "model minus measured displacement")
         integral: float = tap("V", "integral part")
@@ -97,11 +97,11 @@ class Pid(Block):
         if x.engaged == 0.0:
             s.integral = x.applied - rest
         else:
-            more = p.ki * e * p.dt_ms
-            u = rest + s.integral + more
-            # integrate only where that does not push further into the limit
-            if abs(u) <= p.limit_v or u * more < 0.0:
-                s.integral += more
+            increment = p.ki * e * p.dt_ms
+            u = rest + s.integral + increment
+            # integrate only if that does not push the voltage further into its limit
+            if abs(u) <= p.limit_v or u * increment < 0.0:
+                s.integral += increment
         x.voltage = rest + s.integral
         x.error = e
         x.integral = s.integral

@@ -105,9 +105,10 @@ class SelfSliding(Block):
         velocity: PackedVelocity
 
     class State(Record):
-        """Gains and alpha, the regressor of the sample before and filtered, its own voltage, the velocity source.
+        """Gains and alpha, the last regressor and the filtered one, the last voltage of this law, the velocity source.
 
-        The filtered voltage is the one applied; without an augmented error, what it was less than its own.
+        With an augmented error the filtered voltage is the one applied; without it, the law's own voltage less the
+        applied one.
         """
 
         theta: Vector = vector(4)
@@ -119,7 +120,7 @@ class SelfSliding(Block):
         velocity: VelocityState
 
     class Ports(ControllerPorts, VelocityPorts, TruthPorts):
-        """Ports of a controller, velocities, the truth, and what it shows."""
+        """Ports of a controller, velocities, the truth, and the adaptation."""
 
         gain: Vector = tap("mixed", "adapted gains on r, y, e (or s) and the velocity", labels=LABELS)
         gain_ideal: Vector = tap("mixed", "gains that would match, as far as static ones can", labels=LABELS)
@@ -141,7 +142,7 @@ class SelfSliding(Block):
         p = cls.Packed.blank()
         fill_normalised(p, context)
         plant, model = coefficients(context)
-        # along the filtered regressor the sign of the model is in it
+        # the filtered regressor includes the sign of the model's gain
         p.sign = math.copysign(1.0, plant[2] * (model[2] if params.form == "augmented" else 1.0))
         p.augmented = params.form in ("augmented", "printed")
         p.filtered_regressor = params.form == "augmented"
@@ -185,7 +186,8 @@ class SelfSliding(Block):
             surface = flush_tiny(e + s.alpha * eta)
             s.alpha -= p.h * p.alpha_gain * surface * eta / size
         else:
-            # the error had its own voltage been applied: nothing to take out while it drives
+            # The error is the one under this law's own voltage; while the law drives, there is no difference to take
+            # out.
             advance_motion(p.copy, s.filtered_voltage, s.voltage - u)
             add_moves(p.copy, s.filtered_voltage, -middle, -end)
             missing = p.orientation * p.ratio
@@ -198,7 +200,7 @@ class SelfSliding(Block):
             s.last[2], s.last[3] = surface, v
 
         a1, a2, gain = true_plant(x, p.plant)
-        if p.second_order == 0.0:  # there damping is what moves
+        if p.second_order == 0.0:  # without mass, faults of damping act on these coefficients
             scale = x.mass_scale / x.damping_scale
             a1, a2, gain = 0.0, a2 * scale, gain * scale
         ideal = x.gain_ideal

@@ -1,4 +1,4 @@
-"""What the variable structure controllers share: switching surface, gains, boundary layer."""
+"""Switching surface, gains and boundary layer of the variable structure controllers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from core.ports import tap
 from core.record import Record
 
 FADING = 1000.0
-"""Time over which the peak of the layer needed is forgotten, in 1/w0."""
+"""Time over which the peak of the needed layer fades, in 1/w0."""
 LAYER_TOO_THIN = "the boundary layer is thinner than one sample of switching: the law chatters"
 LAYER_EQUATION = Equation(
     "boundary layer",
@@ -40,7 +40,7 @@ GAINS_EQUATION = Equation(
 
 
 class SwitchingParams(BlockParams):
-    """Surface, boundary layer and where the velocity is from."""
+    """Surface, boundary layer and source of the velocity."""
 
     surface_weight: float = parameter(
         1.0, "Q over R of the Riccati equation, in w0^2", equation="3.2.4.2.7", gt=0, le=100
@@ -64,7 +64,7 @@ class SlidingParams(SwitchingParams):
 
 
 class SwitchingPacked(NormalisedPacked):
-    """What every switching law needs: sign of the gain, surface, boundary layer, what is kept of its peak, velocity."""
+    """Every switching law: sign of the gain, surface, boundary layer, share of its peak that is kept, velocity."""
 
     sign: float
     surface_gain: float
@@ -74,7 +74,7 @@ class SwitchingPacked(NormalisedPacked):
 
 
 class SlidingPacked(SwitchingPacked):
-    """What the laws need beside it that compute their gains from coefficients of second order."""
+    """In addition, for the laws that compute their gains from coefficients of second order."""
 
     share: float
     equivalent: float
@@ -82,14 +82,14 @@ class SlidingPacked(SwitchingPacked):
 
 
 class SwitchingState(Record):
-    """Peak of the layer needed, and the velocity source."""
+    """Peak of the needed layer, and the velocity source."""
 
     peak: float
     velocity: VelocityState
 
 
 class SwitchingPorts(ControllerPorts, VelocityPorts):
-    """Ports of a controller with velocity, and what every switching law shows."""
+    """Ports of a controller with velocity, and the surface and switching of the law."""
 
     error: float = tap("um", "model minus measured displacement")
     surface: float = tap("um", "distance s from the switching surface, velocity in um per 1/w0")
@@ -102,7 +102,7 @@ class SwitchingPorts(ControllerPorts, VelocityPorts):
 
 
 def fill_sliding(p: SlidingPacked, params: SlidingParams, context: Context) -> None:
-    """Pack what the laws need that compute their gains from coefficients of second order."""
+    """Pack the numbers of a law that computes its gains from coefficients of second order."""
     fill_switching(p, params, context)
     usual = 0.3 if params.law == "equivalent" else 1.0
     p.share = usual if params.switching_share is None else params.switching_share
@@ -111,7 +111,7 @@ def fill_sliding(p: SlidingPacked, params: SlidingParams, context: Context) -> N
 
 
 def fill_switching(p: SwitchingPacked, params: SwitchingParams, context: Context) -> None:
-    """Pack what every switching law needs, the coefficients in units of the rate of the device."""
+    """Pack the numbers of every switching law, with coefficients in units of the rate of the device."""
     fill_normalised(p, context)
     p.sign = math.copysign(1.0, p.plant.gain)
     p.surface_gain = math.sqrt(params.surface_weight)
@@ -134,7 +134,7 @@ def slide(
 ) -> float:
     """Return the voltage of the law for these plant coefficients, and write its taps.
 
-    The velocity is in um per 1/w0; ``instead`` takes the place of the surface where it is used.
+    The velocity is in um per 1/w0; ``instead`` replaces the surface if ``use_instead`` is true.
     """
     e = x.model - y
     de = x.model_velocity / p.velocity.rate - v

@@ -26,14 +26,14 @@ from core.voltage import Motion, moves
 
 LABELS = ("gain", "a2", "a1")
 HUGE = 1e9
-"""What an estimate that runs away without its normaliser is kept below, so that it stays a number."""
+"""Bound of an estimate that runs away without its normaliser, so that it stays a finite number."""
 
 
 class Stvsc(Block):
     r"""Self-tuning variable structure control, :math:`u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
 
-    A normalised gradient estimator follows mass, damping and spring; the sliding law is computed from what it knows.
-    It estimates all the time on the voltage applied, so a switch finds it tuned.
+    A normalised gradient estimator follows mass, damping and spring; the sliding law is computed from its estimate.
+    It estimates all the time from the voltage applied, so it is tuned when the loop switches to it.
     """
 
     title = "Self-tuning VSC"
@@ -86,7 +86,7 @@ class Stvsc(Block):
         )
 
     class Packed(SlidingPacked):
-        """The sliding law, filters and their pole, estimator, what the surface is made of."""
+        """The sliding law, filters and their pole, estimator, whether the surface uses the error of the estimate."""
 
         filter: DrivenFilter
         filter_pole: float
@@ -105,7 +105,7 @@ class Stvsc(Block):
         last: float
 
     class Ports(SwitchingPorts, TruthPorts):
-        """Ports of the sliding law, the truth, and what the estimator shows."""
+        """Ports of the sliding law, the truth, and the estimate."""
 
         parameter: Vector = tap("mixed", "estimates of kp, a2 and a1, time in 1/w0", labels=LABELS)
         parameter_true: Vector = tap("mixed", "what they should be", labels=LABELS)
@@ -139,7 +139,7 @@ class Stvsc(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Estimate with what was applied, then slide with the estimate."""
+        """Estimate from the voltage applied, then slide with the estimate."""
         y = x.measured
         u, middle, end = moves(x)
         filter_voltage(p.filter, s.input, u, middle, end)

@@ -1,4 +1,4 @@
-"""Where a controller that feeds back velocity has it from."""
+"""Sources of the velocity that a controller feeds back."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ SOURCES = ("true", "difference", "observer")
 Source = Literal["true", "difference", "observer"]
 TRUE, DIFFERENCE = SOURCES.index("true"), SOURCES.index("difference")
 OBSERVER_POLE = 6.0
-"""Triple pole of the observer over the rate of the device."""
+"""Triple pole of the observer, as a multiple of the rate of the device."""
 
 
 class PackedVelocity(Tick):
-    """Which source, sample interval, rate of the device, and the observer.
+    """The source, sample interval, rate of the device, and the observer.
 
-    That is the device over a sample, what a unit of the unmodelled acceleration does in one, and how much of what the
-    observer misses it adds to displacement, velocity and that acceleration.
+    The observer holds the device over a sample, the effect on it of one unit of unmodelled acceleration, and the shares
+    of the observer's error that it adds to displacement, velocity and that acceleration.
     """
 
     source: float
@@ -45,14 +45,15 @@ class VelocityState(Record):
 
 
 def velocity_source() -> Any:
-    """Declare the parameter."""
+    """Declare the parameter that chooses the source."""
     return parameter("true", "velocity from the plant itself, from the difference of two samples, or from an observer")
 
 
 def velocity_of(source: Source, context: Context) -> PackedVelocity:
     r"""Pack the source; the observer's error has a triple pole at :math:`e^{-6\omega_0h}`, by Ackermann's formula.
 
-    Its third state is an acceleration nobody told it of: a device that is not the nominal one does not mislead it.
+    Its third state is the acceleration that the nominal device does not explain, so a device that differs from the
+    nominal one does not mislead it.
     """
     h, device = context.dt_ms, context.device
     p = PackedVelocity.zeros()
@@ -61,10 +62,10 @@ def velocity_of(source: Source, context: Context) -> PackedVelocity:
     p.push1, p.push2 = first * device.force, second * device.force
     p.by_acceleration1, p.by_acceleration2 = first * device.mass, second * device.mass
     if context.analogue:
-        more = within(device.mass, device.damping, device.stiffness, h, device.force)
-        p.middle1, p.middle2, p.end1, p.end2 = more
+        effects = within(device.mass, device.damping, device.stiffness, h, device.force)
+        p.middle1, p.middle2, p.end1, p.end2 = effects
     if device.mass == 0.0:
-        p.source = TRUE  # nothing here feeds back a velocity
+        p.source = TRUE  # a law for a plant without mass feeds back no velocity
         return p
     phi = np.array([[p.phi11, p.phi12, p.by_acceleration1], [p.phi21, p.phi22, p.by_acceleration2], [0.0, 0.0, 1.0]])
     shifted = phi - math.exp(-OBSERVER_POLE * p.rate * h) * np.eye(3)
@@ -72,7 +73,7 @@ def velocity_of(source: Source, context: Context) -> PackedVelocity:
     try:
         p.correct[:] = shifted @ shifted @ shifted @ np.linalg.solve(seen, np.array([0.0, 0.0, 1.0]))
     except np.linalg.LinAlgError:
-        p.correct[0] = 1.0  # all motion dies within a sample, so that samples tell of the displacement alone
+        p.correct[0] = 1.0  # all motion dies within a sample: samples show only the displacement
     return p
 
 
@@ -80,7 +81,7 @@ def velocity_of(source: Source, context: Context) -> PackedVelocity:
 def velocity(p: PackedVelocity, s: VelocityState, true: float, y: float, u: float, middle: float, end: float) -> float:
     """Return the velocity now, um/ms; ``u`` was applied at the start of the interval that ends now.
 
-    In its middle and at its end it was by ``middle`` and ``end`` more.
+    In the middle of the interval the voltage was larger by ``middle``, and at its end by ``end``.
     """
     last = s.last
     known = s.known != 0.0
@@ -92,12 +93,12 @@ def velocity(p: PackedVelocity, s: VelocityState, true: float, y: float, u: floa
         return (y - last) / p.dt_ms if known else 0.0
     x = s.observed.x
     v = s.observed.v
-    more = s.acceleration
-    s.observed.x = p.phi11 * x + p.phi12 * v + p.push1 * u + p.by_acceleration1 * more
-    s.observed.v = p.phi21 * x + p.phi22 * v + p.push2 * u + p.by_acceleration2 * more
+    acceleration = s.acceleration
+    s.observed.x = p.phi11 * x + p.phi12 * v + p.push1 * u + p.by_acceleration1 * acceleration
+    s.observed.v = p.phi21 * x + p.phi22 * v + p.push2 * u + p.by_acceleration2 * acceleration
     add_moves(p, s.observed, middle, end)
     missing = y - s.observed.x if known else 0.0
     s.observed.x = flush_tiny(s.observed.x + p.correct[0] * missing)
     s.observed.v = flush_tiny(s.observed.v + p.correct[1] * missing)
-    s.acceleration = flush_tiny(more + p.correct[2] * missing)
+    s.acceleration = flush_tiny(acceleration + p.correct[2] * missing)
     return s.observed.v

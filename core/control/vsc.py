@@ -24,8 +24,8 @@ from core.voltage import moves
 class Vsc(Block):
     r"""Variable structure control with fixed gains, :math:`u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
 
-    The gains are those of the nominal device: once the true one asks for more than they allow for, the surface is not
-    reached, which is what self-tuning is for.
+    The gains are those of the nominal device. If the true device asks for more than they allow for, the law does not
+    reach the surface; the self-tuning law exists for that case.
     """
 
     title = "Variable structure control"

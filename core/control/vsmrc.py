@@ -22,8 +22,8 @@ from core.voltage import moves
 class Vsmrc(Block):
     r"""Variable structure model reference control, :math:`u=\theta_{nom}^Tw+(c_r|r|+c_y|y|)\,\mathrm{sat}(s/\Phi)`.
 
-    Instead of adapting, it switches with as much as the gains may be wrong by. A boundary layer leaves an offset: in it
-    the switching is a plain gain.
+    The law does not adapt: it switches with the largest error its gains may have. A boundary layer leaves an offset,
+    because within it the switching is a plain gain.
     """
 
     title = "Variable structure MRC"
@@ -45,7 +45,7 @@ class Vsmrc(Block):
         )
 
     class Packed(SwitchingPacked):
-        """Whether the nominal gains are fed, how much they may be wrong by, order of the plant."""
+        """Whether the nominal gains are fed, bounds on their error, order of the plant."""
 
         nominal: float
         reference_bound: float
@@ -74,7 +74,7 @@ class Vsmrc(Block):
 
     @staticmethod
     def step(p: Packed, s: SwitchingState, x: SwitchingPorts) -> None:
-        """Match the model with nominal gains, and switch with bounds on what these miss."""
+        """Match the model with nominal gains, and switch with the bounds on their error."""
         y = x.measured
         r = x.reference
         u, middle, end = moves(x)

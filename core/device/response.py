@@ -15,7 +15,7 @@ AHEAD = 4
 def _recur(
     phi: FloatArray, drive: FloatArray, chain: FloatArray, reach: FloatArray, u: FloatArray, x: FloatArray
 ) -> None:
-    """Advance four samples at a time: only one product of matrices waits for the one before.
+    """Advance four samples at a time: only one product of matrices depends on the last one.
 
     ``drive[j]`` is the effect of a voltage on the state j + 1 samples later, ``chain`` is the transition over four
     samples and ``reach[j]`` the first row of the transition over j samples.

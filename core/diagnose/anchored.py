@@ -49,9 +49,9 @@ class Anchored(WeighedBank):
     .. math:: \hat\theta_k=\arg\min_\theta\sum_j\lambda^{i-j}(z_j-h_j^T\theta)^2+\rho|\theta-\theta_k|^2
         =(A+\rho I)^{-1}(b+\rho\theta_k)
 
-    The one reading of the self-tuning banks that has the pattern of the text: the larger the forgetting factor, the
+    Only this reading of the self-tuning banks shows the pattern of the text: the larger the forgetting factor, the
     more the data outweigh the anchor, and the more alike, and useless, the banks become. That order holds for every
-    anchor; at which factor it goes wrong is set by the weight of the anchor, which the text does not give.
+    anchor. The weight of the anchor, which the text does not give, decides at which factor the banks fail.
     """
 
     title = "Anchored self-tuning banks"
@@ -88,7 +88,7 @@ class Anchored(WeighedBank):
 
     @staticmethod
     def step(p: Packed, s: State, x: WeighedBank.Ports) -> None:
-        """Let every bank say what it expects, weigh, and learn from the sample."""
+        """Predict with every bank, weigh the banks, and learn from the sample."""
         gather_voltage(p, s, x)
         if between_updates(p, x):
             return

@@ -1,4 +1,4 @@
-r"""Difference equations of the hypotheses: what every self-tuning bank shares.
+r"""Difference equations of the hypotheses, which all self-tuning banks share.
 
 .. math:: z_i=b_0u_{i-1}+b_1u_{i-2}-a_1z_{i-1}-a_2z_{i-2}=h_i^T\theta
 
@@ -28,7 +28,7 @@ SIZE = 4
 
 
 class Estimator(Record):
-    """Estimated coefficients, and half a covariance."""
+    """Estimated coefficients, and the lower triangle of their covariance."""
 
     theta: Vector = vector(SIZE)
     covariance: Vector = vector(triangle(SIZE))
@@ -46,22 +46,22 @@ def coefficients_of(params: Any, context: Context) -> list[tuple[float, float, f
 
 @kernel
 def gather_voltage(p: ArxBank.Packed, s: ArxBank.State, x: ArxBank.Ports) -> None:
-    """Take in the voltage of a tick."""
+    """Add the voltage of a tick to the interval."""
     gather(p.interval, s.gathered, x.applied, x.middle, x.end)
 
 
 @kernel
 def between_updates(p: ArxBank.Packed, x: ArxBank.Ports) -> bool:
-    """Say whether a bank that runs every N ticks is between two of its turns."""
+    """Say whether a bank that runs every N ticks does not run at this one."""
     return bool(p.every != 1.0 and x.tick % p.every != 0.0)
 
 
 @kernel
 def regress(p: ArxBank.Packed, s: ArxBank.State, x: ArxBank.Ports) -> float:
-    """Write the regressor of this sample, and return what it should explain.
+    """Write the regressor of this sample, and return the filtered measurement it should explain.
 
-    Voltage and measurement pass the same filter 1/A(q), if there is one. What was not measured is taken to be where
-    the sample before was.
+    Voltage and measurement pass the same filter 1/A(q), if there is one. A missing measurement is replaced by the last
+    one.
     """
     z = x.measured
     u, later = weighed_voltages(p.interval, s.gathered)
@@ -90,13 +90,13 @@ def regress(p: ArxBank.Packed, s: ArxBank.State, x: ArxBank.Ports) -> float:
 
 @kernel
 def predicted(p: ArxBank.Packed, h: Vector, i: int) -> float:
-    """Return what hypothesis i makes of a regressor."""
+    """Return the prediction of hypothesis i from a regressor."""
     return float(h[0] * p.b0[i] + h[1] * p.b1[i] + h[2] * p.a1[i] + h[3] * p.a2[i])
 
 
 @kernel
 def unexplained(theta: Vector, h: Vector, z: float) -> float:
-    """Return what estimated coefficients do not explain of ``z``."""
+    """Return ``z`` less the prediction of estimated coefficients."""
     residual = z
     for j in range(SIZE):
         residual -= h[j] * theta[j]
@@ -111,19 +111,19 @@ def driven(p: ArxBank.Packed, s: ArxBank.State) -> bool:
 
 @kernel
 def judge(p: WeighedBank.Packed, s: WeighedBank.State, x: ArxBank.Ports, i: int, residual: float) -> float:
-    """Show the residual of hypothesis i; write and return the logarithm it leaves it with, from that it had."""
+    """Show the residual of hypothesis i; write and return its logarithm with the log-likelihood of the residual."""
     nis = residual * residual / p.variance[i]
     x.residual[i] = residual
     x.nis[i] = nis
-    left = s.log[i]
+    likelihood = s.log[i]
     if driven(p, s):
-        left = left - 0.5 * nis - p.half_log[i]
-    s.likelihood[i] = left
-    return float(left)
+        likelihood = likelihood - 0.5 * nis - p.half_log[i]
+    s.likelihood[i] = likelihood
+    return float(likelihood)
 
 
 class ArxParams(BankParams):
-    """What every self-tuning bank assumes."""
+    """Assumptions of every self-tuning bank."""
 
     sensor_noise_um: float | None = parameter(
         None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
@@ -140,7 +140,7 @@ class ArxBank(Bank):
     class Packed(Record):
         """Hypotheses and ticks between two updates; filter, memory and least power of the voltage; the equations.
 
-        Of each hypothesis the four coefficients, the variance of the equation error, and half its logarithm.
+        Each hypothesis has four coefficients, the variance of the equation error, and half its logarithm.
         """
 
         count: float
@@ -158,7 +158,7 @@ class ArxBank(Bank):
         half_log: Vector = vector(LANE)
 
     class State(Record):
-        """Mean square of the voltage; two filtered samples of it, of what of it acts later, and of the measurement.
+        """Mean square of the voltage; two filtered samples of it, of its later effect, and of the measurement.
 
         Then the interval, and the regressor.
         """
@@ -174,7 +174,7 @@ class ArxBank(Bank):
         h: Vector = vector(SIZE)
 
     class Ports(ObservedPorts):
-        """What was measured and applied, and what each hypothesis makes of it."""
+        """Measurement and voltage, and the residual and probability of each hypothesis."""
 
         probability: Vector = output("1", "probability of the hypothesis", each="hypotheses")
         residual: Vector = tap("um", "what the difference equation does not explain", each="hypotheses")
@@ -208,7 +208,7 @@ class ArxBank(Bank):
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:
-        """Tell of the hypothesis whose response to a tone is missed most."""
+        """Name the hypothesis whose difference equation loses most of its response to a tone."""
         return voltage.caution(context, {item.name: item.oscillator(context.device) for item in params.hypotheses}, hz)
 
 
@@ -253,7 +253,7 @@ class WeighedBank(ArxBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """At rest, nothing learnt, all hypotheses alike."""
+        """At rest, before the first sample, all hypotheses alike."""
         s = cls.State.zeros()
         cls.fill_alike(s, params)
         return s

@@ -15,7 +15,7 @@ class FixedBank(WeighedBank):
 
     .. math:: r_k=z_i-h_i^T\theta_k,\qquad R_e=\sigma^2(1+a_1^2+a_2^2)
 
-    No forgetting is left in it, and nothing of a filter either: good at 10 to 20 kHz, lost in noise at 50.
+    The bank has neither forgetting nor a filter: it works at 10 to 20 kHz and is lost in noise at 50.
     """
 
     title = "Bank of difference equations"

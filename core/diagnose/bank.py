@@ -23,7 +23,7 @@ class Bank(Block):
     """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
 
     evidence: ClassVar[str] = ""
-    """``log_likelihood`` in LaTeX; nothing for the logarithm of the normal density."""
+    """LaTeX of `log_likelihood`; empty for the logarithm of the normal density."""
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
@@ -32,7 +32,7 @@ class Bank(Block):
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:
-        """Return the probabilities before a measurement from those after the one before."""
+        """Return the probabilities before a measurement from those after the last one."""
         return before
 
     @classmethod

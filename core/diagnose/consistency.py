@@ -26,7 +26,7 @@ class Consistency(KalmanBank):
 
     Normal while the first hypothesis is consistent. Otherwise a fault is detected; it is isolated once exactly one
     other has been consistent for a while, ambiguous while several are, unknown once none has been for a while.
-    Isolated means not inconsistent with: what has the same response at the tone cannot be told apart.
+    Isolated only means not contradicted: hypotheses with the same response at the tone cannot be told apart.
 
     The probability is an equal share among the consistent ones, or among all when none is. The filters must assume
     the noise there is: with pseudo-noise the test is biased.
@@ -64,7 +64,7 @@ class Consistency(KalmanBank):
         unknown_after: int = parameter(200, "samples with none left", ge=1, le=1_000_000)
 
     class Packed(window.Packed):
-        """What filters and window read; limits of the tests, how long before a verdict is given."""
+        """Parameters of filters and window; limits of the tests, samples before a verdict is given."""
 
         power_limit: float
         tone_limit: float
@@ -72,14 +72,14 @@ class Consistency(KalmanBank):
         unknown_after: float
 
     class State(window.State):
-        """Filters and window; the only candidate or -1, for how many samples so far, samples without any candidate."""
+        """Filters and window; the only candidate or -1, its samples so far, and the samples without any candidate."""
 
         alone: float
         alone_run: float
         none_run: float
 
     class Ports(KalmanBank.Ports):
-        """Ports of every bank; the verdict, and what it is made of."""
+        """Ports of every bank; the verdict, and the tests behind it."""
 
         verdict: float = output("1", "0 normal, 1 detected, 2 isolated, 3 ambiguous, 4 unknown fault")
         candidates: float = output("1", "number of consistent hypotheses")
@@ -98,7 +98,7 @@ class Consistency(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, nothing concluded, the window empty."""
+        """All filters at rest, no verdict, the window empty."""
         s = cls.at_rest(cls.State.zeros(params.window), params, context)
         s.alone = -1.0
         return s
@@ -144,7 +144,7 @@ class Consistency(KalmanBank):
             verdict = ISOLATED
         elif s.none_run >= p.unknown_after:
             verdict = UNKNOWN
-        if driven(p, s):  # without drive everything is consistent with everything
+        if driven(p, s):  # without drive every hypothesis is consistent with the measurement
             x.verdict = verdict
             x.candidates = candidates
         if candidates == 0:

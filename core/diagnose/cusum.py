@@ -16,9 +16,9 @@ class Cusum(KalmanBank):
 
     .. math:: g_k\leftarrow\max\Bigl(0,\;g_k+\ln\frac{f_k(r_k)}{f_0(r_0)}\Bigr),\qquad \text{alarm when }\max_kg_k>h
 
-    The quickest there is for the fault it was built for, blind to others (Page 1954; Basseville and Nikiforov 1993).
-    The probability is that of the sums as log-odds, the threshold standing for the healthy device; no sum grows
-    beyond twice the threshold.
+    No test detects the fault it was built for more quickly, and it is blind to others (Page 1954; Basseville and
+    Nikiforov 1993). The probability takes the sums as log-odds, with the threshold standing for the healthy device; no
+    sum grows beyond twice the threshold.
     """
 
     sample_by_sample = False
@@ -34,7 +34,7 @@ class Cusum(KalmanBank):
         threshold: float = parameter(10.0, "sum at which there is an alarm", "nat", gt=0, le=1000)
 
     class Packed(KalmanBank.Packed):
-        """What the filters read; sum at which there is an alarm."""
+        """Parameters of the filters; sum that raises the alarm."""
 
         threshold: float
 
@@ -69,7 +69,7 @@ class Cusum(KalmanBank):
             elif evidence:
                 s.sum[i] = max(s.sum[i] + log - healthy, 0.0)
                 most = max(most, s.sum[i])
-        # a sum far beyond the threshold would not let go when the fault is gone
+        # a sum far beyond the threshold would keep the alarm after the fault is gone
         over = most - 2.0 * threshold
         best = threshold
         s.likelihood[0] = threshold

@@ -1,4 +1,4 @@
-"""How much a drive tells: evidence per sample between a winner and its nearest rival."""
+"""Information in a drive: evidence per sample between a winner and its nearest rival."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def nearest_rival(p: PackedFilters, s: Filters, separation: Vector, probability:
 
     .. math:: D=\min_{k\neq j}\frac{\overline{(\hat y_k-\hat y_j)^2}}{2\psi_k}
 
-    is what the log-odds of two hypotheses grow by when one is true (Bar-Shalom, Li and Kirubarajan 2001, 11.6); the
-    mean is taken over the shuttle's own memory. Both have the same measurement, so the difference of their residuals
-    is that of their predictions.
+    The log-odds of two hypotheses grow by D per sample when one of them is true (Bar-Shalom, Li and Kirubarajan 2001,
+    11.6). The mean is taken over the shuttle's own memory. Both see the same measurement, so the difference of their
+    residuals is the difference of their predictions.
     """
     winner = winner_of(probability, n)
     of_winner = s.residual[winner]

@@ -1,4 +1,4 @@
-"""Kalman filters side by side: what the step of a bank is made of."""
+"""Kalman filters side by side: the parts of a bank's step."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.voltage import AppliedPorts, ObservedPorts
 TAKE_MIDDLE, TAKE_START, TAKE_PARABOLA = 0, 1, 2
 """The voltages a filter may assume over a tick."""
 LEAST = 1e-12
-"""Least residual covariance, as a share of R."""
+"""Smallest residual covariance, as a share of R."""
 
 
 class BankPorts(ObservedPorts):
@@ -29,9 +29,9 @@ class BankPorts(ObservedPorts):
 
 @inlined
 def push(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, high: int) -> float:
-    """Write what the voltage of the tick that ends now does to the models from ``low`` to ``high``, and return it.
+    """Write the effect of the voltage of the tick that ends now on the models from ``low`` to ``high``, and return it.
 
-    An analogue drive moves within the tick: on the parabola through its start, middle and end, as the plant has it.
+    An analogue drive moves within the tick on the parabola through its start, middle and end, as the plant sees it.
     """
     u = x.middle if p.taken == 0.0 else x.applied
     for i in range(low, high):
@@ -51,7 +51,7 @@ def push(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, high: int) -> 
 def gauge(p: PackedFilters, s: Filters, u: float) -> None:
     """Keep the mean square of the voltage over the shuttle's own memory.
 
-    Of a bank that runs every N ticks it is the square of their mean that counts.
+    A bank that runs every N ticks takes the square of their mean.
     """
     mean = u if p.every == 1.0 else (s.drive_sum + u) / p.every
     s.drive_sum = 0.0
@@ -60,7 +60,7 @@ def gauge(p: PackedFilters, s: Filters, u: float) -> None:
 
 @inlined
 def predicted(p: PackedFilters, s: Filters, i: int) -> tuple[float, float]:
-    """Return where the state of a model is a tick later."""
+    """Return the state of a model one tick later."""
     x1 = s.x1[i]
     x2 = s.x2[i]
     return (
@@ -71,7 +71,7 @@ def predicted(p: PackedFilters, s: Filters, i: int) -> tuple[float, float]:
 
 @kernel
 def drift(p: PackedFilters, s: Filters, low: int, high: int) -> None:
-    """Let the states of models follow the voltage of a tick, uncorrected."""
+    """Predict the states of models over a tick, without a correction."""
     for i in range(low, high):
         x1, x2 = predicted(p, s, i)
         s.x1[i] = flush_tiny(x1)
@@ -80,10 +80,10 @@ def drift(p: PackedFilters, s: Filters, low: int, high: int) -> None:
 
 @inlined
 def between_updates(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, high: int) -> bool:
-    """Take in the voltage of a tick; say whether a bank that runs every N of them is between two of its turns.
+    """Take the voltage of a tick; say whether a bank that runs every N of them does not run at this one.
 
-    Then its states follow the voltage, which changes at every tick: were it taken for held at its mean, a bank would be
-    sure of the wrong model. The models that run are those from ``low`` to ``high``.
+    In that case its states follow the voltage, which changes at every tick: a bank that took it for held at its mean
+    would be sure of the wrong model. The models from ``low`` to ``high`` run.
     """
     u = push(p, s, x, low, high)
     between = p.every != 1.0 and x.tick % p.every != 0.0
@@ -97,13 +97,13 @@ def between_updates(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, hig
 
 @kernel
 def driven(p: PackedFilters, s: Filters) -> bool:
-    """Say whether there is drive enough for residuals to be evidence."""
+    """Say whether the drive is large enough for residuals to be evidence."""
     return s.drive_level >= p.least_drive
 
 
 @kernel
 def informed(p: PackedFilters, s: Filters, measured: float) -> bool:
-    """Say whether this sample is evidence: it was measured, and there is drive enough."""
+    """Say whether this sample is evidence: it was measured, and the drive is large enough."""
     return math.isfinite(measured) and driven(p, s)
 
 
@@ -115,10 +115,11 @@ def filter_step(p: PackedFilters, s: Filters, i: int, z: float, first: bool, see
 
     .. math:: r=z-Hx^-,\quad\psi=HP^-H^T+R,\quad K=P^-H^T/\psi,\quad x=x^-+Kr,\quad P=(I-KH)P^-
 
-    with g what the voltage does and W what the pseudo-noise of the ticks since the last sample has become by now.
+    with g the effect of the voltage, and W the covariance that the pseudo-noise since the last sample has caused.
 
-    What is decided is the same for all filters, so it chooses between values and not between ways: a loop of this
-    stays one of vectors. Returns 1 if the residual covariance has changed, so that its logarithm is no longer right.
+    The conditions are the same for all filters, so the code selects values and does not branch: a loop over the filters
+    then compiles to vector instructions. Returns 1 if the residual covariance has changed and its logarithm must be
+    renewed.
     """
     printed = p.printed != 0.0
     c11 = s.p11[i]
@@ -136,7 +137,7 @@ def filter_step(p: PackedFilters, s: Filters, i: int, z: float, first: bool, see
     c12 = c12 if first else q1 * f21 + q2 * f22 + p.noise12[i]
     c22 = c22 if first else q3 * f21 + q4 * f22 + p.noise22[i]
     total = c11 + p.sensor
-    # the text prints psi without R, and without assumed noise that would end at nothing
+    # the text prints psi without R; without assumed noise that psi would go to zero
     psi = max(c11, LEAST * p.sensor) if printed else total
     inverse = 1.0 / psi
     innovation = 1.0 / total if printed else inverse
@@ -181,7 +182,7 @@ def correct_state(
 def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
     """Predict and correct all filters; show their residuals, and the squares over psi.
 
-    Returns whether a residual covariance has changed, so that its logarithm is no longer right.
+    Returns whether a residual covariance has changed, so that its logarithm must be renewed.
     """
     z = x.measured
     seen = math.isfinite(z)
@@ -207,14 +208,14 @@ def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
 
 @kernel
 def take_logarithms(s: Filters, n: int) -> None:
-    """Keep half the logarithm of every residual covariance."""
+    """Store half the logarithm of every residual covariance."""
     for i in range(n):
         s.half_log[i] = 0.5 * log(s.covariance[i])
 
 
 @inlined
 def judge(s: Filters, before: Vector, after: Vector, n: int, evidence: bool) -> float:
-    """Write the logarithms the residuals leave of those ``before`` to ``after``; return the largest."""
+    """Add the log-likelihood of each residual to the logarithms ``before``, write ``after``; return the largest."""
     best = -math.inf
     for i in range(n):
         likelihood = before[i] - (0.5 * s.nis[i] + s.half_log[i])
@@ -226,7 +227,7 @@ def judge(s: Filters, before: Vector, after: Vector, n: int, evidence: bool) -> 
 
 @kernel
 def hand_over(s: Filters, source: int, target: int) -> None:
-    """Let a filter go on from where another is: its state and its covariance."""
+    """Copy the state and the covariance of one filter to another."""
     s.x1[target] = s.x1[source]
     s.x2[target] = s.x2[source]
     s.p11[target] = s.p11[source]

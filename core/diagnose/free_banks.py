@@ -1,4 +1,4 @@
-"""Self-tuning banks that all learn from the device: a lesson in what not to do."""
+"""Self-tuning banks that all learn from the device, as an example of a design that fails."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class FreeBanks(WeighedBank):
 
     .. math:: \hat\theta_k(0)=\theta_k,\qquad \hat\theta_k\leftarrow\hat\theta_k+\frac{\eta h}{\lambda+h^T\eta h}r_k
 
-    With one input and one output to learn from, the residuals of all banks are the same within a hundred samples and
-    nothing is left to choose by. When only the winner learns, it learns the fault it should have reported.
+    With one input and one output to learn from, the residuals of all banks are the same within a hundred samples, and
+    nothing distinguishes them any more. When only the winner learns, it learns the fault it should have reported.
     """
 
     title = "Free self-tuning banks"
@@ -92,7 +92,7 @@ class FreeBanks(WeighedBank):
 
     @staticmethod
     def step(p: Packed, s: State, x: WeighedBank.Ports) -> None:
-        """Weigh every bank by what it predicts, and let it learn."""
+        """Weigh every bank by its prediction, and let it learn."""
         gather_voltage(p, s, x)
         if between_updates(p, x):
             return

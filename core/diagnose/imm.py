@@ -17,13 +17,13 @@ from core.record import Vector, vector
 
 
 @inlined
-def mix(s: Imm.State, n: int, other: float) -> None:
+def mix(s: Imm.State, n: int, switching: float) -> None:
     r"""Give every filter the mixture of states it may have come from, and its weight before the measurement.
 
-    With :math:`\pi_{ij}=e+(1-ne)\delta_{ij}` the sums over i are the same for all j but for one term, so mixing costs
-    n terms and not n squared. Spreads are taken about the common mean.
+    With :math:`\pi_{ij}=e+(1-ne)\delta_{ij}` the sums over i are the same for all j except for one term, so mixing
+    costs n terms instead of n squared. The spreads are taken about the common mean.
     """
-    keep = 1.0 - n * other
+    keep = 1.0 - n * switching
     x1 = 0.0
     x2 = 0.0
     for i in range(n):
@@ -42,9 +42,9 @@ def mix(s: Imm.State, n: int, other: float) -> None:
         m22 += weight * (s.p22[i] + d2 * d2)
     for i in range(n):
         stays = keep * s.weight[i]
-        before = other + stays
+        before = switching + stays
         stays /= before
-        rest = other / before
+        rest = switching / before
         d1 = s.x1[i] - x1
         d2 = s.x2[i] - x2
         k1 = stays * d1
@@ -88,9 +88,9 @@ class Imm(KalmanBank):
         switching: float = parameter(1e-4, "probability of a change to another hypothesis, per sample", gt=0, le=0.5)
 
     class Packed(KalmanBank.Packed):
-        """What the filters read; probability of a change to one other hypothesis."""
+        """Parameters of the filters; probability of a change to one particular other hypothesis."""
 
-        other: float
+        switching: float
 
     class State(KalmanBank.State):
         """The filters; weights of the hypotheses, separations."""
@@ -99,7 +99,7 @@ class Imm(KalmanBank):
         separation: Vector = vector(LANE)
 
     class Ports(KalmanBank.Ports):
-        """Ports of every bank, and how much the drive tells."""
+        """Ports of every bank, and the evidence per sample."""
 
         information: float = tap("nat", "evidence per sample against the nearest rival of the winner")
         unexcited: float = tap("1", "1 while the drive hardly tells the winner from its nearest rival")
@@ -107,14 +107,14 @@ class Imm(KalmanBank):
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:
         """Return the weights after mixing."""
-        other = params.switching / (len(before) - 1)
-        return [other + (1.0 - len(before) * other) * weight for weight in before]
+        switching = params.switching / (len(before) - 1)
+        return [switching + (1.0 - len(before) * switching) * weight for weight in before]
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.filters(cls.Packed.blank(), params, context)
-        p.other = params.switching / (len(params.hypotheses) - 1)
+        p.switching = params.switching / (len(params.hypotheses) - 1)
         return p
 
     @classmethod
@@ -132,7 +132,7 @@ class Imm(KalmanBank):
             return
         evidence = informed(p, s, x.measured)
         if evidence and s.started != 0.0:
-            mix(s, n, p.other)
+            mix(s, n, p.switching)
         filters_step(p, s, x, n)
         if evidence:
             least = math.inf

@@ -1,4 +1,4 @@
-"""Banks of Kalman filters, one for each hypothesis: what every bank shares."""
+"""Base of the banks of Kalman filters, which have one filter for each hypothesis."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ class KalmanParams(FilterParams, BankParams):
 
 
 class KalmanBank(Bank):
-    """Base of every bank of Kalman filters: the filters, not what is concluded from them."""
+    """Base of every bank of Kalman filters: it has the filters; its subclasses draw the conclusions."""
 
     Params: ClassVar[type[BlockParams]] = KalmanParams
 
     class Packed(PackedFilters):
-        """What the filters read."""
+        """Parameters of the filters."""
 
     class State(Filters):
         """The filters."""
@@ -83,7 +83,7 @@ class KalmanBank(Bank):
 
     @classmethod
     def filters(cls, p: P, params: Any, context: Context, hypotheses: list[Hypothesis] | None = None) -> P:
-        """Pack what every bank needs; steady gains from the Riccati equation, for those that offer them."""
+        """Pack the filters of a bank, with steady gains from the Riccati equation if it offers them."""
         hypotheses = hypotheses or params.hypotheses
         scale = params.assumed_noise_scale
         q = params.process_noise_v**2 * scale
@@ -115,14 +115,14 @@ class KalmanBank(Bank):
 
     @classmethod
     def at_rest(cls, s: S, params: Any, context: Context) -> S:
-        """Put all filters at rest, as uncertain as the parameters say."""
+        """Put all filters at rest, with the initial uncertainty of the parameters."""
         s.p11[:] = params.initial_std_um**2
         s.p22[:] = (params.initial_std_um * context.device.natural_frequency) ** 2
         return s
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:
-        r"""Tell of an analogue drive taken for held: :math:`1-\sin x/x` of a tone, from the start late by x as well."""
+        r"""Warn if an analogue drive is taken for held: a tone loses :math:`1-\sin x/x`, and more if late by x."""
         x = math.pi * 1e-3 * hz * context.dt_ms / context.every
         if not context.analogue or params.voltage == "parabola" or x <= 0.0:
             return ""
@@ -134,14 +134,14 @@ class KalmanBank(Bank):
 
 
 def _taken(params: Any, context: Context) -> int:
-    """Return what is taken for the voltage of a tick."""
+    """Return which voltage the filters assume over a tick."""
     if params.voltage == "start":
         return TAKE_START
     return TAKE_PARABOLA if context.analogue and params.voltage == "parabola" else TAKE_MIDDLE
 
 
 def shuttle_memory(context: Context) -> float:
-    """Return what a mean with the memory of the shuttle, 2m/beta or a cycle, keeps from sample to sample."""
+    """Return the share that a mean keeps from sample to sample if its memory is the shuttle's, 2m/beta or a cycle."""
     device = context.device
     cycle = 2.0 * math.pi / device.natural_frequency
     lasting = max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
@@ -149,17 +149,17 @@ def shuttle_memory(context: Context) -> float:
 
 
 def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatArray, FloatArray]:
-    r"""Return the transition over some ticks, and the covariance that the noise of each leaves behind them.
+    r"""Return the transition over some ticks, and the covariance that their noise has caused at the end of them.
 
     .. math:: \Phi=\varphi^N,\qquad W=\sum_{j=0}^{N-1}\varphi^jw(\varphi^T)^j
 
-    The noise is another at every tick; that of a voltage held for all of them would be far more. The sum over twice as
-    many ticks is :math:`W+\Phi W\Phi^T`.
+    The noise is independent from tick to tick; a noise voltage held for all of them would cause far more. The sum over
+    twice as many ticks is :math:`W+\Phi W\Phi^T`.
 
     Parameters
     ----------
     tick, noise : array of shape (2, 2)
-        Transition of a tick, and the covariance of what noise does in it.
+        Transition of a tick, and the covariance that noise causes in it.
     ticks : int
         N.
     """
@@ -178,7 +178,7 @@ def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> 
     Parameters
     ----------
     phi, noise : array of shape (2, 2)
-        Transition between two samples, and the covariance of what noise does meanwhile.
+        Transition between two samples, and the covariance that noise causes between them.
     r : float
         Variance of a measurement, um^2.
     printed : bool

@@ -1,8 +1,8 @@
-"""Models side by side: every number of a bank's models lies in a lane, so that a processor works on many at once.
+"""Models side by side: each number of a bank's models has a lane, so that a processor computes several models at once.
 
-A lane is as long as the longest list of hypotheses. That its length is known when a step is compiled, and that the
-arrays of a step lie apart, is what lets the compiler put neighbours into one vector register. Element by element the
-arithmetic is the same, so are the bits.
+A lane is as long as the longest list of hypotheses. The compiler can put neighbours into one vector register because it
+knows the length of a lane and because the arrays of a step do not overlap. The arithmetic of each element is unchanged,
+and so are the bits.
 """
 
 from __future__ import annotations
@@ -10,15 +10,15 @@ from __future__ import annotations
 from core.record import Record, Vector, vector
 
 LANE = 16
-"""Length of a lane: the most hypotheses there may be."""
+"""Length of a lane: the largest number of hypotheses of a bank."""
 
 
 class PackedFilters(Record):
-    """Number of models and what all share; the lanes of the models, over the interval of the bank and over one tick.
+    """Number of models and the numbers they share; the lanes of the models, over the bank's interval and over one tick.
 
-    All share the variance of a measurement, which form of the filter it is, the ticks of an interval, the voltage that
-    is taken for a tick, what the mean square of the drive keeps from sample to sample, and the least of it. A device
-    over one tick is as in `core.voltage`.
+    The models share the variance of a measurement, the form of the filter, the ticks of an interval, the voltage
+    assumed over a tick, the share that the mean square of the drive keeps from sample to sample, and its lower limit. A
+    device over one tick is as in `core.voltage`.
     """
 
     count: float
@@ -55,7 +55,7 @@ class PackedFilters(Record):
 class Filters(Record):
     """Whether the filters have started, sum of voltages since the last sample, mean square of the drive; their lanes.
 
-    Half the logarithm of the residual covariance is kept while that stays.
+    Half the logarithm of the residual covariance is stored and only renewed when the covariance changes.
     """
 
     started: float

@@ -1,4 +1,4 @@
-"""Multiple-model estimation that only listens at the frequency of the drive."""
+"""Multiple-model estimation from the residuals at the frequency of the drive only."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class LockIn(KalmanBank):
     .. math:: T_k=b_k^TG^{-1}b_k,\quad b_k=\sum_W\frac{r_k}{\sqrt{\psi_k}}z,\quad G=\sum_W zz^T,\quad
         z=\binom{\cos\omega t}{\sin\omega t},\qquad\ell_k\leftarrow\ell_k-\frac{T_k}{2W}
 
-    A fault of the device moves the response at the tone, hum and noise stated wrongly do not. It needs a known tone
+    A fault of the device moves the response at the tone; hum and wrongly stated noise do not. It needs a known tone
     and is about a quarter of a window slower (the idea of Hanlon and Maybeck 2000, which the text cites and does not
     use).
     """
@@ -48,7 +48,7 @@ class LockIn(KalmanBank):
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
 
     class Packed(window.Packed):
-        """What filters and window read; floor under probabilities and its logarithm."""
+        """Parameters of filters and window; floor under probabilities and its logarithm."""
 
         probability_floor: float
         log_floor: float
@@ -68,7 +68,7 @@ class LockIn(KalmanBank):
 
     @classmethod
     def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
-        """Return the evidence of a sample: what of the residuals is at the tone, spread over the window."""
+        """Return the evidence of a sample: the part of the residuals at the tone, spread over the window."""
         return -0.5 * tone / window.length(params, context)
 
     @classmethod
@@ -93,7 +93,7 @@ class LockIn(KalmanBank):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
+        """Predict, correct, demodulate the residuals, weigh by their part at the tone."""
         n = int(p.count)
         if between_updates(p, s, x, 0, n):
             return

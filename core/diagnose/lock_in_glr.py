@@ -22,9 +22,9 @@ class LockInGlr(KalmanBank):
     .. math:: T_0=\max_{Y}2\ln\frac{f(r\mid Y)}{f(r\mid0)}=b_0^TG^{-1}b_0\sim\chi^2_2,\quad
         b_0=\sum_W\frac{r_0}{\sqrt{\psi_0}}z,\quad G=\sum_W zz^T,\quad z=\binom{\cos\omega t}{\sin\omega t}
 
-    Maximised over the unknown change of the phasor, so it needs no list of faults; the longer the window, the smaller
-    the change it sees and the later. The list only serves to name it: the threshold is the head start of the healthy
-    device.
+    The ratio is maximised over the unknown change of the phasor, so it needs no list of faults. A longer window detects
+    smaller changes, and detects them later. The list only serves to name the change: the threshold is the head start of
+    the healthy device.
     """
 
     sample_by_sample = False
@@ -49,7 +49,7 @@ class LockInGlr(KalmanBank):
         threshold: float = parameter(23.0, "T at which there is an alarm", gt=0, le=1e6)
 
     class Packed(window.Packed):
-        """What filters and window read; T at which there is an alarm."""
+        """Parameters of filters and window; T that raises the alarm."""
 
         threshold: float
 

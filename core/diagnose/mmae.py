@@ -21,12 +21,12 @@ TWO_PI_ROOT = math.sqrt(2.0 * math.pi)
 
 @kernel
 def multiply(s: Mmae.State, probability: Vector, n: int, floor: float, evidence: bool) -> None:
-    """Normalise products of densities and probabilities; where nothing is left of them, keep what was."""
+    """Normalise products of densities and probabilities; if all of them are 0, keep the last probabilities."""
     total = 0.0
     for i in range(n):
         share = s.weight[i]
         if evidence:
-            # a density times a probability, as printed: either may be too small for a number
+            # a density times a probability, as printed: either may underflow
             density = exp(-0.5 * s.nis[i])
             share *= density / (TWO_PI_ROOT * exp(s.half_log[i]))
         s.likelihood[i] = share
@@ -99,21 +99,21 @@ class Mmae(KalmanBank):
         )
 
     class Packed(KalmanBank.Packed):
-        """What the filters read; whether probabilities are kept as such, their floor and its logarithm."""
+        """Parameters of the filters; whether probabilities are stored as such, their floor and its logarithm."""
 
         linear: float
         probability_floor: float
         log_floor: float
 
     class State(KalmanBank.State):
-        """The filters; logarithms of probabilities, or in linear arithmetic these; those of a sample; separations."""
+        """The filters; logarithms of probabilities (linear: probabilities); those of a sample; separations."""
 
         weight: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
         separation: Vector = vector(LANE)
 
     class Ports(KalmanBank.Ports):
-        """Ports of every bank, and how much the drive tells."""
+        """Ports of every bank, and the evidence per sample."""
 
         information: float = tap("nat", "evidence per sample against the nearest rival of the winner")
         unexcited: float = tap("1", "1 while the drive hardly tells the winner from its nearest rival")

@@ -45,16 +45,17 @@ class MovingBank(KalmanBank):
 
         @property
         def models(self) -> list[Hypothesis]:
-            """The whole bank; what is not positive is left at the smallest."""
+            """The whole bank; factors that would not be positive are set to the smallest one."""
             return [
                 Hypothesis(name=f"{self.follows}{i:+d}", **{self.follows: max(1.0 + self.spacing * i, self.spacing)})
                 for i in range(-self.reach, self.reach + 1)
             ]
 
     class Packed(KalmanBank.Packed):
-        """What the filters read, for as many models as there are: those worked on one by one need no common lane.
+        """Parameters of the filters for any number of models, which run one by one and need no common lane.
 
-        Then floor under probabilities and its logarithm, when the centre moves, and the distance of neighbours.
+        Then the floor under probabilities and its logarithm, the probability that moves the centre, the spacing of the
+        bank.
         """
 
         probability_floor: float
@@ -84,7 +85,7 @@ class MovingBank(KalmanBank):
         end2: Vector = tail()
 
     class State(KalmanBank.State):
-        """All filters; the one in the centre; of the three that run, logarithms of probabilities and of this sample."""
+        """All filters; the one in the centre; logarithms of probabilities of the three that run, and of this sample."""
 
         centre: float
         log: Vector = vector(3)
@@ -103,7 +104,7 @@ class MovingBank(KalmanBank):
         pushed2: Vector = tail()
 
     class Ports(KalmanBank.Ports):
-        """What was measured and applied; the three filters, and the estimate."""
+        """Measurement and voltage; the three filters, and the estimate."""
 
         probability: Vector = output("1", "probability of the filter", labels=THREE)
         estimate: float = output("1", "estimated factor on the parameter")
@@ -133,7 +134,7 @@ class MovingBank(KalmanBank):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Run the filter in the centre and its two neighbours; go where the evidence is."""
+        """Run the filter in the centre and its two neighbours; move the centre if a neighbour is likelier."""
         n = int(p.count)
         centre = int(s.centre)
         if between_updates(p, s, x, centre - 1, centre + 2):
@@ -163,7 +164,7 @@ class MovingBank(KalmanBank):
         x.estimate = 1.0 + p.spacing * (low - half + probability[1] + 2.0 * probability[2])
         step = 1 if probability[2] > p.move_above else -1 if probability[0] > p.move_above else 0
         if step != 0 and 1 <= centre + step <= n - 2:
-            # the one that comes in starts where its neighbour is
+            # the new filter starts with the state of its neighbour
             edge = centre + step
             hand_over(s, edge, edge + step)
             if step > 0:

@@ -28,7 +28,7 @@ from core.record import Records, Vector, several, vector
 
 
 class Bank(Estimator):
-    """An estimator, and its own record: two samples as they are, two as measured."""
+    """An estimator and its own record: two true samples and two measured ones."""
 
     clean1: float
     clean2: float
@@ -41,7 +41,7 @@ class ReferenceBanks(WeighedBank):
 
     .. math:: \hat\theta_k\ \text{from}\ (u,z_k),\qquad r_k=z-h^T\hat\theta_k
 
-    The records never change, so the forgetting factor has hardly anything to do with the verdict.
+    The records never change, so the forgetting factor hardly affects the verdict.
     """
 
     title = "Self-tuning banks with records of their own"
@@ -99,7 +99,7 @@ class ReferenceBanks(WeighedBank):
 
     @staticmethod
     def step(p: Packed, s: State, x: WeighedBank.Ports) -> None:
-        """Let every bank learn from its own record, and weigh it by what it makes of the device."""
+        """Let every bank learn from its own record, and weigh it by its prediction of the device."""
         gather_voltage(p, s, x)
         if between_updates(p, x):
             return
@@ -109,7 +109,7 @@ class ReferenceBanks(WeighedBank):
         for i in range(n):
             bank = s.banks[i]
             best = max(best, judge(p, s, x, i, unexplained(bank.theta, s.h, z)))
-            # its own sub-system under the same voltage, as its own sensor would see it
+            # the bank's sub-system under the same voltage, as its own sensor would measure it
             clean = s.h[0] * p.b0[i] + s.h[1] * p.b1[i] - bank.clean1 * p.a1[i] - bank.clean2 * p.a2[i]
             seen = clean + p.noise_um * normal(p.keys[i], x.tick)
             s.g[0] = s.h[0]

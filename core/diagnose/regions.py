@@ -1,4 +1,4 @@
-"""Performance regions: how far the shuttle is from where a healthy one would be."""
+"""Performance regions, by the distance of the shuttle from the motion of a healthy one."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Regions(Block):
         danger_um: float
 
     class State(Record):
-        """Whether it has run, the healthy motion; the squares of the error and of that motion, of so many samples."""
+        """Whether it has run, the healthy motion; sums of squares of the error and of that motion, and their count."""
 
         started: float
         x: float
@@ -72,7 +72,7 @@ class Regions(Block):
         samples: float
 
     class Ports(ObservedPorts):
-        """The region, and by how much it is that."""
+        """The region, and the loss of performance."""
 
         region: float = output("1", "0 required, 1 degraded, 2 unacceptable, 3 danger")
         loss: float = output("1", "rms distance from the healthy motion over its rms")
@@ -91,7 +91,7 @@ class Regions(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Advance the healthy device over a tick, compare over a period, say where that is."""
+        """Advance the healthy device over a tick, compare over a period, tell the region."""
         y = x.measured
         if s.started != 0.0:
             u, middle, end = moves(x)

@@ -16,7 +16,7 @@ from core.record import Vector, vector
 
 @kernel
 def reseed(s: Filters, probability: Vector, n: int, sure: float, hopeless: float) -> None:
-    """Copy the state of a sure winner into the filters of those without hope."""
+    """Copy the state of a sure winner into the filters of hopeless hypotheses."""
     winner = winner_of(probability, n)
     if probability[winner] <= sure:
         return
@@ -31,8 +31,8 @@ class Reseed(KalmanBank):
     .. math:: p_j>p_{sure},\;p_k<p_{hopeless}\;\Rightarrow\;x_k\leftarrow x_j,\;P_k\leftarrow P_j\quad
         \text{every } M \text{ samples}
 
-    A filter with little noise is a simulator: after a jump the right one still carries the motion of a device that
-    was not there. Seeding cures that without pseudo-noise.
+    A filter with little noise is almost a simulator: after a jump, the filter of the true hypothesis still carries the
+    motion of a device that did not exist. Seeding cures that without pseudo-noise.
     """
 
     title = "Re-seeding bank"
@@ -50,7 +50,7 @@ class Reseed(KalmanBank):
         hopeless: float = parameter(0.01, "probability below which a filter is given it", ge=0, le=0.5)
 
     class Packed(KalmanBank.Packed):
-        """What the filters read; floor under probabilities and its logarithm, when there is a seeding and for whom."""
+        """Parameters of the filters; floor under probabilities and its logarithm, period and limits of a seeding."""
 
         probability_floor: float
         log_floor: float

@@ -26,9 +26,9 @@ from core.record import Vector, vector
 
 MODES = ("fixed", "direct", "stepped", "printed")
 FIXED, DIRECT, STEPPED, PRINTED = 0.0, 1.0, 2.0, 3.0
-"""What becomes of the forgetting factor, as numbers."""
+"""Codes of the ways to set the forgetting factor."""
 HUGE = 1e300
-"""Where the printed recursion, which grows beyond all bounds, is stopped so that it stays a number."""
+"""Bound of the printed recursion, which would grow without end."""
 
 
 @kernel
@@ -75,16 +75,16 @@ class SelfTuning(ArxBank):
         (\hat\theta-\theta_k)^T\eta^{-1}(\hat\theta-\theta_k)=J(\theta_k)-J(\hat\theta),\quad
         J(\theta)=\sum_j\lambda^{i-j}(z_j-h_j^T\theta)^2
 
-    Near in the metric of the information, that is: one sine and white noise pin down two numbers of the four, so
-    distance between coefficients means nothing. Costs over the same memory give the same likelihoods, and are what
-    is computed.
+    Nearness is measured in the metric of the information: one sine and white noise determine two numbers of the four,
+    so the plain distance between coefficients means nothing. Costs over the same memory give the same likelihoods, and
+    the bank computes these.
 
-    Voltage and measurement may pass 1/A(q) of the healthy device first, which makes the error of the equation white:
-    without it the method is for 10 to 20 kHz.
+    Voltage and measurement may pass 1/A(q) of the healthy device first, which makes the error of the equation white.
+    Without that filter the method works at 10 to 20 kHz.
 
-    The forgetting factor is fixed, or follows the innovations: ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
-    with R over a few samples, when R is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
-    a ramp that does not look at the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
+    The forgetting factor is fixed, or follows the innovations. ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
+    if R, taken over a few samples, is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
+    a ramp that ignores the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
     """
 
     sample_by_sample = False
@@ -172,7 +172,7 @@ class SelfTuning(ArxBank):
         likelihood: Vector = vector(LANE)
 
     class Ports(ArxBank.Ports):
-        """The estimate and what it forgets by."""
+        """The estimate and its forgetting factor."""
 
         estimate: Vector = tap("1", "estimated coefficients", labels=("b0", "b1", "a1", "a2"))
         forgetting: float = tap("1", "forgetting factor")
@@ -195,7 +195,7 @@ class SelfTuning(ArxBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """No estimate, as good as no information; no costs."""
+        """No estimate and almost no information; no costs."""
         s = cls.State.zeros()
         s.covariance[:] = diagonal(SIZE, params.initial_covariance)
         s.forgetting = params.initial_forgetting

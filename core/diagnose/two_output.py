@@ -36,8 +36,8 @@ class TwoOutput(KalmanBank):
     .. math:: z=\begin{bmatrix}y\\ \dot y\end{bmatrix}+v,\quad \psi=P^-+R,\quad
         p_k\leftarrow p_k\,\frac{e^{-r_k^T\psi_k^{-1}r_k/2}}{|\psi_k|^{1/2}}
 
-    The noises of the two outputs are independent, so correcting by one after the other is the same as by both at
-    once, likelihood included.
+    The noises of the two outputs are independent, so correcting by one after the other gives the same state and the
+    same likelihood as correcting by both at once.
     """
 
     sample_by_sample = False
@@ -61,7 +61,7 @@ class TwoOutput(KalmanBank):
         )
 
     class Packed(KalmanBank.Packed):
-        """What the filters read; floor under probabilities and its logarithm, variance of a measured velocity."""
+        """Parameters of the filters; floor under probabilities and its logarithm, variance of a measured velocity."""
 
         probability_floor: float
         log_floor: float
@@ -123,11 +123,11 @@ class TwoOutput(KalmanBank):
             if seen_too:
                 psi = s.p22[i] + p.velocity_noise
                 residual = zv - s.x2[i]
-                more = residual * residual / psi
+                square = residual * residual / psi
                 correct_velocity(s, i, residual, psi)
                 if drive:
-                    likelihood += -0.5 * more - 0.5 * log(psi)
-                nis = 0.5 * (nis + more) if seen else more
+                    likelihood += -0.5 * square - 0.5 * log(psi)
+                nis = 0.5 * (nis + square) if seen else square
             x.velocity_residual[i] = residual
             x.nis[i] = nis
             s.likelihood[i] = likelihood

@@ -9,9 +9,9 @@ for a true and well tuned model, :math:`\nu=r/\sqrt\psi`. The sum of the squares
     D=\frac{\sin W\omega h}{\sin\omega h},
 
 with the angle :math:`\theta` in the middle of the window; over whole half periods :math:`D=0` and
-:math:`T_k=\tfrac2W|b_k|^2`. While the window fills, :math:`T_k` is less than it may be. Sums slide: what enters is
-added and what leaves is taken off; once per window each is exchanged for one summed anew, so that rounding never adds
-up.
+:math:`T_k=\tfrac2W|b_k|^2`. While the window fills, :math:`T_k` is less than it may be. The sums slide: each new sample
+is added and the oldest is subtracted. Once per window each sum is replaced by one formed anew, so that rounding errors
+never accumulate.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from core.kernel import inlined, kernel
 from core.record import Record, Records, Vector, tail, vector
 
 MOST = 512
-"""Longest window that is not asked for."""
+"""Longest window that the block chooses by itself."""
 
 
 class Packed(KalmanBank.Packed):
-    """What the filters read; tone, tick, samples of the window, room for them; D/W at the angle of the last sample.
+    """Parameters of the filters; tone, tick, samples of the window and room for them; D/W at the last sample's angle.
 
     ``span`` is W - D^2/W.
     """
@@ -54,7 +54,7 @@ class Sample(Record):
 
 
 class State(KalmanBank.State):
-    """The filters; samples and tone of the window, place of the next; sums, and those summed anew; the samples."""
+    """The filters; samples and tone of the window, place of the next sample; sums, and new ones; the samples."""
 
     samples: float
     place: float
@@ -69,25 +69,26 @@ class State(KalmanBank.State):
 
 
 def tone_hz(params: Any, context: Context) -> float:
-    """Return the tone: given, or that of the reference, or the resonance."""
+    """Return the given tone, or that of the reference, or the resonance."""
     return float(params.tone_hz or context.tone_hz or 1e3 * context.device.natural_frequency / (2.0 * math.pi))
 
 
 def length(params: Any, context: Context) -> int:
-    """Return the length of the window: given, or one period of the tone, as far as there is room."""
+    """Return the given length of the window, or one period of the tone, as far as there is room."""
     period = 1e3 / (tone_hz(params, context) * context.dt_ms)
     return params.window or min(max(2, round(period)), MOST)
 
 
 def room(params: Any) -> int:
-    """Return how many samples there is room for."""
+    """Return the number of samples the window has room for."""
     return params.window or MOST
 
 
 def lean(params: Any, context: Context, samples: int) -> tuple[float, float, float]:
-    """Return by how much squares and products of cosine and sine over the window are not those of whole half periods.
+    """Return the deviation of the sums of squares and products of cosine and sine from those over whole half periods.
 
-    Where they are nearly dependent only the larger direction counts: one degree of freedom, which is conservative.
+    If cosine and sine are nearly dependent, only the larger direction counts: one degree of freedom, which is
+    conservative.
     """
     cycles = tone_hz(params, context) / 1e3 * context.dt_ms
     step = 2.0 * math.pi * (cycles - math.floor(cycles))
@@ -112,7 +113,7 @@ def fill(p: Packed, params: Any, context: Context, samples: int, capacity: int) 
 
 @kernel
 def begin(p: Packed, s: State) -> int:
-    """Return the place of this sample; a window of another length starts empty, and of another tone without a tone."""
+    """Return the place of this sample; clear the window if its length changed, and its tone if that changed."""
     capacity = int(p.capacity)
     if s.samples != p.samples:
         s.place = 0.0
@@ -134,7 +135,7 @@ def begin(p: Packed, s: State) -> int:
 
 @kernel
 def clear_tone(s: State, capacity: int) -> None:
-    """Forget the tone."""
+    """Clear the sums and samples at the tone."""
     for i in range(LANE):
         s.cosine_sum[i] = 0.0
         s.sine_sum[i] = 0.0
@@ -148,9 +149,9 @@ def clear_tone(s: State, capacity: int) -> None:
 
 @inlined
 def push(s: State, n: int, place: int, cosine: float, sine: float) -> None:
-    """Let the normalised residuals of all models in, and the oldest out; go on to the next place.
+    """Add the normalised residuals of all models, subtract the oldest ones, and go on to the next place.
 
-    At the end of the window the sums are exchanged for those summed anew.
+    At the end of the window the sums are replaced by those formed anew.
     """
     sample = s.ring[place]
     old_cosine = sample.cosine
@@ -202,7 +203,7 @@ def tone(s: State, i: int, along: float, across: float, span: float) -> float:
 
 @inlined
 def power(s: State, i: int) -> float:
-    """Return S of one model, never less than nothing by rounding."""
+    """Return S of one model, which rounding cannot make negative."""
     return max(s.power_sum[i], 0.0)  # type: ignore[no-any-return]
 
 

@@ -12,10 +12,10 @@ from core.record import Record
 class Ageing(Fault):
     r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less displacement at rest after four (3.1.3.2).
 
-    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. Only the end is the
-    text's; the exponential and its time constant of two weeks are assumed. So is that age changes the material of all
-    beams alike, as a modulus :math:`E\to E/r(t)`: the text measured along x alone. Stiffness sideways, in rotation and
-    cubic go with it, and pull-in by the bias with :math:`1/\sqrt r`.
+    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. The text gives only
+    the end; the exponential and its time constant of two weeks are assumed. It is also assumed that age changes the
+    material of all beams alike, as a modulus :math:`E\to E/r(t)`: the text measured along x alone. The stiffnesses
+    sideways, in rotation and cubic change with it, and pull-in by the bias with :math:`1/\sqrt r`.
     """
 
     title = "Ageing"
@@ -39,7 +39,7 @@ class Ageing(Fault):
         severity: float = parameter(0.0, "age", "week", ge=0, le=52)
 
     class Ports(BlockPorts):
-        """The modulus of the beams, and how old they are."""
+        """The modulus of the beams, and their age."""
 
         stiffness_scale: float = effect("stiffness_scale")
         elasticity_scale: float = effect("elasticity_scale")
@@ -48,7 +48,7 @@ class Ageing(Fault):
 
     @staticmethod
     def step(p: PackedFault, s: Record, x: Ports) -> None:
-        """Stiffen every beam by what age takes of the displacement."""
+        """Stiffen every beam as the loss of displacement with age requires."""
         weeks = severity_now(p, x.tick)
         x.severity = weeks
         if weeks != 0.0:

@@ -54,5 +54,5 @@ class BrokenTruss(StructureFault):
 
     @classmethod
     def whole(cls, params: Any, context: Context) -> Effects:
-        """Return a share of a clean break."""
+        """Return a share of the effects of a clean break."""
         return effects(drawn(context), *EXTENTS[params.extent]).scaled(params.severity)

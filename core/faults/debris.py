@@ -39,7 +39,7 @@ class Debris(Fault):
         comb: Literal["right", "left"] = parameter("right", "which comb it is in, seen with +x to the right")
 
     class Packed(PackedFault):
-        """Profile and severity, then the effects at full severity: added shares, a turn, the combs that are shorted."""
+        """Profile and severity, then the effects at full severity: added shares, a turn, the shorted combs."""
 
         stiffness: float
         damping: float

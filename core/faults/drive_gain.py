@@ -13,7 +13,7 @@ from core.record import Record
 class DriveGain(Fault):
     r"""The voltage at the comb is not the one applied, :math:`v\to v(1+s)`, or stays where it was when it stuck.
 
-    Controllers and diagnosers are told the voltage applied. Severity -1 is a drive that gives nothing.
+    Controllers and diagnosers still read the voltage applied. At severity -1 the drive gives no voltage.
     """
 
     title = "Drive gain"
@@ -34,13 +34,13 @@ class DriveGain(Fault):
         stuck: float
 
     class State(Record):
-        """Voltage held, and whether it is."""
+        """The held voltage, and whether the drive holds it."""
 
         held: float
         holding: float
 
     class Ports(BlockPorts):
-        """The voltage at the comb, and the one applied."""
+        """The voltage at the comb, and the applied one."""
 
         drive_gain: float = effect("drive_gain")
         drive_offset: float = effect("drive_offset")

@@ -1,11 +1,11 @@
-"""What every fault shares: severity over time."""
+"""Base of the faults: severity over time."""
 
 from __future__ import annotations
 
-import math
 from typing import Any, ClassVar, Literal, Protocol
 
 from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor
 from core.kernel import kernel
 from core.ports import output, reads
 from core.record import Record
@@ -24,7 +24,7 @@ class Profile(BlockParams):
 
 
 class FaultParams(BlockParams):
-    """A fault as injected; severity 0 is bit for bit no fault."""
+    """An injected fault; with severity 0 the results are bit for bit those without the fault."""
 
     severity: float = parameter(0.0, "severity, a share of the nominal value", "1")
     profile: Profile = parameter(Profile(), "how the severity comes")
@@ -50,7 +50,7 @@ def severity_now(p: PackedFault, tick: float) -> float:
     if p.kind == RAMP:
         return float(p.severity * min(1.0, since / p.length))
     if p.kind == INTERMITTENT:
-        return float(p.severity) if since - p.length * math.floor(since / p.length) < p.on else 0.0
+        return float(p.severity) if since - p.length * floor(since / p.length) < p.on else 0.0
     return float(p.severity)
 
 
@@ -60,25 +60,25 @@ def effect(channel: str) -> Any:
 
 
 def severity(unit: str, meaning: str) -> Any:
-    """Declare the severity that is there now."""
+    """Declare the output of the present severity."""
     return output(unit, meaning)
 
 
 class Fault(Block):
-    """A fault multiplies effect channels, or adds to them; ``shows`` names the part it is seen on."""
+    """A fault, which multiplies effect channels or adds to them; ``shows`` names the part it is seen on."""
 
     suggested = 0.05
 
     @classmethod
     def rests(cls, params: Any) -> bool:
-        """Say whether the fault is not there."""
+        """Say whether the fault is absent."""
         return bool(params.severity == 0.0)
 
     Packed: ClassVar[type[Record]] = PackedFault
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Any:
-        """Pack severity and profile; the interval and its part that is on in whole ticks."""
+        """Pack severity and profile; the period and its active part are in whole ticks."""
         profile = params.profile
         length = profile.duration_ms if profile.kind == "ramp" else profile.period_ms
         ticks = max(1.0, round(length / context.dt_ms))

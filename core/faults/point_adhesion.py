@@ -19,7 +19,7 @@ class PointAdhesion(StructureFault):
 
     The stiffness rises by 1.46 at three quarters of an inner beam (the text's +46 % of effort) and at most by 1.5 there
     (36EI over 24EI), by up to five on an outer beam. The shuttle turns by about 30 rad per m of travel: the far end
-    moves 1.01 times as far as the centre. The text's E = 2 takes the adhesion for a rigid pivot.
+    moves 1.01 times as far as the centre. The text's E = 2 treats the adhesion as a rigid pivot.
     """
 
     title = "Point adhesion"
@@ -60,7 +60,7 @@ class PointAdhesion(StructureFault):
 
     @classmethod
     def whole(cls, params: Any, context: Context) -> Effects:
-        """Return a share of a point that is held firmly."""
+        """Return a share of the effects of a point that is held firmly."""
         damage = Damage(adhesion=(params.beam, params.position))
         bending = BENDING.scaled(linear(drawn(context), damage)[3] / linear(Geometry(), FITTED)[3])
         return effects(drawn(context), damage, bending).scaled(params.severity)

@@ -23,7 +23,7 @@ class SensorBias(Fault):
         severity: float = parameter(0.0, "bias", "um", ge=-100, le=100)
 
     class Ports(BlockPorts):
-        """What is added to what is measured."""
+        """The error added to the measurement."""
 
         sensor_offset: float = effect("sensor_offset")
         other: float = effect("other")
@@ -31,7 +31,7 @@ class SensorBias(Fault):
 
     @staticmethod
     def step(p: PackedFault, s: Record, x: Ports) -> None:
-        """Shift what is measured."""
+        """Shift the measurement."""
         bias = severity_now(p, x.tick)
         x.severity = bias
         if bias != 0.0:

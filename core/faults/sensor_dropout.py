@@ -16,8 +16,8 @@ class SensorDropout(Fault):
 
     .. math:: z_i\to z_{i-1}\quad\text{with probability}\ q
 
-    The gaps are geometric, :math:`1/(1-q)` samples from one that comes to the next on average. An intermittent
-    drop-out of everything is a loose contact.
+    The lengths of the gaps are geometric: a sample arrives every :math:`1/(1-q)` samples on average. An intermittent
+    drop-out of all samples is a loose contact.
     """
 
     title = "Sensor drop-out"

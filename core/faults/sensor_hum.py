@@ -15,7 +15,7 @@ from core.record import Record
 class SensorHum(Fault):
     r"""The mains in what is measured, :math:`z\to z+a\sin2\pi ft`.
 
-    One period of 50 Hz lasts 20 ms, which is as long as many a scenario.
+    One period of 50 Hz lasts 20 ms, as long as many scenarios.
     """
 
     title = "Sensor hum"
@@ -36,7 +36,7 @@ class SensorHum(Fault):
         turns_per_ms: float
 
     class Ports(BlockPorts):
-        """What is added to what is measured."""
+        """The error added to the measurement."""
 
         sensor_offset: float = effect("sensor_offset")
         other: float = effect("other")

@@ -14,8 +14,8 @@ from core.record import Record
 class SensorNoise(Fault):
     r"""White noise beside that of the sensor, :math:`z\to z+\sigma n`, with :math:`n` normal.
 
-    Filters go on with the noise the sensor has without it: the residuals of all hypotheses grow by
-    :math:`1+\sigma^2/\sigma_0^2` in their variance.
+    Filters still assume the noise of the sensor without the fault: the variance of the residuals of all hypotheses
+    grows by :math:`1+\sigma^2/\sigma_0^2`.
     """
 
     title = "Sensor noise"
@@ -35,7 +35,7 @@ class SensorNoise(Fault):
         key: float
 
     class Ports(BlockPorts):
-        """What is added to what is measured."""
+        """The error added to the measurement."""
 
         sensor_offset: float = effect("sensor_offset")
         other: float = effect("other")
@@ -50,7 +50,7 @@ class SensorNoise(Fault):
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
-        """Add noise of its own to what is measured."""
+        """Add noise from its own stream to the measurement."""
         deviation = severity_now(p, x.tick)
         x.severity = deviation
         if deviation != 0.0:

@@ -11,8 +11,8 @@ from core.record import Record
 class SensorQuantisation(Fault):
     r"""A converter that has lost its lower bits, :math:`z\to q\lfloor z/q+\tfrac12\rfloor`.
 
-    While the signal crosses many steps the error is evenly spread over one, :math:`q/\sqrt{12}` rms; a signal within
-    half a step of zero is not seen at all.
+    While the signal crosses many steps, the error is uniform over one step, :math:`q/\sqrt{12}` rms. A signal within
+    half a step of zero is measured as zero.
     """
 
     title = "Sensor quantisation"
@@ -27,7 +27,7 @@ class SensorQuantisation(Fault):
         severity: float = parameter(0.0, "step of the converter", "um", ge=0, le=100)
 
     class Ports(BlockPorts):
-        """The step what is measured is rounded to."""
+        """The step to which the measurement is rounded."""
 
         sensor_quantum: float = effect("sensor_quantum")
         other: float = effect("other")
@@ -35,7 +35,7 @@ class SensorQuantisation(Fault):
 
     @staticmethod
     def step(p: PackedFault, s: Record, x: Ports) -> None:
-        """Coarsen what is measured; of two converters in a row the coarser counts."""
+        """Round the measurement more coarsely; of two converters in a row the coarser one counts."""
         width = severity_now(p, x.tick)
         x.severity = width
         if width != 0.0:

@@ -15,7 +15,7 @@ COMBS = {"right": 1.0, "left": 2.0, "both": 3.0}
 class ShortCircuit(Fault):
     r"""Stator and shuttle on one potential: no voltage across that comb, the other one pulls alone.
 
-    A failure, not a fault (5.1.2): the short stays after the fault is healed, until the board is reset.
+    This is a failure, not a fault (5.1.2): the short stays after the fault is healed, until the board is reset.
     """
 
     title = "Short circuit"

@@ -11,8 +11,8 @@ from core.record import Record
 class Stiction(Fault):
     r"""Coulomb friction :math:`F_s` of something that rubs: the shuttle sticks within :math:`F_s/k` of its place.
 
-    Humid air makes surfaces adhere, and friction goes with the adhesion energy: 0.6 times as much in dry air, 23 times
-    at 60 %. Plants that step once a sample stop the shuttle in the sample in which it turns.
+    Humid air makes surfaces adhere, and friction is proportional to the adhesion energy: 0.6 times as much in dry air,
+    23 times at 60 %. Plants that step once a sample stop the shuttle in the sample in which it turns.
     """
 
     title = "Stiction"
@@ -32,7 +32,7 @@ class Stiction(Fault):
         severity: float = parameter(0.0, "friction at 40 % of humidity", "nN", ge=0, le=1e5)
 
     class Ports(BlockPorts):
-        """The friction, and how humid it is."""
+        """The friction, and the humidity."""
 
         friction: float = effect("friction")
         other: float = effect("other")

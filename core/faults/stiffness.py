@@ -11,7 +11,7 @@ from core.record import Record
 class Stiffness(Fault):
     r"""Young's modulus of all beams and trusses, :math:`E\to E(1+s)`.
 
-    The suspension is one film, so all of its stiffnesses go with it: along x, :math:`k\to k(1+s)`, sideways, in
+    The suspension is one film, so all of its stiffnesses change with it: along x, :math:`k\to k(1+s)`, sideways, in
     rotation and cubic. Pull-in by the bias moves by :math:`\sqrt{1+s}`.
     """
 
@@ -38,7 +38,7 @@ class Stiffness(Fault):
 
     @staticmethod
     def step(p: PackedFault, s: Record, x: Ports) -> None:
-        """Multiply the stiffness along x, and with it that of every beam."""
+        """Multiply the stiffness along x and that of every beam."""
         now = severity_now(p, x.tick)
         x.severity = now
         if now != 0.0:

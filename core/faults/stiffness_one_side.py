@@ -14,7 +14,7 @@ from core.faults.structure import Bending, Effects, StructureFault, effects
 class StiffnessOneSide(StructureFault):
     r"""Young's modulus of beams and truss of the side at +y: :math:`k\to k(1+s/2)`, and a rotation with the travel.
 
-    Its stiffness sideways and in rotation is that of the frame of beams with one side stiffer.
+    The stiffnesses sideways and in rotation are those of the frame of beams with one side stiffer.
     """
 
     title = "Beam stiffness, one side"
@@ -38,7 +38,7 @@ class StiffnessOneSide(StructureFault):
 
     @classmethod
     def whole(cls, params: Any, context: Context) -> Effects:
-        """Return what a side of this stiffness does."""
+        """Return the effects of a side with this stiffness."""
         whole = effects(drawn(context), Damage(side_scale=1.0 + params.severity), Bending())
         whole.stiffness = 0.5 * params.severity
         return whole

@@ -1,7 +1,7 @@
-"""What faults of the suspension share: their effect on the whole of its elasticity.
+"""Effect of faults of the suspension on its whole elasticity.
 
-The part that is linear in the displacement comes from a frame of beams with the drawing of the device; what bends with
-the travel was fitted to the frame of LCR-350 at large displacements, for the named places.
+The part that is linear in the displacement comes from a frame of beams with the drawing of the device. The part that
+changes with the travel was fitted to the frame of LCR-350 at large displacements, for the named places.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from core.record import Record
 
 
 class Effects(Record):
-    """What a fault does to each channel at full severity: added shares of five scales, then four sums themselves."""
+    """Effect of a fault on each channel at full severity: added shares of five scales, then four sums themselves."""
 
     stiffness: float
     lateral: float
@@ -32,13 +32,13 @@ class Effects(Record):
     turn_cubic: float
 
     def scaled(self, factor: float) -> Effects:
-        """Return a share of them."""
+        """Return a share of the effects."""
         return Effects(factor * self.array)
 
 
 @dataclass(frozen=True)
 class Bending:
-    """What grows with the travel: reaches over nominal, then cubic N/m^3, sideways 1/m, turn rad/m^3."""
+    """Effects that grow with the travel: reaches over nominal, then cubic N/m^3, sideways 1/m, turn rad/m^3."""
 
     reach_y: float = 1.0
     reach_t: float = 1.0
@@ -47,7 +47,7 @@ class Bending:
     turn_cubic: float = 0.0
 
     def scaled(self, factor: float) -> Bending:
-        """Return a share of it."""
+        """Return a share of the effects."""
         return Bending(
             1.0 + factor * (self.reach_y - 1.0),
             1.0 + factor * (self.reach_t - 1.0),
@@ -61,7 +61,7 @@ class Bending:
 def linear(geometry: Geometry, damage: Damage) -> tuple[float, float, float, float]:
     """Return the stiffness along x, along y and against rotation over nominal, and the turn per travel, rad/um."""
     whole, hurt = stiffness(geometry), stiffness(geometry, damage)
-    # the turn that costs nothing at a travel, with the shuttle free sideways
+    # the turn without a torque at a travel, with the shuttle free sideways
     coupling = hurt[2, 0] - hurt[2, 1] * hurt[1, 0] / hurt[1, 1]
     turning = hurt[2, 2] - hurt[2, 1] * hurt[1, 2] / hurt[1, 1]
     return (
@@ -73,7 +73,7 @@ def linear(geometry: Geometry, damage: Damage) -> tuple[float, float, float, flo
 
 
 def effects(geometry: Geometry, damage: Damage, bending: Bending) -> Effects:
-    """Return what the whole fault does to each channel: added shares for scales, the sums themselves."""
+    """Return the effect of the full fault on each channel: added shares for scales, the sums themselves."""
     along, sideways, turning, turn = linear(geometry, damage)
     whole = Effects.zeros()
     whole.stiffness = along - 1.0
@@ -89,7 +89,7 @@ def effects(geometry: Geometry, damage: Damage, bending: Bending) -> Effects:
 
 
 class StructureFault(Fault):
-    """A fault of the suspension; a subclass says what the whole of it does."""
+    """A fault of the suspension; a subclass gives its effects at full severity."""
 
     class Packed(PackedFault):
         """Severity and profile with the effects at full severity behind them."""
@@ -124,7 +124,7 @@ class StructureFault(Fault):
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
-        """Change the suspension by the share of the severity that is there now."""
+        """Change the suspension by the present severity's share of the effects."""
         now = severity_now(p, x.tick)
         x.severity = now
         if now != 0.0:

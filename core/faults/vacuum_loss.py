@@ -11,9 +11,10 @@ from core.record import Record
 class VacuumLoss(Fault):
     r"""Air leaks into the package, :math:`p\to p+s(p_1-p)` with :math:`p_1` of one atmosphere.
 
-    What it does depends on ``environment.pressure_pa``: from 10 Pa the quality factor falls from about 2400 to 4.9,
-    most of it within the first hundredths of the ramp; in a package that is open already it does nothing. Section
-    5.2.2 has the viscosity change; it does not depend on pressure, the slip at the walls does.
+    The effect depends on ``environment.pressure_pa``: from 10 Pa the quality factor falls from about 2400 to 4.9,
+    most of it within the first hundredths of the ramp; in a package that is open already the fault has no effect.
+    Section 5.2.2 lets the viscosity change; in fact the viscosity does not depend on pressure, but the slip at the
+    walls does.
     """
 
     title = "Loss of vacuum"
@@ -34,7 +35,7 @@ class VacuumLoss(Fault):
         severity: float = parameter(0.0, "share of the vacuum that is lost", "1", ge=0, le=1)
 
     class Ports(BlockPorts):
-        """The vacuum."""
+        """The loss of vacuum."""
 
         effect: float = effect("vacuum")
         severity: float = severity("1", "share of the vacuum that is lost")

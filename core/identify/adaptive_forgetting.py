@@ -15,7 +15,7 @@ READINGS = ("direct", "step", "printed")
 DIRECT, STEPWISE, PRINTED = 0.0, 1.0, 2.0
 """Readings of 5.4 as numbers."""
 HUGE = 1e30
-"""What a ratio that grows without end is kept below."""
+"""Bound of a ratio that would grow without end."""
 
 
 @kernel
@@ -33,8 +33,8 @@ def spread(s: Discrete.State) -> float:
 def adapt(p: AdaptiveForgetting.Packed, s: AdaptiveForgetting.State, e: float) -> None:
     r"""Choose the forgetting factor of this sample.
 
-    Innovations that are more than :math:`1+h^T\eta h/\lambda` times the variance of the noise mean that the estimate is
-    trusted too much; the factor that would explain them is :math:`\tilde\lambda=h^T\eta h/(R-1)`.
+    If the innovations exceed :math:`1+h^T\eta h/\lambda` times the variance of the noise, the law trusts its estimate
+    too much; the factor :math:`\tilde\lambda=h^T\eta h/(R-1)` would explain them.
     """
     square = e * e
     before = s.forgetting
@@ -68,7 +68,7 @@ class AdaptiveForgetting(Discrete):
         \text{ while }R_i>R_{gate},\text{ else }1
 
     with :math:`w_i` the innovation and :math:`\sigma^2` the variance it would have with a perfect estimate. As printed
-    the scheme does not look at the data at all: its ratio goes to infinity where the noise is small in its units, or to
+    the scheme ignores the data: its ratio goes to infinity where the noise is small in its units, or to
     zero where it is large, and the factor just walks down or up by mu per sample.
     """
 
@@ -128,7 +128,7 @@ class AdaptiveForgetting(Discrete):
         step_size: float
 
     class State(Discrete.State):
-        """Forgetting factor, ratio R and the weight of what it was made of."""
+        """Forgetting factor, ratio R and the weight of the samples in it."""
 
         forgetting: float
         ratio: float
@@ -145,7 +145,7 @@ class AdaptiveForgetting(Discrete):
         """Pack the parameters for the step."""
         deviation = params.innovation_um
         if deviation is None:
-            # the noise of three samples meets in one residual
+            # one residual contains the noise of three samples
             *_, a1, a2 = nominal(context.device, context.dt_ms)
             deviation = max(context.sensor_noise_um, 1e-3) * (1.0 + a1 * a1 + a2 * a2) ** 0.5
         p = cls.Packed.blank()
@@ -157,7 +157,7 @@ class AdaptiveForgetting(Discrete):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Estimate and covariance at the start, factor 1, nothing seen."""
+        """Estimate and covariance at the start, factor 1, no samples yet."""
         s = cls.State.zeros()
         cls.fill_start(s, params, context)
         s.forgetting = 1.0

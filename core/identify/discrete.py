@@ -29,7 +29,7 @@ COEFFICIENTS = ("b0", "b1", "a1", "a2")
 
 
 class DiscreteParams(IdentifierParams):
-    """What every identifier of the sampled plant may be told."""
+    """Parameters of every identifier of the sampled plant."""
 
     initial_covariance: float = parameter(1e8, "covariance at the start, as a multiple of I", gt=0, le=1e15)
     covariance_limit: float = parameter(1e10, "largest trace of the covariance, 0 for none", ge=0, le=1e18)
@@ -43,7 +43,7 @@ class Discrete(Identifier):
     """Base of the identifiers of the sampled plant."""
 
     class Packed(Identifier.Packed):
-        """Whether it goes on estimating, the nominal device, trust at the start and its limit, mean noise of h h'."""
+        """Whether it is enabled, the nominal device, covariance at the start and its limit, mean noise of h h'."""
 
         enabled: float
         mass: float
@@ -57,7 +57,7 @@ class Discrete(Identifier):
         interval: Interval
 
     class State(Identifier.State):
-        """Samples so far, as far as three, and the last; estimate and covariance; the truth and its scales."""
+        """Samples so far, counted up to three, and the last ones; estimate and covariance; the truth and its scales."""
 
         samples: float
         last_y: float
@@ -77,7 +77,7 @@ class Discrete(Identifier):
         gathered: Gathered
 
     class Ports(EstimatePorts):
-        """Estimate and truth, as coefficients of the sampled plant, and how much the estimate is trusted."""
+        """Estimate and truth as coefficients of the sampled plant, and the trace of the covariance."""
 
         coefficient: Vector = tap("mixed", "estimated coefficients of the sampled plant", labels=COEFFICIENTS)
         coefficient_true: Vector = tap("mixed", "true coefficients of the sampled plant", labels=COEFFICIENTS)
@@ -86,7 +86,7 @@ class Discrete(Identifier):
 
     @classmethod
     def fill_sampled(cls, p: Packed, params: Any, context: Context) -> None:
-        """Pack everything up to what the law itself needs."""
+        """Pack the numbers that every identifier of the sampled plant needs."""
         device = context.device
         cls.fill_shared(p, params, context)
         p.mass, p.damping, p.stiffness, p.force = device.mass, device.damping, device.stiffness, device.force
@@ -119,7 +119,7 @@ class Discrete(Identifier):
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:
-        """Tell what of the response to a tone is missed once a part of the device is another by a tenth."""
+        """Say how much of the response to a tone is lost if mass, stiffness or damping is larger by a tenth."""
         device = context.device
         parts = ("mass", "stiffness", "damping")
         tenth = {part: replace(device, **{part: 1.1 * getattr(device, part)}) for part in parts}
@@ -143,7 +143,7 @@ def sampled(
 
 @kernel
 def gather_voltage(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> None:
-    """Take in the voltage of a tick."""
+    """Add the voltage of a tick to the interval."""
     gather(p.interval, s.gathered, x.applied, x.middle, x.end)
 
 
@@ -175,7 +175,7 @@ def observe(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> tuple[b
 
 @kernel
 def restart(p: Discrete.Packed, s: Discrete.State) -> None:
-    """Trust the estimate no more than at the start."""
+    """Reset the covariance to that at the start."""
     for i in range(10):
         s.covariance[i] = 0.0
     for i in range(N):
@@ -184,7 +184,7 @@ def restart(p: Discrete.Packed, s: Discrete.State) -> None:
 
 @kernel
 def follow_truth(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> None:
-    """Work the true coefficients out anew when the device has changed."""
+    """Compute the true coefficients anew when the device has changed."""
     mass, stiffness, damping, gain = x.mass_scale, x.stiffness_scale, x.damping_scale, x.drive_gain
     if mass != s.mass_scale or stiffness != s.stiffness_scale or damping != s.damping_scale or gain != s.drive_gain:
         s.mass_scale = mass
@@ -200,9 +200,9 @@ def follow_truth(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> No
 def report(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports, residual: float) -> None:
     r"""Write estimate, truth, error and excitation.
 
-    Of the poles :math:`z=e^{(-\sigma\pm j\omega_d)h}` and the static gain g:
+    From the poles :math:`z=e^{(-\sigma\pm j\omega_d)h}` and the static gain g follow
     :math:`k=F/g,\;m=k/(\sigma^2+\omega_d^2),\;\beta=2\sigma m`. While the poles are not those of a damped plant, the
-    last values stay.
+    estimate keeps its last values.
     """
     show_truth(x)
     follow_truth(p, s, x)

@@ -15,7 +15,7 @@ class Excitation(Filtered):
 
     Three parameters need three directions: a constant gives one and a tone two, so a step and a single tone are
     flagged, two tones just pass and four pass well. A transient counts, so the first window after a change passes too.
-    Noise of the sensor does not: what it adds to the mean is taken out.
+    Sensor noise does not count: its contribution to the mean is taken out.
     """
 
     title = "Excitation monitor"

@@ -53,14 +53,14 @@ class FilterParams(ExcitationParams):
 
 
 class FilteredParams(FilterParams, IdentifierParams):
-    """What every identifier of kp, a1 and a2 may be told."""
+    """Parameters of every identifier of kp, a1 and a2."""
 
     start: Literal["nominal", "zero"] = parameter("nominal", "estimate at the start", equation="3.3.2.8", live=False)
     range_ratio: float = parameter(100.0, "largest coefficient over nominal (projection), 0 for none", ge=0, le=1e6)
 
 
 class Filtered(Identifier):
-    """Base of whatever looks at the device through filters."""
+    """Base of the blocks that filter voltage and displacement of the device."""
 
     class Packed(Identifier.Packed):
         """Whether the displacement is held between samples, the two filters, mean noise of phi phi'."""
@@ -71,7 +71,7 @@ class Filtered(Identifier):
         noise: Vector = vector(triangle(N))
 
     class State(Identifier.State):
-        """Whether it has run, last displacement, the filtered signals, the regressor they make."""
+        """Whether it has run, last displacement, the filtered signals, and the regressor built from them."""
 
         started: float
         last_y: float
@@ -81,7 +81,7 @@ class Filtered(Identifier):
 
     @classmethod
     def fill_filters(cls, p: Packed, params: Any, context: Context) -> None:
-        """Pack the filters, and what noise of the measurement does behind them."""
+        """Pack the filters, and the mean of phi phi' that sensor noise causes behind them."""
         h = context.dt_ms * context.device.natural_frequency
         cls.fill_shared(p, params, context)
         p.held = float(params.between == "held")
@@ -101,7 +101,7 @@ class FilteredEstimator(Filtered):
     """Base of the identifiers of kp, a1 and a2."""
 
     class Packed(Filtered.Packed):
-        """Whether it goes on estimating, largest coefficient over nominal, the nominal ones."""
+        """Whether it is enabled, largest coefficient over nominal, the nominal coefficients."""
 
         enabled: float
         range_ratio: float
@@ -121,7 +121,7 @@ class FilteredEstimator(Filtered):
 
     @classmethod
     def fill_nominal(cls, p: Packed, params: Any, context: Context) -> None:
-        """Pack everything up to what the law itself needs."""
+        """Pack the numbers that every identifier of kp, a1 and a2 needs."""
         cls.fill_filters(p, params, context)
         p.nominal[:] = coefficients(context.device)
 
@@ -140,10 +140,10 @@ class FilteredEstimator(Filtered):
 
 
 def noise_gram(pole: float, h: float, held: float, noise_um: float) -> list[float]:
-    r"""Return the lower triangle of the mean of :math:`\varphi\varphi^T` that white noise of the measurement makes.
+    r"""Return the lower triangle of the mean of :math:`\varphi\varphi^T` that white noise of the measurement causes.
 
-    A sample takes part twice, at the end of an interval and at the start of the next:
-    :math:`q_{i+1}=\Phi q_i+b_0n_i+b_1n_{i+1}`, whose covariance is the solution of a Lyapunov equation in
+    Each sample acts twice, at the end of an interval and at the start of the next:
+    :math:`q_{i+1}=\Phi q_i+b_0n_i+b_1n_{i+1}`; its covariance is the solution of a Lyapunov equation in
     :math:`[q,n]`.
     """
     packed = filter_of(pole, h)
@@ -164,7 +164,7 @@ def noise_gram(pole: float, h: float, held: float, noise_um: float) -> list[floa
 
 @kernel
 def follow_voltage(p: Filtered.Packed, s: Filtered.State, x: IdentifierPorts) -> None:
-    """Let the filter of the voltage follow a tick."""
+    """Advance the filter of the voltage over a tick."""
     if s.started != 0.0:
         u, middle, end = moves(x)
         filter_voltage(p.voltage_filter, s.voltage, u, middle, end)
@@ -172,7 +172,7 @@ def follow_voltage(p: Filtered.Packed, s: Filtered.State, x: IdentifierPorts) ->
 
 @kernel
 def observe(p: Filtered.Packed, s: Filtered.State, x: IdentifierPorts) -> tuple[bool, float]:
-    r"""Filter the displacement, and return whether there was a sample and what it makes of :math:`z` (3.3.2.6-7)."""
+    r"""Filter the displacement; return whether there was a sample, and the :math:`z` it gives (3.3.2.6-7)."""
     y = x.measured
     seen = math.isfinite(y)
     if not seen:
@@ -197,7 +197,7 @@ def prediction(s: FilteredEstimator.State) -> float:
 
 @kernel
 def bounds(p: FilteredEstimator.Packed, i: int) -> tuple[float, float]:
-    """Return the interval of a coefficient: its nominal value over and times the range."""
+    """Return the bounds of a coefficient: its nominal value divided by the range, and times the range."""
     near, far = p.nominal[i] / p.range_ratio, p.nominal[i] * p.range_ratio
     return min(near, far), max(near, far)
 

@@ -1,8 +1,8 @@
-r"""What every identifier shares: ports, the truth beside the estimate, excitation.
+r"""Ports, parameters and excitation that all identifiers share.
 
 Displacement is in um, voltage in V and time in units of :math:`1/\omega_0`, the unit of :math:`\theta=[k_p,a_1,a_2]` of
-:math:`\ddot y+a_1\dot y+a_2y=k_pu`. Outputs are mass, stiffness and damping over their nominal values, the force per
-volt taken as known.
+:math:`\ddot y+a_1\dot y+a_2y=k_pu`. Outputs are mass, stiffness and damping over their nominal values; the force per
+volt is taken as known.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ PHYSICAL = ("mass", "stiffness", "damping")
 EXCITATION = "smallest eigenvalue of the mean of phi phi' over the last window, less noise"
 EXCITATION_RELATIVE = "the same with every component of phi scaled to a unit mean square"
 IDENTIFIABLE = "1 while this input tells all parameters apart"
-"""What is shown of the excitation, by all identifiers and by the monitor."""
+"""Meanings of the excitation taps, for all identifiers and for the monitor."""
 
 MOST = 4
-"""Most parameters of an identifier."""
+"""Largest number of parameters of an identifier."""
 BAD_PCT = 1e4
 """Error shown for an estimate that makes no sense."""
 
@@ -48,7 +48,7 @@ class IdentifierParams(ExcitationParams):
 
 
 class Gram(Record):
-    """Samples of a window so far, sum of their phi phi' (a lower triangle), scratch, and the last verdict."""
+    """Samples of the window so far, the sum of their phi phi' (a lower triangle), scratch, and the last verdict."""
 
     samples: float
     products: Vector = vector(triangle(MOST))
@@ -58,7 +58,7 @@ class Gram(Record):
 
 
 class IdentifierPorts(ObservedPorts):
-    """What an identifier knows of the device, and the truth it is compared with."""
+    """The voltage and displacement an identifier is given, and the truth its estimate is compared with."""
 
     mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal")
     stiffness_scale: float = reads("effects.stiffness_scale", "1", "true stiffness over nominal")
@@ -67,7 +67,7 @@ class IdentifierPorts(ObservedPorts):
 
 
 class EstimatePorts(IdentifierPorts):
-    """Estimate and truth; which coefficients they have, each kind of identifier says."""
+    """Estimate and truth; each kind of identifier names its own coefficients."""
 
     estimate: Vector = output("1", "estimated mass, stiffness and damping over nominal", labels=PHYSICAL)
     error_pct: float = output("%", "largest relative error of the estimated coefficients")
@@ -102,7 +102,7 @@ class Identifier(Block):
         every: float
 
     class State(Record):
-        """What the excitation is judged by."""
+        """The window of the excitation."""
 
         gram: Gram
 
@@ -116,7 +116,7 @@ class Identifier(Block):
 
     @classmethod
     def fill_shared(cls, p: Packed, params: Any, context: Context) -> None:
-        """Pack what every identifier needs."""
+        """Pack the numbers that every identifier needs."""
         p.window = max(1, round(params.excitation_window_ms / context.dt_ms))
         p.h = context.dt_ms * context.device.natural_frequency
         p.every = context.every
@@ -131,7 +131,7 @@ def coefficients(device: Oscillator) -> tuple[float, float, float]:
 
 @kernel
 def between_updates(p: Identifier.Packed, x: IdentifierPorts) -> bool:
-    """Say whether an identifier that runs every N ticks only takes in the voltage of this one."""
+    """Say whether an identifier that runs every N ticks only gathers the voltage of this tick."""
     return bool(p.every != 1.0 and x.tick % p.every != 0.0)
 
 
@@ -144,10 +144,10 @@ def excite(
     n: int,
     x: EstimatePorts | ExcitationPorts,
 ) -> None:
-    """Gather the Gram matrix and judge it at the end of each window, less twice what noise of the sensor adds to it.
+    """Gather the Gram matrix, and at the end of each window judge it less twice the share that sensor noise adds.
 
-    Noise turns the regressor in every direction and tells nothing; taken away once, half of the windows would still
-    show some of it. ``noise`` is the lower triangle of the mean noise.
+    Noise moves the regressor in every direction without telling anything about the device. If its mean were taken out
+    only once, half of the windows would still show some of it. ``noise`` is the lower triangle of the mean noise.
     """
     add_outer_product(gram.products, regressor, n)
     gram.samples += 1.0
@@ -167,7 +167,7 @@ def excite(
 
 @kernel
 def show_truth(x: EstimatePorts) -> None:
-    """Write mass, stiffness and damping as they are."""
+    """Write the true mass, stiffness and damping."""
     x.truth[0] = x.mass_scale
     x.truth[1] = x.stiffness_scale
     x.truth[2] = x.damping_scale

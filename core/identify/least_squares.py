@@ -31,8 +31,8 @@ class LeastSquares(FilteredEstimator):
     .. math:: P^{-1}\leftarrow e^{-Bh}P^{-1}+\frac{h}{m^2}\varphi\varphi^T,\quad
         P_i^{-1}\tilde\theta_i=e^{-Bhi}P_0^{-1}\tilde\theta_0
 
-    So the weight of the start is forgotten at the rate B whatever alpha. A greater rate is quicker while the initial
-    covariance is small; once it is large the data alone decide and the rate makes no difference.
+    So the weight of the start is forgotten at the rate B, independent of alpha. A greater rate is quicker while the
+    initial covariance is small; if it is large the data alone decide and the rate makes no difference.
     """
 
     title = "Least squares, continuous forgetting"
@@ -66,7 +66,7 @@ class LeastSquares(FilteredEstimator):
         covariance_limit: float = parameter(1e5, "largest trace of the covariance, 0 for none", ge=0, le=1e15)
 
     class Packed(FilteredEstimator.Packed):
-        """What is kept from sample to sample, normaliser, limit of the covariance and where it starts."""
+        """Share kept from sample to sample, normaliser, limit of the covariance and its value at the start."""
 
         decay: float
         normaliser: float
@@ -81,7 +81,7 @@ class LeastSquares(FilteredEstimator):
         was_enabled: float
 
     class Ports(FilteredEstimator.Ports):
-        """How much the estimate is trusted."""
+        """The trace of the covariance."""
 
         covariance_trace: float = tap("mixed", "trace of the covariance")
 

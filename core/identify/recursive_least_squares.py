@@ -14,10 +14,10 @@ class RecursiveLeastSquares(Discrete):
     .. math:: K=\frac{\eta h}{\lambda+h^T\eta h},\quad\hat\theta\leftarrow\hat\theta+K(z-h^T\hat\theta),\quad
         \eta\leftarrow\frac{\eta-Kh^T\eta}{\lambda},\quad h=[u_{i-1},u_{i-2},-z_{i-1},-z_{i-2}]
 
-    It minimises :math:`\sum\lambda^{n-i}(z_i-h_i^T\theta)^2`: a memory of about :math:`1/(1-\lambda)` samples. Of the
-    covariance only a triangle is kept, since the antisymmetric part of its rounding would grow as
-    :math:`\lambda^{-i}`; and its trace is limited, since without excitation it grows so itself. Noise of the sensor
-    stands in the regressor and biases the estimate, the more so the faster it samples: run it at 10 to 20 kHz.
+    It minimises :math:`\sum\lambda^{n-i}(z_i-h_i^T\theta)^2`: a memory of about :math:`1/(1-\lambda)` samples. Only a
+    triangle of the covariance is kept, since the antisymmetric part of its rounding would grow as :math:`\lambda^{-i}`.
+    Its trace is limited, since it grows in the same way without excitation. Sensor noise
+    in the regressor biases the estimate, the more so the faster it samples: run it at 10 to 20 kHz.
     """
 
     title = "Recursive least squares (FFRLS)"

@@ -1,4 +1,4 @@
-"""The rigid shuttle in the plane: its elasticity and dampings of a sample, its heat, the forces at one point."""
+"""The rigid shuttle in the plane: elasticity, dampings and heat of a sample, and the forces at one point."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from core.plant.suspension import elastic_force
 
 @kernel
 def prepare(p: Plane.Packed, s: Plane.State, x: Plane.Ports) -> None:
-    """Put the suspension, the mass and the dampings as they are now into the state."""
+    """Write the present suspension, mass and dampings into the state."""
     k = s.suspension
     travel = x.lateral_reach * p.lateral_reach
     turning = x.rotation_reach * p.rotation_reach
@@ -42,7 +42,7 @@ def squeeze_factor(r: float) -> float:
 
 @kernel
 def noise_of(p: Plane.Packed, s: Plane.State, y: float, theta: float) -> tuple[float, float, float]:
-    """Return the Cholesky factor of the dampings of y and theta: coupled once the arms differ, and so is their noise.
+    """Return the Cholesky factor of the dampings of y and theta, which couple, with their noise, once the arms differ.
 
     ``l11``, ``l21``, ``l22``, roots of uN ms/um with a lever in um.
     """
@@ -99,7 +99,7 @@ def acceleration(
 
 @kernel
 def worst(p: Plane.Packed, y: float, theta: float) -> float:
-    """Return the lateral displacement of the corner where it is largest, um."""
+    """Return the largest lateral displacement of a corner, um."""
     yy = y + p.misalignment_um
     lever = (theta + p.misalignment_rad) * p.rotor_tip
     return float(yy + lever if abs(yy + lever) >= abs(yy - lever) else yy - lever)

@@ -1,4 +1,4 @@
-"""Fingers that touch a stator and a shuttle that reaches its stops: what plants with a lateral motion share."""
+"""Contact of fingers with a stator and of the shuttle with its stops, for plants with a lateral motion."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from core.kernel import kernel
 from core.plant.shuttle import Shuttle, ShuttleParams, wall
 
 LEAST_US = 0.01
-"""Shortest step, so that a sample ends."""
+"""Shortest step, so that a sample takes a finite number of them."""
 
 
 class ContactParams(ShuttleParams):
-    """What happens where the shuttle touches."""
+    """The contact of fingers with a stator, and the stops of the shuttle."""
 
     contact_clearance_um: float = parameter(0.15, "gap that is left where fingers touch", "um", gt=0, le=0.2)
     contact_stiffness_n_m: float = parameter(5e3, "stiffness of touching fingers", "N/m", ge=0, le=1e4)
@@ -26,7 +26,7 @@ class ContactParams(ShuttleParams):
     stop_damping_ns_m: float = parameter(2e-5, "damping of a stop", "N s/m", ge=0, le=1e-4)
 
     def stop_step_us(self, step_us: float, mass: float) -> float:
-        """Return the longest step asked for, or the longest that follows the end stops."""
+        """Return the longest step given, or a shorter one if the end stops need it."""
         return resolved_us(step_us, self.stop_stiffness_n_m, self.stop_damping_ns_m * 1e3, mass)
 
 
@@ -34,7 +34,7 @@ class TouchingShuttle(Shuttle):
     """A plant whose fingers may touch a stator."""
 
     class Packed(Shuttle.Packed):
-        """Gap, the offset up to which the force law holds, and that at which fingers touch; contact and stops."""
+        """Gap, largest offset at which the force law holds, offset at which fingers touch; contact and stops."""
 
         gap: float
         limit: float
@@ -60,14 +60,14 @@ class TouchingShuttle(Shuttle):
 
 
 def resolved_us(step_us: float, stiffness: float, damping: float, mass: float) -> float:
-    """Return the longest step asked for, or one over the rates of a wall: Runge-Kutta is unstable beyond 2.8 of it."""
+    """Return the longest step given, or one over the rates of a wall: Runge-Kutta is unstable beyond 2.8 of it."""
     rate = max(math.sqrt(stiffness / mass), damping / mass)
     return max(min(step_us, 1e3 / rate), LEAST_US) if rate > 0.0 else step_us
 
 
 @kernel
 def touch(p: TouchingShuttle.Packed, eta: float, rate: float) -> float:
-    """Return the force of a stator on fingers that are ``eta`` off their centre, uN."""
+    """Return the force of a stator on fingers at the offset ``eta`` from their centre, uN."""
     return wall(p.touch_um, p.contact_stiffness_n_m, p.contact_damping, eta, rate)
 
 

@@ -1,4 +1,4 @@
-"""Where a plant comes to rest, and where it can no longer: static equilibria, their folds, and pull-in."""
+"""Static equilibria of a plant, their folds, and pull-in."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def stiffness(force: Force, q: FloatArray, right: float, left: float) -> FloatAr
 
 
 def is_minimum(k: FloatArray) -> bool:
-    """Say whether a stiffness holds in every direction: its least eigenvalue, scaled by its diagonal, is positive."""
+    """Say whether a stiffness is positive in every direction: its least eigenvalue, scaled by its diagonal, is."""
     size = np.sqrt(np.abs(np.diag(k))) + 1e-300
     return bool(np.linalg.eigvalsh(0.5 * (k + k.T) / np.outer(size, size))[0] > 0.0)
 
@@ -147,7 +147,7 @@ def fold(
     farthest: float = 20.0,
     step: float = 0.05,
 ) -> Fold | None:
-    """Return the first place, to either side, where the equilibrium stops being stable as the drive rises.
+    """Return the first place, to either side, where the equilibrium becomes unstable as the drive rises.
 
     Parameters
     ----------
@@ -160,13 +160,13 @@ def fold(
     size : int
         Coordinates of a place, 1 or 3.
     farthest, step : float
-        Largest travel looked at, and how finely, um.
+        Largest travel searched, and the step of the search, um.
 
     Returns
     -------
     Fold or None
-        Of the two sides the one that needs less voltage; none when both are stable as far as was looked. A device that
-        is unstable without any drive has its fold at 0 V.
+        The fold of the side that needs less voltage; None if both sides are stable over the travel searched. A device
+        that is unstable without any drive has its fold at 0 V.
     """
     ends = folds(force, stators, lateral, size, farthest, step)
     return min(ends, key=lambda entry: abs(entry.volts)) if ends else None
@@ -180,12 +180,12 @@ def folds(
     farthest: float = 20.0,
     step: float = 0.05,
 ) -> list[Fold]:
-    """Return the folds to either side, as far as there are any; arguments as for `fold`."""
+    """Return the folds to either side that exist; arguments as for `fold`."""
     rest = rest_at(force, np.zeros(size), *squared(stators, 0.0))
     if rest is None or not is_stable(force, rest, *squared(stators, 0.0)):
         return [Fold(0.0, 0.0, 0.0)]
-    found = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
-    return [entry for entry in found if entry is not None]
+    folds = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
+    return [entry for entry in folds if entry is not None]
 
 
 def _one_side(
@@ -227,11 +227,11 @@ def bias_pull_in(p: Plane.Packed, suspension: Suspension, highest: float = 400.0
 
     volts, step, place = 0.0, 1.0, np.zeros(3)
     while step > 1e-6:
-        found = at(volts + step, place)
-        if found is None:
+        rest = at(volts + step, place)
+        if rest is None:
             step *= 0.5
         else:
-            volts, place = volts + step, found
+            volts, place = volts + step, rest
             if volts > highest:
                 return None
     return volts

@@ -23,8 +23,8 @@ class Linear(Shuttle):
     r"""Mass, damper and spring, :math:`m\ddot x+\beta\dot x+kx=F_e` (1.3.1, with :math:`k=2k_s`).
 
     Exact for a held drive. A continuous drive is a parabola over each sample, exact to
-    :math:`O((\omega\,dt)^4)`; holding a 2 kHz sine at 100 kHz instead is off by 6.6 % of the peak, which is
-    the truth about a DAC and wrong about a generator. Friction stops the shuttle in the sample in which it turns.
+    :math:`O((\omega\,dt)^4)`. Holding a 2 kHz sine at 100 kHz instead is off by 6.6 % of the peak, which is
+    right for a DAC and wrong for a generator. Friction stops the shuttle in the sample in which it turns.
     """
 
     title = "Linear plant"

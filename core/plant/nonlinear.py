@@ -28,12 +28,13 @@ from core.record import Record
 RESOLVED = 0.2
 """Longest step at a stop or in smoothed friction, in units of one over the fastest rate there.
 
-A few rebounds are then good to 3 % of the travel, against an adaptive solver; with 0.5 to 10 %, and 2.8 is unstable.
+A few rebounds are then accurate to 3 % of the travel, compared with an adaptive solver; with 0.5 the error is 10 %, and
+2.8 is unstable.
 """
 MOST_PARTS = 1000
-"""Most parts of a substep, so that a sample ends."""
+"""Largest number of parts of a substep, so that a sample takes a finite number of them."""
 SMOOTH = 4.0
-"""Where smoothed friction is as good as constant, in slip velocities."""
+"""Speed beyond which smoothed friction is practically constant, in slip velocities."""
 
 
 class Nonlinear(Shuttle):
@@ -68,7 +69,7 @@ class Nonlinear(Shuttle):
         substeps: int = parameter(4, "Runge-Kutta steps in a sample", ge=1, le=64)
 
     class Packed(Shuttle.Packed):
-        """Spring, friction and stops, and how finely a sample is divided, where."""
+        """Spring, friction and stops, the division of a sample, and the places that need a finer one."""
 
         cubic: float
         smoothed_friction: float
@@ -82,7 +83,7 @@ class Nonlinear(Shuttle):
         slow_um_ms: float
 
     class Ports(Shuttle.Ports):
-        """What changes its elasticity."""
+        """Effects that change its elasticity."""
 
         cubic: float = reads("effects.cubic", "uN/um^3", "added cubic stiffness")
         elasticity_scale: float = ELASTICITY
@@ -118,7 +119,7 @@ class Nonlinear(Shuttle):
         tick = x.tick - 1.0
         u0, rise, bend = comb_voltage_parabola(x)
         noise = drive_noise(p, tick)
-        other = thermal_force(p, b, tick) - m * x.acceleration
+        outside = thermal_force(p, b, tick) - m * x.acceleration
         rubbing = x.friction
         whole = p.dt_ms / p.substeps
         fine = int(p.parts)
@@ -129,7 +130,7 @@ class Nonlinear(Shuttle):
         while done < total:
             stride = fine if done % fine == 0 else 1
             a0 = done / total
-            fa = comb_force(p, u0 + noise + a0 * (rise + a0 * bend), short) + other
+            fa = comb_force(p, u0 + noise + a0 * (rise + a0 * bend), short) + outside
             drag = 0.0
             if rubbing > 0.0:
                 net = m * acceleration(p, m, b, k, cubic, q, 0.0, fa)
@@ -139,7 +140,7 @@ class Nonlinear(Shuttle):
                 drag = dry_friction(rubbing, v, net)
                 fa += drag
             k1 = acceleration(p, m, b, k, cubic, q, v, fa)
-            # a whole substep, or one of its parts where the next might meet a stop or friction that turns
+            # a whole substep, or one of its parts if the whole might meet a stop or a turn of the friction
             gain = whole * abs(k1)
             if abs(q) + whole * (abs(v) + gain) > p.near_stop_um or abs(v) - gain < p.slow_um_ms:
                 stride = 1
@@ -147,8 +148,8 @@ class Nonlinear(Shuttle):
             a1 = (done + 0.5 * stride) / total
             done += stride
             a2 = done / total
-            fb = comb_force(p, u0 + noise + a1 * (rise + a1 * bend), short) + other + drag
-            fc = comb_force(p, u0 + noise + a2 * (rise + a2 * bend), short) + other + drag
+            fb = comb_force(p, u0 + noise + a1 * (rise + a1 * bend), short) + outside + drag
+            fc = comb_force(p, u0 + noise + a2 * (rise + a2 * bend), short) + outside + drag
             before = v
             v2 = v + 0.5 * h * k1
             k2 = acceleration(p, m, b, k, cubic, q + 0.5 * h * v, v2, fb)

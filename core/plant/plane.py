@@ -115,7 +115,7 @@ class Plane(TouchingShuttle):
         touched_ms: float
 
     class Ports(TouchingShuttle.Ports):
-        """What changes its suspension and its squeeze film, and shakes it sideways."""
+        """Effects that change its suspension and its squeeze film, and its sideways acceleration."""
 
         acceleration_side: float = reads("effects.acceleration_side", "um/ms^2", "acceleration of the frame along y")
         cubic: float = reads("effects.cubic", "uN/um^3", "added cubic stiffness")
@@ -131,14 +131,14 @@ class Plane(TouchingShuttle):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Any:
-        """Pack what the plant in the plane has beyond what all plants share: uN um is 1e12 N m, and so on."""
+        """Pack the numbers of the plant in the plane that other plants do not have: uN um is 1e12 N m, and so on."""
         known = asdict(lateral(drawn(context)))
         gap = known.pop("gap_um")
         given = {name: known[name] if getattr(params, name) is None else getattr(params, name) for name in known}
         mass = context.device.mass
         step = params.stop_step_us(params.step_us, mass)
         coarse = math.ceil(context.dt_ms * 1e3 / step - 1e-9)
-        # all corners may touch at once, which moves the shuttle or turns it
+        # all corners may touch at once and move or turn the shuttle
         stator, rotor = given["stator_tip_um"], given["stator_tip_um"] + given["overlap_um"]
         inertia = given["inertia_kg_m2"] * 1e18
         touching = min(0.25 * mass, 0.5 * inertia / (stator * stator + rotor * rotor))

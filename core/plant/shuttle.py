@@ -1,4 +1,4 @@
-"""What every plant along x shares: ports, noise, comb force."""
+"""Ports, noise and comb force of the plants along x."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RIGHT, LEFT = 1, 2
 
 
 class PackedMotion(Record):
-    """Mass, damping, stiffness, interval, start and noise of the drive: what anything that moves along x has."""
+    """Mass, damping, stiffness, interval, start and noise of the drive, for every plant along x."""
 
     mass: float
     damping: float
@@ -53,7 +53,7 @@ class Shuttle(Block):
     """A plant along x; its state is its own output signals, so one plant can replace another while running."""
 
     class Packed(PackedMotion):
-        """Also the comb, its capacitance gradient in uN/V^2 and the voltages of its stators, and thermal noise."""
+        """In addition the comb (capacitance gradient in uN/V^2, voltages of the stators) and thermal noise."""
 
         capacitance_gradient: float
         first_v: float
@@ -62,7 +62,7 @@ class Shuttle(Block):
         thermal_key: float
 
     class Ports(BlockPorts):
-        """Inputs of every plant, those of its own follow; then what it does and where it is."""
+        """Inputs of every plant, followed by those of one kind of plant; then the motion and state it writes."""
 
         voltage: float = reads("drive.voltage", "V", "applied voltage")
         middle: float = reads("drive.middle", "V", "applied voltage half a sample later")
@@ -87,12 +87,12 @@ class Shuttle(Block):
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what is no resonator."""
+        """Refuse devices that are not resonators."""
         return "" if device.time_unit_ms == 0.0 else "this device is no resonator; choose transfer_function"
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Any:
-        """Pack what every plant needs."""
+        """Pack the numbers that every plant needs."""
         device = context.device
         p = cls.Packed.blank()
         p.mass = device.mass
@@ -111,7 +111,7 @@ class Shuttle(Block):
 def comb_voltage_parabola(x: Shuttle.Ports) -> tuple[float, float, float]:
     r"""Return the voltage that reaches the comb over a sample, :math:`u_0+a(r+ab)` at the share :math:`a` of it.
 
-    Through its start, middle and end; exactly constant when the drive holds it.
+    The parabola runs through the start, middle and end, and is exactly constant when the drive holds the voltage.
     """
     u0 = x.drive_gain * x.voltage + x.drive_offset
     d1 = x.drive_gain * x.middle + x.drive_offset - u0
@@ -134,13 +134,13 @@ def comb_force(p: Shuttle.Packed, v: float, short: float) -> float:
 
 @kernel
 def comb_voltage(v: float, short: float, comb: int) -> float:
-    """Voltage across a comb: none once it is shorted, for its supply is behind a resistor."""
+    """Voltage across a comb: 0 once it is shorted, because its supply is behind a resistor."""
     return 0.0 if int(short) & comb else v
 
 
 @inlined
 def coefficients(p: PackedMotion, x: Shuttle.Ports) -> tuple[float, float, float]:
-    """Return mass, damping and stiffness as faults and environment have made them."""
+    """Return mass, damping and stiffness with the effects of faults and environment."""
     return p.mass * x.mass_scale, p.damping * x.damping_scale, p.stiffness * x.stiffness_scale
 
 
@@ -156,7 +156,7 @@ def wall(at: float, stiffness: float, damping: float, x: float, v: float) -> flo
 
 @kernel
 def joined(first: float, second: float) -> float:
-    """Return the combs that are shorted by one or the other."""
+    """Return the combs that either of two effects has shorted."""
     return float(int(first) | int(second))
 
 

@@ -29,10 +29,10 @@ class SlavedLateral(TouchingShuttle):
     .. math:: m\ddot x=-k_1x-\beta\dot x+\tfrac12n\varepsilon_0t\left\{V_1^2[G+\kappa G'(L+x)]
         +V_2^2[-G+\kappa G'(L-x)]\right\}
 
-    The text turns the shuttle about the point of adhesion as about a rigid pivot and loses stability at a third of the
-    gap. Elasticity gives a hundredth of that rotation (see the planar plant); with the overlap shortened to 5 um this
-    plant folds where the text has it, so that its controllers can be tried on it. With the whole overlap of 40 um
-    the same kinematics would be unstable at rest beyond 4.1 V of bias.
+    The text turns the shuttle about the point of adhesion as about a rigid pivot, and it loses stability at a third of
+    the gap. Elasticity gives a hundredth of that rotation (see the planar plant); with the overlap shortened to 5 um
+    this plant folds where the text says, so that the text's controllers can be tried on it. With the whole overlap of
+    40 um the same kinematics would be unstable at rest beyond 4.1 V of bias.
     """
 
     title = "Slaved lateral plant (calibration)"
@@ -80,7 +80,7 @@ class SlavedLateral(TouchingShuttle):
         mass = context.device.mass
         step = params.stop_step_us(params.step_us, mass)
         if params.ratio > 0.0:
-            # fingers feel the shuttle through the lever of their motion
+            # the lever of their sideways motion scales the forces of the fingers on the shuttle
             felt = mass / (params.ratio * params.ratio)
             step = resolved_us(step, params.contact_stiffness_n_m, params.contact_damping_ns_m * 1e3, felt)
         p: SlavedLateral.Packed = super().pack(params, context)
@@ -108,14 +108,14 @@ class SlavedLateral(TouchingShuttle):
         b = p.damping * x.damping_scale
         k = p.stiffness_n_m * x.stiffness_scale
         u0, rise, bend = comb_voltage_parabola(x)
-        other = -m * x.acceleration
+        outside = -m * x.acceleration
         if n > 0:
             u0 += drive_noise(p, x.tick - 1.0)
-            other += thermal_force(p, b, x.tick - 1.0)
+            outside += thermal_force(p, b, x.tick - 1.0)
         rubbing = x.friction
         for i in range(n):
             h = p.dt_ms / n
-            # the voltage of the middle of the substep: it changes little over a quarter of a microsecond
+            # the voltage in the middle of the substep, since it changes little over a quarter of a microsecond
             a = (i + 0.5) / n
             u = u0 + a * (rise + a * bend)
             right = comb_voltage(p.first_v - u, short, RIGHT)
@@ -123,12 +123,12 @@ class SlavedLateral(TouchingShuttle):
             right, left = right * right, left * left
             drag = 0.0
             if rubbing > 0.0:
-                net = slaved_force(p, q, right, left) + push(p, q, 0.0) - k * q + other
+                net = slaved_force(p, q, right, left) + push(p, q, 0.0) - k * q + outside
                 if v == 0.0 and abs(net) <= rubbing:
                     continue
                 drag = dry_friction(rubbing, v, net)
             before = v
-            held = other + drag
+            held = outside + drag
             a1 = (slaved_force(p, q, right, left) + push(p, q, v) - k * q - b * v + held) / m
             q2, v2 = q + 0.5 * h * v, v + 0.5 * h * a1
             a2 = (slaved_force(p, q2, right, left) + push(p, q2, v2) - k * q2 - b * v2 + held) / m

@@ -5,8 +5,8 @@ r"""Elastic energy of the suspension in x, y and theta, and all its derivatives.
 .. math:: k_y=\frac{k_{y0}}{1+(x/x_y)^2},\quad k_\theta=\frac{k_{\theta0}}{1+(x/x_\theta)^2},\quad
     y_s=y_2x^2,\quad \theta_s=\theta_1x+\theta_3x^3
 
-The stiffness sideways falls with the travel because bent beams give way along their length. Since the force along x is
-the derivative of the whole of it, energy is kept.
+The stiffness sideways falls with the travel because bent beams give way along their length. The force along x is the
+derivative of the whole energy, so energy is conserved.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from core.record import Record
 
 
 class Suspension(Record):
-    r"""Stiffnesses, how they fall with the travel, and where the shuttle rests across it.
+    r"""Stiffnesses, their fall with the travel, and the rest position of the shuttle across it.
 
     In the order of the fields :math:`k_1`, uN/um, :math:`k_3`, uN/um^3; :math:`k_{y0}`, uN/um, :math:`1/x_y^2`, 1/um^2;
     :math:`k_{\theta0}`, uN um, :math:`1/x_\theta^2`, 1/um^2; :math:`y_2`, 1/um, :math:`\theta_1`, rad/um,
@@ -36,7 +36,7 @@ class Suspension(Record):
 
 @kernel
 def elastic_energy(k: Suspension, x: float, y: float, theta: float) -> float:
-    """Return the energy, uN um: for checks, the loop needs only its derivatives."""
+    """Return the energy, uN um, for checks: the loop needs only its derivatives."""
     off = y - k.sideways * x * x
     turned = theta - (k.turn + k.turn_cubic * x * x) * x
     sideways = k.lateral_stiffness * off * off / (1.0 + x * x * k.lateral_softening)

@@ -82,7 +82,7 @@ class TransferFunction(Shuttle):
         if m != s.mass or b != s.damping or k != s.stiffness:
             s.mass, s.damping, s.stiffness = m, b, k
             s.phi11, s.phi12, s.phi21, s.phi22, s.reach, s.push = held(m, b, k, p.dt_ms)
-        # what an analogue generator does within a sample counts with its mean
+        # the voltage of an analogue generator counts with its mean over the sample
         u = (x.voltage + 4.0 * x.middle + x.end) / 6.0
         if x.middle == x.voltage and x.end == x.voltage:
             u = x.voltage

@@ -1,4 +1,4 @@
-"""What every reference shares: ports, amplitude in volts or micrometres, values between samples."""
+"""Base of the references: ports, amplitude in volts or micrometres, values between samples."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class ReferenceParams(BlockParams):
         """Return the amplitude in volts."""
         if self.amplitude_v is not None:
             return self.amplitude_v
-        assert self.amplitude_um is not None  # _one_amplitude has seen to it
+        assert self.amplitude_um is not None  # _one_amplitude has checked it
         if context.device.static_gain == 0.0:
             raise InputError("needs a device that moves; these stators give no force", "reference.amplitude_um")
         return self.amplitude_um / context.device.static_gain
@@ -41,7 +41,7 @@ class ReferenceParams(BlockParams):
 
 @kernel
 def sine_of(cycles: float) -> float:
-    """Sine of a phase in cycles, kept below one, so that it is as exact after hours as at the start."""
+    """Sine of a phase in cycles; the phase is kept below one, so that it is as exact after hours as at the start."""
     return sin(2.0 * math.pi * (cycles - floor(cycles)))
 
 
@@ -49,7 +49,7 @@ class Waveform(Block):
     """A reference; a subclass gives ``shape(p, t_ms)`` of unit amplitude."""
 
     class Packed(Record):
-        """What every reference reads: ms of a tick, whether it plays between ticks too, amplitude and constant in V."""
+        """Every reference: ms of a tick, whether it also plays between ticks, amplitude and constant in V."""
 
         dt_ms: float
         analogue: float
@@ -57,20 +57,20 @@ class Waveform(Block):
         offset: float
 
     class Ports(BlockPorts):
-        """What plays."""
+        """The reference voltage."""
 
         voltage: float = output("V", "reference voltage now")
         middle: float = output("V", "reference half a sample later", hidden=True)
         end: float = output("V", "reference one sample later", hidden=True)
 
     def __init_subclass__(cls) -> None:
-        """Let the step play the shape."""
+        """Make the step play the shape of the subclass."""
         super().__init_subclass__()
         cls.step = playing(cls.shape)  # type: ignore[assignment]
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Any:
-        """Pack the shared parameters; what plays every N ticks is held over them."""
+        """Pack the shared parameters; a reference that runs every N ticks is held between them."""
         p = cls.Packed.blank(cls.tails(params))
         p.dt_ms = context.dt_ms / context.every
         p.analogue = context.analogue and context.every == 1
@@ -79,7 +79,7 @@ class Waveform(Block):
 
     @classmethod
     def tails(cls, params: Any) -> int:
-        """Return the length of the tail behind what is packed."""
+        """Return the length of the packed record's tail."""
         return 0
 
     @staticmethod
@@ -94,7 +94,7 @@ class Waveform(Block):
 
     @classmethod
     def tones(cls, params: Any, context: Context) -> list[tuple[float, float]]:
-        """Return frequency in Hz and amplitude in V of its lines, a constant at 0 Hz; none when it is broad."""
+        """Return frequency in Hz and amplitude in V of its lines, a constant at 0 Hz; none if the spectrum is broad."""
         lines = [(hz, params.volts(context) * share) for hz, share in cls.lines(params)]
         if not lines:
             return []
@@ -104,12 +104,12 @@ class Waveform(Block):
 
     @classmethod
     def lines(cls, params: Any) -> list[tuple[float, float]]:
-        """Return frequency in Hz and share of the amplitude of every line; none when there are no lines."""
+        """Return frequency in Hz and share of the amplitude of every line; none if there are no lines."""
         return []
 
 
 def line(hz: float, phase_deg: float, share: float = 1.0) -> tuple[float, float]:
-    """Return the line of a sine; at 0 Hz it is the constant its phase makes it."""
+    """Return the line of a sine; at 0 Hz it is a constant given by the phase."""
     return hz, share if hz > 0.0 else share * math.sin(math.radians(phase_deg))
 
 

@@ -40,8 +40,8 @@ def squeezed(p: Capacitive.Packed, side: float, overlap: float, y: float, theta:
 class Capacitive(Sensor):
     r"""Difference of two comb capacitances (2.2.1.1-2), :math:`C_{sp,sn}=C_{s0}\pm\frac{\partial C_s}{\partial x}x`.
 
-    Exact for an ideal comb. The sum does not see the displacement; it sees what narrows gaps on one side,
-    :math:`C\propto\int\frac{d\xi}{g-\eta}+\frac{d\xi}{g+\eta},\;\eta=y+\theta\xi`: lateral motion and rotation,
+    Exact for an ideal comb. The sum does not depend on the displacement; it depends on motions that narrow gaps on one
+    side, :math:`C\propto\int\frac{d\xi}{g-\eta}+\frac{d\xi}{g+\eta},\;\eta=y+\theta\xi`: lateral motion and rotation,
     which no displacement sensor shows.
     """
 
@@ -89,7 +89,7 @@ class Capacitive(Sensor):
         negative_key: float
 
     class Ports(BlockPorts):
-        """The motion in the plane in, capacitances and displacement out."""
+        """Reads the motion in the plane; writes capacitances and displacement."""
 
         true: float = reads("plant.displacement", "um", "true displacement")
         lateral: float = reads("plant.shift?", "um", "true lateral displacement, where the plant has one")
@@ -107,12 +107,12 @@ class Capacitive(Sensor):
 
     @classmethod
     def _gap_um(cls, params: Any, context: Context) -> float:
-        """Return the gap between the fingers it senses with."""
+        """Return the gap between the fingers of the sensing combs."""
         return drawn(context).gap_um if params.gap_um is None else float(params.gap_um)
 
     @classmethod
     def _gradient(cls, params: Any, context: Context) -> float:
-        r"""Return :math:`\partial C_s/\partial x` of one comb, fF/um: that of the device, by one over the gap."""
+        r"""Return :math:`\partial C_s/\partial x` of one comb, fF/um: the device's, scaled by one over the gap."""
         nominal = context.capacitance_gradient * FF_PER_F / UM_PER_M
         return nominal * (drawn(context).gap_um / cls._gap_um(params, context))
 

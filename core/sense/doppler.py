@@ -17,7 +17,7 @@ from core.sense.sensor import Sensor
 class Doppler(Sensor):
     r"""Apparent velocity of the surface under a beam normal to the chip (2.2.3), :math:`h'(x)\,\dot x`.
 
-    The beam sees motion along itself, so only the edges of the polysilicon show, as pulses of alternating sign.
+    The beam measures motion along itself, so only the edges of the polysilicon show, as pulses of alternating sign.
     The integral of the pulses is the height under the beam, the same function of displacement as the light through
     the wafer: it has the same ambiguity of direction. Only the height of a pulse tells the speed.
 
@@ -40,7 +40,7 @@ class Doppler(Sensor):
         leak_ms: float = parameter(20.0, "time constant of the integral", "ms", gt=0, le=1e6)
 
         def packed(self, kind: type[G], context: Context) -> G:
-            """Return the packed grating of the height; what else a record of this kind holds is blank."""
+            """Return the packed grating of the height; all other fields of the record are blank."""
             amplitudes = [-self.depth_um * a for a in self.shape()]
             mean = self.depth_um * (1.0 - self.opening)
             return pack_grating(kind, mean, self.pitch_um, self.offset(context.seed), amplitudes)
@@ -54,14 +54,14 @@ class Doppler(Sensor):
         decay: float
 
     class State(Record):
-        """Whether it has run, the velocity of the sample before, the integral."""
+        """Whether it has run, the velocity of the last sample, the integral."""
 
         started: float
         last: float
         integral: float
 
     class Ports(BlockPorts):
-        """The motion in, what the beam makes of it out."""
+        """Reads the motion; writes the apparent velocity and the height."""
 
         true: float = reads("plant.displacement", "um", "true displacement")
         moving: float = reads("plant.velocity", "um/ms", "true velocity")

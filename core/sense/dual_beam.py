@@ -15,8 +15,8 @@ from core.sense.sensor import Sensor
 class DualBeam(Sensor):
     r"""Intensities of two beams 1 um apart (6.3), :math:`I_a(x)` and :math:`I_b(x)=I_a(x-s)`.
 
-    At :math:`s=\Lambda/4` one is the cosine and the other the sine of the same phase, which a single beam cannot
-    tell: displacement and direction are both in the pair. The text proposes two beams without saying how far apart;
+    At :math:`s=\Lambda/4` one is the cosine and the other the sine of the same phase. The pair therefore gives
+    displacement and direction, which a single beam cannot. The text proposes two beams without saying how far apart;
     the panel "1-micron displacement" of figure 6.3.1.1 is read as the spacing.
     """
 
@@ -37,7 +37,7 @@ class DualBeam(Sensor):
         spacing_um: float
 
     class Ports(BlockPorts):
-        """The displacement in, both beams out."""
+        """Reads the displacement; writes both beams."""
 
         true: float = reads("plant.displacement", "um", "true displacement")
         first: float = output("1", "light of the first beam, full light being 1")

@@ -1,4 +1,4 @@
-r"""The grating in the shuttle under a focused beam: what is transmitted, and how high the surface is.
+r"""The grating in the shuttle under a focused beam: transmitted light, and height of the surface.
 
 A bar grating of pitch :math:`\Lambda` with the share :math:`D` open, smoothed by a Gaussian beam of
 :math:`1/e^2` radius :math:`w`, is open under the beam by
@@ -42,7 +42,7 @@ G = TypeVar("G", bound=Grating)
 
 @lru_cache(256)
 def amplitudes(pitch: float, spot: float, opening: float) -> tuple[float, ...]:
-    """Return the amplitudes a of the harmonics, as many as matter."""
+    """Return the amplitudes a of the harmonics that are large enough to matter."""
     harmonics = []
     for m in range(1, HARMONICS + 1):
         smooth = math.exp(-0.5 * (math.pi * m * spot / pitch) ** 2)
@@ -63,11 +63,11 @@ class GratingParams(SensorParams):
     )
 
     def shape(self) -> list[float]:
-        """Return the amplitudes of the harmonics of the open share, as many as matter."""
+        """Return the amplitudes of the open share's harmonics that are large enough to matter."""
         return list(amplitudes(self.pitch_um, self.spot_um, self.opening))
 
     def offset(self, seed: int) -> float:
-        """Return the position of an opening, given or drawn."""
+        """Return the position of an opening, as given or drawn at random."""
         if self.grating_offset_um is not None:
             return self.grating_offset_um
         return float(self.pitch_um * uniform(key(seed, "sensor.grating"), 0.0))
@@ -109,12 +109,12 @@ class BeamParams(GratingParams):
         return self.pitch_um / (2.0 * math.pi * math.sqrt(2.0)) * math.pow(10.0, -self.snr_db / 20.0)
 
     def packed(self, kind: type[G], context: Context) -> G:
-        """Return the packed grating of the intensity; what else a record of this kind holds is blank."""
+        """Return the packed grating of the intensity; all other fields of the record are blank."""
         return pack_grating(kind, self.mean, self.pitch_um, self.offset(context.seed), self.harmonics)
 
 
 def pack_grating(kind: type[G], mean: float, pitch_um: float, offset_um: float, amplitudes: list[float]) -> G:
-    """Return a Fourier series for the kernels below; what else a record of this kind holds is blank."""
+    """Return a Fourier series for the kernels below; all other fields of the record are blank."""
     p = kind.blank(len(amplitudes))
     p.mean, p.wave, p.offset = mean, 2.0 * math.pi / pitch_um, offset_um
     p.count = len(amplitudes)
@@ -124,7 +124,7 @@ def pack_grating(kind: type[G], mean: float, pitch_um: float, offset_um: float, 
 
 @kernel
 def level(p: Grating, x: float) -> float:
-    """Return the value of a series; what is not a number gives none."""
+    """Return the value of a series; NaN gives NaN."""
     if not math.isfinite(x):
         return math.nan
     now = cos(p.wave * (x - p.offset))

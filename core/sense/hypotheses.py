@@ -1,7 +1,7 @@
-r"""Hypotheses of where a shuttle under one beam is, each a Kalman filter, and their reflections.
+r"""Hypotheses of the position of a shuttle under one beam, each a Kalman filter, and their reflections.
 
-The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`: a hypothesis that passes an
-extreme, or turns near one, has a double that did the opposite.
+The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`. If a hypothesis passes an extreme,
+or turns near one, a second hypothesis with the reflected motion explains the light equally well.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ NO, YES, NEW = 0.0, 1.0, 2.0
 
 
 class Odds(Grating):
-    """What hypotheses are judged by, over the grating: noise, forgetting, odds, what counts as near and as alike."""
+    """Grating, noise, forgetting and odds, and the distances within which hypotheses count as near or as alike."""
 
     noise: float
     forgetting: float
@@ -47,28 +47,28 @@ class Followed(Record):
 
 @kernel
 def alike(p: Odds, hypothesis: Filter, x: float, v: float) -> bool:
-    """Say whether a hypothesis is at a place with a speed."""
+    """Say whether a hypothesis has nearly this position and speed."""
     return bool(abs(hypothesis.x - x) < p.same_x and abs(hypothesis.v - v) < p.same_v)
 
 
 @kernel
 def mirror(p: Odds, s: Followed, hypothesis: Hypothesis, extreme: float) -> None:
-    """Add the reflection of a hypothesis in an extreme of the light, unless there is one like it or better ones."""
+    """Add the reflection of a hypothesis in an extreme of the light, unless a similar one or only better ones exist."""
     x = 2.0 * extreme - hypothesis.x
     v = -hypothesis.v
     low = hypothesis.score - p.reflection_odds
     place = -1
     for i in range(MOST):
-        other = s.hypotheses[i]
-        if other.used == NO:
-            # a free place is better than any
+        rival = s.hypotheses[i]
+        if rival.used == NO:
+            # a free place is better than replacing a hypothesis
             place = i
             low = -math.inf
-        elif alike(p, other, x, v):
+        elif alike(p, rival, x, v):
             return
-        elif other.score < low:
+        elif rival.score < low:
             place = i
-            low = other.score
+            low = rival.score
     if place < 0:
         return
     double = s.hypotheses[place]
@@ -89,7 +89,7 @@ def mirror(p: Odds, s: Followed, hypothesis: Hypothesis, extreme: float) -> None
 def follow(p: Odds, hypothesis: Hypothesis, z: float) -> None:
     """Correct one hypothesis, which has been predicted, and score it."""
     value, first, second = series(p, hypothesis.x)
-    # to second order: near an extreme of the light the slope is nothing and the curvature is all
+    # to second order: near an extreme of the light the slope vanishes and only the curvature counts
     bend = 0.5 * second * hypothesis.p11
     gain = correct(hypothesis, z - value - bend, first, p.noise + 2.0 * bend * bend)
     hypothesis.score = p.forgetting * hypothesis.score + gain
@@ -112,7 +112,7 @@ def turns(p: Odds, s: Followed, hypothesis: Hypothesis, x: float, v: float) -> N
 
 @kernel
 def sift(p: Odds, s: Followed) -> float:
-    """Drop the unlikely and those that have become like a better one; find the best; return how many are left."""
+    """Drop unlikely hypotheses and those similar to a better one; find the best; return how many are left."""
     best = int(s.best)
     high = -math.inf
     for i in range(MOST):
@@ -130,9 +130,9 @@ def sift(p: Odds, s: Followed) -> float:
             continue
         keep = hypothesis.score > high - p.drop
         for j in range(MOST):
-            other = s.hypotheses[j]
-            ahead = other.score > hypothesis.score or (other.score == hypothesis.score and j < i)
-            if j != i and other.used != NO and ahead and alike(p, other, hypothesis.x, hypothesis.v):
+            rival = s.hypotheses[j]
+            ahead = rival.score > hypothesis.score or (rival.score == hypothesis.score and j < i)
+            if j != i and rival.used != NO and ahead and alike(p, rival, hypothesis.x, hypothesis.v):
                 keep = False
         hypothesis.used = YES if keep else NO
         left += 1.0 if keep else 0.0

@@ -1,4 +1,4 @@
-"""The past: what was measured over the last samples, under which voltages; a filter that begins catches up with it."""
+"""Measurements and voltages of the last samples, from which a filter that begins catches up."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.voltage import AppliedPorts, Gathered, gather
 
 
 class Entry(Record):
-    """What was measured at a tick, the voltage before it; a variance of 0 says that nothing was measured."""
+    """Measurement at a tick, and the voltage before it; a variance of 0 marks a tick without a measurement."""
 
     measured: float
     applied: float
@@ -20,16 +20,16 @@ class Entry(Record):
 
 
 KEPT = 32
-"""Entries kept: noise of the speed falls with the power 3/2 of it. A unit that runs more rarely finds none."""
+"""Number of entries: the noise of the speed falls with its power 3/2. A unit that runs more rarely finds no entry."""
 SPEED = 100.0
-"""Variance of the speed a fresh filter assumes in motion, over that at rest: up to the stroke at resonance."""
+"""Variance of the speed that a new filter assumes in motion, over that at rest: it covers the stroke at resonance."""
 
 PAST_PORT = reads("sensor.past", "mixed", "what was measured over the last samples, to begin from")
 
 
 @kernel
 def note(past: Records[Entry], x: AppliedPorts, measured: float, variance: float) -> None:
-    """Write what was measured at this tick, and the voltage before it, over the oldest entry."""
+    """Write the measurement of this tick, and the voltage before it, over the oldest entry."""
     entry = past[int(x.tick) % KEPT]
     entry.measured = measured
     entry.applied = x.applied
@@ -40,9 +40,9 @@ def note(past: Records[Entry], x: AppliedPorts, measured: float, variance: float
 
 @kernel
 def catch_up(p: Tracked, s: Filter, drive: Gathered, past: Records[Entry], x: AppliedPorts) -> bool:
-    """Run a fresh filter through the past, as often as it measures; return whether there was any.
+    """Run a new filter through the past at its own measurement interval; return whether there were any entries.
 
-    The voltage since the last entry that counts, that of this tick too, is left gathered.
+    The voltage since the last entry used, that of this tick included, is left gathered.
     """
     every = int(p.every)
     begun = False
@@ -64,6 +64,6 @@ def catch_up(p: Tracked, s: Filter, drive: Gathered, past: Records[Entry], x: Ap
             correct(s, entry.measured - s.x, 1.0, entry.variance)
     gather(p.tick, drive, x.applied, x.middle, x.end)
     if begun:
-        # whatever the past says, another sensor may be off by as much as before
+        # the past does not reduce the error that another sensor may have
         s.p11 += place
     return begun

@@ -27,10 +27,10 @@ from core.sense.through_wafer import ThroughWafer
 class PeakValley(Sensor):
     r"""Counts extremes of the light, half a pitch each, and interpolates between them (2.2.2, 2.2.3).
 
-    An extreme of full swing is a fringe and the motion goes on; one that is not is a turn. A turn near a fringe
-    extreme looks like a fringe, so the direction gets lost there: for a sine of 4 um in 4 of 10 positions of the
-    grating, with the transient at its start in 9 of 10, whatever the noise. It is shown because the text has no more
-    than this to say of its unit.
+    An extreme of full swing is a fringe and the motion goes on; any other extreme is a turn. A turn near a fringe
+    extreme looks like a fringe, so the unit loses the direction there: for a sine of 4 um in 4 of 10 positions of the
+    grating, with the transient at its start in 9 of 10, at any noise. It is on the bench because the text describes its
+    unit no further than this.
 
     Linear interpolation alone errs by :math:`\tfrac\Lambda2\sqrt{\tfrac1{12}+\tfrac18-\tfrac2{\pi^2}}`, 151 nm at
     4 um.
@@ -54,7 +54,7 @@ class PeakValley(Sensor):
         follow: float = parameter(0.1, "share by which the levels follow each extreme", ge=0, le=1)
 
     class Packed(Grating):
-        """The signal over the grating, whether that is the height, and what counts as an extreme."""
+        """The signal over the grating, whether that is the height, and the threshold of an extreme."""
 
         reads_height: float
         hysteresis: float
@@ -62,7 +62,7 @@ class PeakValley(Sensor):
         follow: float
 
     class State(Record):
-        """Whether it has run and is sure, levels, extreme behind, direction, best way made, way at rest."""
+        """Whether it has run and is sure, levels, last extreme, direction, farthest way so far, way at rest."""
 
         started: float
         sure: float
@@ -74,7 +74,7 @@ class PeakValley(Sensor):
         rest: float
 
     class Ports(BlockPorts):
-        """Two optical signals in, what is made of one out."""
+        """Reads two optical signals; writes the displacement recovered from one of them."""
 
         last: float = LAST_PORT
         light: float = reads("through_wafer.intensity", "1", "light through the wafer")
@@ -89,7 +89,7 @@ class PeakValley(Sensor):
 
     @classmethod
     def _light(cls, params: Any, context: Context) -> ThroughWafer.Params | Doppler.Params:
-        """Return the grating and the beam of the signal it reads, as calibrated."""
+        """Return the calibrated grating and beam of the signal it reads."""
         if params.light == "doppler":
             return calibrated(context, "doppler", Doppler.Params)
         return calibrated(context, "through_wafer", ThroughWafer.Params)
@@ -126,13 +126,13 @@ class PeakValley(Sensor):
             s.rest = -1.0
         value = x.light if p.reads_height == 0.0 else x.height
         if math.isfinite(value):
-            # way made from the extreme behind to the one ahead, 0 to 1 in intensity
+            # share of the way from the last extreme to the next, 0 to 1 in intensity
             even = s.behind - 2.0 * floor(0.5 * s.behind) == 0.0
             start = s.even if even else s.odd
             end = s.odd if even else s.even
             way = (value - start) / (end - start)
             if s.sure == 0.0:
-                # the first change says which way it goes
+                # the first change shows the direction
                 if s.rest < 0.0:
                     s.rest = way
                 if abs(way - s.rest) > p.hysteresis:
@@ -160,7 +160,7 @@ class PeakValley(Sensor):
             if math.isfinite(way):
                 way = min(max(way, 0.0), 1.0)
                 if s.sure != 0.0 and s.best > 1.0 - p.tolerance and way < s.best:
-                    # past a fringe extreme, if only just: the motion is taken to go on
+                    # just past a fringe extreme: the motion is assumed to go on
                     way = 2.0 - way
                 x.displacement = p.offset + half * (s.behind + s.direction * way)
         x.error = x.displacement - x.true

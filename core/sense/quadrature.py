@@ -29,7 +29,7 @@ TWO_PI = 2.0 * math.pi
 def separation(spacing_um: float, pitch_um: float) -> tuple[float, float]:
     """Return cosine and sine of the phase between the beams.
 
-    Beams half a pitch apart tell nothing of the direction; the unit then amplifies noise, but stays finite.
+    Beams half a pitch apart do not show the direction; the unit then amplifies noise, but stays finite.
     """
     delta = TWO_PI * spacing_um / pitch_um
     sine = math.sin(delta)
@@ -42,10 +42,10 @@ class Quadrature(Sensor):
     .. math:: x=x_0+\frac{\Lambda}{2\pi}\,\mathrm{unwrap}\,\mathrm{atan2}(\sin\varphi,\cos\varphi),\qquad
         \sigma_x=\frac{\Lambda}{2\pi\sqrt2}\,\frac{10^{-SNR/20}}{|\sin\delta|}
 
-    the root of the mean over a pitch of :math:`\mathrm{var}\,\varphi=\sigma_I^2
+    This is the root of the mean over a pitch of :math:`\mathrm{var}\,\varphi=\sigma_I^2
     [\cos^2\varphi+\cos^2(\varphi-\delta)]/(c_1\sin\delta)^2`. 14.2 nm at 30 dB for a pitch of 4 um and a spacing of
-    1 um. A spacing that is 0.1 um off turns the circle into an ellipse, an error of
-    about 50 nm at its peak; told the true spacing, the unit corrects it (Heydemann 1981, the phase term only).
+    1 um. A spacing error of 0.1 um turns the circle into an ellipse, an error of
+    about 50 nm at its peak; given the true spacing, the unit corrects it (Heydemann 1981, the phase term only).
     """
 
     title = "Quadrature with unwrap"
@@ -81,7 +81,7 @@ class Quadrature(Sensor):
         turns: float
 
     class Ports(BlockPorts):
-        """The pair in, its phase out."""
+        """Reads the pair; writes its phase as a displacement."""
 
         last: float = LAST_PORT
         first: float = reads("dual_beam.first", "1", "light of the first beam")
@@ -117,7 +117,7 @@ class Quadrature(Sensor):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Take the phase of the pair and unwrap it."""
         cosine = (x.first - p.mean) / p.amplitude
-        # the second beam sees cos(phase - delta)
+        # the second beam measures cos(phase - delta)
         sine = ((x.second - p.mean) / p.amplitude - p.cosine * cosine) / p.sine
         if math.isfinite(cosine) and math.isfinite(sine):
             if s.started == 0.0:

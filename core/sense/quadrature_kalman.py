@@ -46,7 +46,7 @@ class PhasePorts(BlockPorts):
 class QuadratureKalman(Tracker):
     r"""The phase of two beams through a Kalman filter on :math:`(x,\dot x,f)`, unwrapped about its prediction (6.3).
 
-    The filter knows the nominal device and the voltage; what the model lacks goes into the slow force :math:`f`.
+    The filter knows the nominal device and the voltage; the slow force :math:`f` takes up the errors of the model.
     """
 
     title = "Quadrature with Kalman filter"
@@ -76,7 +76,7 @@ class QuadratureKalman(Tracker):
         drive: Gathered
 
     class Ports(PhasePorts, AppliedPorts):
-        """The phase and the voltage in, the displacement out."""
+        """Reads the phase and the voltage; writes the displacement."""
 
         true: float = TRUE_PORT
         displacement: float = RECOVERED_PORT

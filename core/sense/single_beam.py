@@ -46,14 +46,14 @@ class SingleBeam(Tracker):
     r"""Displacement from one beam by several extended Kalman filters that know the device and the voltage.
 
     The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`. So whenever a hypothesis
-    passes an extreme, or turns near one, its reflection :math:`(2x_e-x,-\dot x)` is followed as well, at most ten in
-    all; only one of the two keeps obeying the equation of motion. The likeliest is put out, by a likelihood with a
-    memory of a few periods of the drive. While the stiffness is known to 30 % one filter would do; beyond that it
-    slips, and the reflections bring it back.
+    passes an extreme, or turns near one, the unit also follows its reflection :math:`(2x_e-x,-\dot x)`, at most ten
+    hypotheses in all; only one of the two keeps obeying the equation of motion. The unit puts out the likeliest, by a
+    likelihood with a memory of a few periods of the drive. One filter would suffice while the stiffness is known to 30
+    %; beyond that it slips, and the reflections bring it back.
 
-    It costs as much as the rest of the bench together while it runs. It begins with the place and the speed that
-    one filter makes of what was measured over the last samples.
-    The text leaves the unit to others (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
+    While it runs it costs as much as the rest of the bench together. It begins with the position and the speed that
+    one filter finds from the measurements of the last samples.
+    The text refers to others for the unit (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
     """
 
     title = "Single beam, several hypotheses"
@@ -83,7 +83,7 @@ class SingleBeam(Tracker):
         near_um: float = parameter(0.5, "turns this near an extreme are reflected", "um", ge=0, le=100)
 
     class Packed(Odds):
-        """What the hypotheses are judged by, and the model of the shuttle."""
+        """The odds of the hypotheses, and the model of the shuttle."""
 
         model: Tracked
 
@@ -94,7 +94,7 @@ class SingleBeam(Tracker):
         drive: Gathered
 
     class Ports(LightPorts, AppliedPorts):
-        """The light and the voltage in, the displacement out."""
+        """Reads the light and the voltage; writes the displacement."""
 
         true: float = TRUE_PORT
         displacement: float = RECOVERED_PORT
@@ -129,7 +129,7 @@ class SingleBeam(Tracker):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Whether it has run, the best hypothesis, changes of it, the hypotheses: one."""
+        """Whether it has run, the best hypothesis, its changes, and one hypothesis."""
         s = cls.State.zeros()
         put_at_rest(s.hypotheses[0], params, context)
         s.hypotheses[0].used = YES
@@ -137,7 +137,7 @@ class SingleBeam(Tracker):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Follow every hypothesis and put out the likeliest."""
+        """Follow every hypothesis and put out the displacement of the likeliest."""
         if between_updates(p.model, s.drive, x):
             return
         first = False

@@ -1,4 +1,4 @@
-"""Light through the grating in the shuttle: an intensity, from which others recover the displacement."""
+"""Light through the grating in the shuttle: an intensity, from which other blocks recover the displacement."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class ThroughWafer(Sensor):
     .. math:: I(x)=D+(1-D)T_b+\sum_m(1-T_b)\frac{2}{\pi m}\sin(\pi mD)\,e^{-(\pi mw/\Lambda)^2/2}
         \cos\frac{2\pi m(x-x_0)}{\Lambda}
 
-    It says where in a period the shuttle is, up to a reflection: the direction of the motion is not in it. At a
+    It shows the position of the shuttle within a period, up to a reflection, and not the direction of the motion. At a
     spot of 4.6 um, the unfocused mode of a fibre, the visibility is 0.0006: the two bulk lenses are essential.
     """
 
@@ -42,7 +42,7 @@ class ThroughWafer(Sensor):
         key: float
 
     class Ports(BlockPorts):
-        """The displacement in, the light out."""
+        """Reads the displacement; writes the light."""
 
         true: float = reads("plant.displacement", "um", "true displacement")
         intensity: float = output("1", "detected light, full light being 1")

@@ -1,9 +1,9 @@
-r"""Kalman filter of a shuttle that is known but for a slow force: displacement, velocity, acceleration by it.
+r"""Kalman filter of a known shuttle under an unknown slow force: displacement, velocity, acceleration by that force.
 
 .. math:: x_{i+1}=\Phi x_i+\Gamma u_i+\Gamma_f f_i,\qquad f_{i+1}=f_i+n_i
 
-The device and the voltage are known; what the model lacks is left to :math:`f`, a random walk. A voltage that moves
-adds to :math:`\Gamma u_i` what it is more than at the start of the sample (`core.voltage`).
+The device and the voltage are known; the random walk :math:`f` takes up the errors of the model. A voltage that moves
+adds to :math:`\Gamma u_i` the effect of its difference from the start of the sample (`core.voltage`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ MOTION = Equation("motion", r"\ddot x=\frac{F_e-\beta\dot x-kx}{m}+f,\quad \dot 
 
 
 class Tracked(Record):
-    """A packed model over a sample: transition, effect of a volt and of a force, walk; ticks of a sample; over one."""
+    """A packed model over a sample: transition, effect of a volt and of a force, walk, ticks; and over one tick."""
 
     phi11: float
     phi12: float
@@ -70,7 +70,7 @@ class Tracker(Sensor):
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what the model of mass and spring cannot be."""
+        """Refuse devices that the model of mass and spring does not describe."""
         return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
 
@@ -96,7 +96,7 @@ def model_of(params: TrackerParams, context: Context) -> Tracked:
 
 
 def put_at_rest(s: Filter, params: TrackerParams, context: Context) -> None:
-    """Put a filter at rest at zero, uncertain by 0.1 um, by a tenth of the speed and by the force it may lack."""
+    """Put a filter at rest at zero, uncertain by 0.1 um, a tenth of the speed and the force of the model's errors."""
     square = context.device.stiffness / context.device.mass
     lacking = params.model_error * square * params.stroke_um
     speed = 0.1 * params.stroke_um * math.sqrt(square)
@@ -107,7 +107,7 @@ def put_at_rest(s: Filter, params: TrackerParams, context: Context) -> None:
 
 @kernel
 def between_updates(p: Tracked, drive: Gathered, x: AppliedPorts) -> bool:
-    """Take in the voltage of a tick; say whether a sensor that runs every N of them is between two of its turns."""
+    """Gather the voltage of a tick; say whether a sensor that runs every N of them does not run at this one."""
     gather(p.tick, drive, x.applied, x.middle, x.end)
     return bool(p.every != 1.0 and x.tick % p.every != 0.0)
 

@@ -1,8 +1,8 @@
-r"""Persistency of excitation: whether the parameters can be found from this input at all.
+r"""Persistency of excitation: whether an input lets the parameters be identified.
 
 A regressor is persistently exciting when :math:`\alpha_1I\le\int_t^{t+\delta}\varphi\varphi^T\,d\tau\le\alpha_2I` for
 every t (A.9.1): the smallest eigenvalue of its mean Gram matrix stays above zero. Each tone of the input adds two
-directions, a constant one.
+directions, a constant adds one.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from core.record import Vector
 
 SWEEPS = 10
 ROUNDING = 1e-13
-"""Eigenvalues this much smaller than the largest are 0."""
+"""Eigenvalues below this share of the largest are taken for 0."""
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """How well an input excites a regressor.
+    """The excitation of a regressor by an input.
 
     Parameters
     ----------
@@ -52,15 +52,15 @@ class Excitation:
 def excitation(gram: FloatArray) -> Excitation:
     """Judge a mean Gram matrix, shape (n, n)."""
     size = np.sqrt(np.diag(gram))
-    # One after the other: the product of two small sizes may be too small for a number.
+    # Divide by one size after the other: the product of two small sizes may underflow.
     relative = 0.0 if np.any(size == 0.0) else float(_eigenvalues(gram / size[:, None] / size)[0])
     return Excitation(_eigenvalues(gram), relative)
 
 
 def _eigenvalues(matrix: FloatArray) -> FloatArray:
-    """Return the eigenvalues, smallest first; what is rounding beside the largest is 0."""
-    found = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
-    return np.where(np.abs(found) < ROUNDING * np.abs(found[-1]), 0.0, found)
+    """Return the eigenvalues, smallest first; those that are rounding errors of the largest are set to 0."""
+    values = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
+    return np.where(np.abs(values) < ROUNDING * np.abs(values[-1]), 0.0, values)
 
 
 def gram_of_tones(

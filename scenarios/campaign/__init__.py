@@ -1,1 +1,1 @@
-"""Campaigns: one scenario at many points with many seeds, where the runs are computed, and what they add up to."""
+"""Campaigns: one scenario at many points with many seeds, the processes that compute it, and the sums of its runs."""

@@ -1,7 +1,7 @@
-"""Carries a campaign out: what the run table does not have is computed, in batches, and put into it.
+"""Carries a campaign out: computes in batches the runs that the run table lacks, and puts them into it.
 
-The table is the truth. Whoever dies (a worker, the scheduler, this process), what is in the table is never computed
-again, and what is not is computed by whoever goes on.
+The table alone records progress. If a worker, the scheduler or this process dies, the runs in the table are never
+computed again; the next process that resumes the campaign computes the missing ones.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from scenarios.key import code_version
 from scenarios.schema import Scenario
 
 BATCH_S = 1.0
-"""A batch is worth this much computing, so that sending it costs nothing beside."""
+"""Computing time of a batch, long enough that the cost of sending it does not matter."""
 MAX_BATCH = 500
 AHEAD = 2
 """Batches under way for each worker."""
 LOOK_S = 0.2
 PATIENCE = 5
-"""Losses in a row without one result before a campaign gives up."""
+"""Number of losses in a row, without a result in between, after which a campaign gives up."""
 
 Waiting = tuple[str, Point, int]
 Task = tuple[str, dict[str, Any], int]
@@ -37,14 +37,14 @@ class Table(Protocol):
     """The run table."""
 
     def have(self, keys: Sequence[str]) -> set[str]:
-        """Return which of the keys are there."""
+        """Return the keys that are in the table."""
 
     def put(self, found: Found) -> None:
-        """Add outcomes in one transaction; one that is there already stays as it is."""
+        """Add outcomes in one transaction; an outcome that the table has already stays as it is."""
 
 
 class Stopped(Exception):
-    """The campaign could not go on; what is done stays done."""
+    """The campaign could not go on; the finished runs stay in the table."""
 
 
 def compute(tasks: list[Task], version: str) -> Found:
@@ -57,13 +57,13 @@ def compute(tasks: list[Task], version: str) -> Found:
     """
     if version != code_version():
         raise RuntimeError(f"the worker runs version {code_version()} of the code, the campaign is of {version}")
-    found: Found = []
+    outcomes: Found = []
     scenario, read = None, None
     for key, document, seed in tasks:
         if scenario is None or document is not read:
             scenario, read = Scenario.load(document), document
-        found.append((key, outcome(scenario, seed).model_dump()))
-    return found
+        outcomes.append((key, outcome(scenario, seed).model_dump()))
+    return outcomes
 
 
 class Campaign:
@@ -72,17 +72,17 @@ class Campaign:
     Parameters
     ----------
     sweep : Sweep
-        What to run.
+        The campaign to run.
     table : Table
-        Where results are and go.
+        The table of results, which also takes new ones.
     workers : int
         Processes of this machine.
     scheduler : str
         Address of a Dask scheduler instead.
     niceness : int
-        How far the processes give way.
+        Niceness of the processes.
     on_progress : callable
-        Called with the runs done and the number of all, after every batch.
+        Called after every batch, with the number of runs done and of all runs.
     """
 
     def __init__(
@@ -108,20 +108,20 @@ class Campaign:
         return self.total - len(self._left)
 
     def cancel(self) -> None:
-        """Stop after the batches under way; what is done stays."""
+        """Stop after the batches under way; finished runs stay."""
         self._is_cancelled = True
 
     def abandon(self) -> None:
-        """Stop at once; the runs under way are lost, and computed by whoever goes on."""
+        """Stop at once; the runs under way are lost, and the next process that resumes the campaign computes them."""
         self._is_cancelled = self._is_abandoned = True
 
     def run(self) -> bool:
-        """Compute what is missing; true when everything is there.
+        """Compute the missing runs; return whether all runs are there.
 
         Raises
         ------
         Stopped
-            When nothing computes any more: no worker, or no scheduler.
+            If there is no worker or no scheduler left.
         """
         tasks = {key: (key, point, seed) for key, point, seed in self.sweep.runs()}
         have = self._table.have(list(tasks))
@@ -144,7 +144,7 @@ class Campaign:
         return not self._left
 
     def _work(self, executor: Executor) -> None:
-        """Keep the workers busy until nothing is left; what comes in is put into the table at once."""
+        """Keep the workers busy until no run is left, and put results into the table as they arrive."""
         waiting = deque(self._left.values())
         pending: set[Future[Found]] = set()
         lost: BaseException | None = None
@@ -172,17 +172,17 @@ class Campaign:
                 return
 
     def _batch(self, waiting: deque[Waiting], width: int) -> list[Task]:
-        """Take runs worth `BATCH_S` from the queue, fewer when every worker would not get some."""
+        """Take runs worth `BATCH_S` from the queue, fewer if some worker would otherwise get none."""
         size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, -(-len(waiting) // width))
         chosen = [waiting.popleft() for _ in range(min(size, len(waiting)))]
         points = {id(point): point for _, point, _ in chosen}
         documents = {number: point.document for number, point in points.items()}
         return [(key, documents[id(point)], seed) for key, point, seed in chosen]
 
-    def _take(self, found: Found) -> None:
-        """Put results into the table and learn what a run costs."""
-        self._table.put(found)
-        self._cost = max(fmean(entry["elapsed_s"] for _, entry in found), 1e-6)
-        for key, _ in found:
+    def _take(self, outcomes: Found) -> None:
+        """Put results into the table and update the cost of a run."""
+        self._table.put(outcomes)
+        self._cost = max(fmean(entry["elapsed_s"] for _, entry in outcomes), 1e-6)
+        for key, _ in outcomes:
             self._left.pop(key, None)
         self._on_progress(self.done, self.total)

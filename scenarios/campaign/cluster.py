@@ -1,4 +1,4 @@
-"""A Dask cluster as the place where a campaign is computed."""
+"""A Dask cluster that computes a campaign."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ CONNECT_S = 5.0
 
 
 class Cluster(Executor):
-    """Hands work over to a cluster, and answers for every piece of it.
+    """Hands work over to a cluster, and returns an answer for every piece of it.
 
-    The executor that comes with Dask never answers for a piece that was done but could not be fetched, as when the
-    scheduler goes at that moment; whoever waits for it waits for ever.
+    Dask's own executor never answers for a piece that was done but could not be fetched, for example if the scheduler
+    is lost at that moment: a caller would wait for it for ever.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Cluster(Executor):
 
     @property
     def width(self) -> int:
-        """How many pieces are computed at once: the threads of all workers, 1 while there is none.
+        """Number of pieces computed at once: the threads of all workers, or 1 while there is no worker.
 
         Raises
         ------
@@ -41,7 +41,7 @@ class Cluster(Executor):
         """
         try:
             return max(1, int(sum(self._client.nthreads().values())))
-        except AttributeError as error:  # a client that lost its scheduler has none to ask
+        except AttributeError as error:  # a client that lost its scheduler can ask nobody
             raise ConnectionError(f"the client of the scheduler is {self._client.status}") from error
 
     def submit(self, function: Callable[..., T], /, *arguments: Any, **named: Any) -> Future[T]:
@@ -63,13 +63,13 @@ class Cluster(Executor):
 
         async def bring() -> None:
             try:
-                found, error = await task, None
+                result, error = await task, None
             except Exception as reason:
-                found, error = None, reason
+                result, error = None, reason
             if not answer.set_running_or_notify_cancel():
                 return
             if error is None:
-                answer.set_result(found)
+                answer.set_result(result)
             else:
                 answer.set_exception(error)
 
@@ -78,12 +78,12 @@ class Cluster(Executor):
 
 
 def check_address(address: str) -> None:
-    """Refuse what is no address; a client that is given one does not only refuse it, it leaves half of itself behind.
+    """Refuse a text that is not an address; a client that is given one refuses it too, but leaves threads behind.
 
     Raises
     ------
     InputError
-        When it is none.
+        If it is not an address.
     """
     from distributed.comm.addressing import get_address_host_port
 
@@ -104,12 +104,12 @@ def open_cluster(address: str) -> Iterator[Cluster]:
     OSError
         When it does not answer.
     InputError
-        When it is no address.
+        If it is not an address.
     """
     from distributed import Client
 
     check_address(address)
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told by the futures
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # the futures report lost work
     client = Client(address, timeout=CONNECT_S, set_as_default=False)
     try:
         yield Cluster(client)

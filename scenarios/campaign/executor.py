@@ -1,4 +1,4 @@
-"""Where the runs of a campaign are computed: processes of this machine, or a Dask cluster by its address."""
+"""Executors of the runs of a campaign: processes of this machine, or a Dask cluster by its address."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from scenarios.campaign.cluster import Cluster, open_cluster
 
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
-"""What a future or a connection says when a worker, the scheduler or the line to it is gone."""
+"""Errors of a future or a connection after a worker, the scheduler or the line to it is lost."""
 
 
 @contextmanager
@@ -40,7 +40,7 @@ def open_executor(workers: int, scheduler: str = "", niceness: int = 0) -> Itera
 
 
 def width_of(executor: Executor, workers: int) -> int:
-    """Return how many batches are computed at once: the threads of a cluster, or the processes of the pool.
+    """Return the number of batches computed at once: the threads of a cluster, or the processes of the pool.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def width_of(executor: Executor, workers: int) -> int:
 
 
 def prepare(niceness: int = 0) -> None:
-    """Make a process ready: one thread, at some priority, gone when its parent is; Ctrl-C is left to the parent."""
+    """Set up a process: one thread, its priority, an end with its parent; Ctrl-C is left to the parent."""
     if niceness:
         os.nice(niceness)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -62,6 +62,6 @@ def prepare(niceness: int = 0) -> None:
 
 
 def _follow(wait: Callable[[], None]) -> None:
-    """End this process when another has ended; one that was killed tells nobody."""
+    """End this process after its parent has ended: a parent that was killed cannot tell its children."""
     wait()
     os._exit(1)

@@ -1,4 +1,4 @@
-"""What a campaign keeps of a run: figures, digest, and what its diagnosers said, counted."""
+"""Outcome of a run in a campaign: figures, digest, and the counted verdicts of its diagnosers."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Diagnosis(BaseModel):
     names : list of str
         Hypotheses, in the order of rows (truth) and columns (verdict) of ``confusion``.
     delays : list
-        Samples it took to find each change of the truth; none where it was never found.
+        Samples until each change of the truth was found; None for a change that was never found.
     healthy, faulty : list of int
         Samples by evidence of a fault (the bins between `EVIDENCE`, and one at either end), while the truth was
-        healthy and while it was not; empty when no hypothesis is that of a healthy device.
+        healthy and while it was not; empty if no hypothesis is that of a healthy device.
     """
 
     names: list[str]
@@ -56,13 +56,13 @@ class Outcome(BaseModel):
 
 
 def outcome(scenario: Scenario, seed: int) -> Outcome:
-    """Run a scenario and count what came out; one that cannot be run says why."""
+    """Run a scenario and count its results; a scenario that cannot be run gives its error."""
     began = time.perf_counter()
     try:
         result = run(scenario, seed)
     except InputError as error:
         return Outcome(seed=seed, error=str(error))
-    found = Outcome(
+    summed = Outcome(
         seed=seed,
         digest=result.digest,
         ticks=result.board.tick,
@@ -71,12 +71,12 @@ def outcome(scenario: Scenario, seed: int) -> Outcome:
         metrics={name: value for name, value in result.metrics.items() if math.isfinite(value)},
         diagnosis={name: _diagnosis(result, name, scores) for name, scores in result.board.scores().items()},
     )
-    found.elapsed_s = time.perf_counter() - began
-    return found
+    summed.elapsed_s = time.perf_counter() - began
+    return summed
 
 
 def _diagnosis(result: Result, name: str, scores: Scores) -> Diagnosis:
-    found = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
+    counted = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
     params: Any = result.board.spec.diagnosers[name].params
     healthy = next(
         (
@@ -88,13 +88,13 @@ def _diagnosis(result: Result, name: str, scores: Scores) -> Diagnosis:
     )
     columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
     if healthy is None or columns[0] not in {signal.name for signal in result.kept} or not len(result.outputs):
-        return found
+        return counted
     probability = np.array([result.signal(column) for column in columns])
     bins = np.digitize(_log_odds(probability, healthy), EVIDENCE)
     is_healthy = result.signal(f"{name}.truth") == healthy
-    found.healthy = np.bincount(bins[is_healthy], minlength=len(EVIDENCE) + 1).tolist()
-    found.faulty = np.bincount(bins[~is_healthy], minlength=len(EVIDENCE) + 1).tolist()
-    return found
+    counted.healthy = np.bincount(bins[is_healthy], minlength=len(EVIDENCE) + 1).tolist()
+    counted.faulty = np.bincount(bins[~is_healthy], minlength=len(EVIDENCE) + 1).tolist()
+    return counted
 
 
 def _log_odds(probability: FloatArray, healthy: int) -> FloatArray:

@@ -47,7 +47,7 @@ class Seeds(Table):
 
 
 class Range(Table):
-    """Where a value may lie."""
+    """Range of a value."""
 
     min: float
     max: float
@@ -76,7 +76,7 @@ class LatinHypercube(Table):
     ranges: dict[str, Range] = Field(min_length=1, max_length=MAX_RANGES)
 
     def values(self) -> list[Values]:
-        """Return the points: each value has one in every stratum, in an order of its own."""
+        """Return the points: each value has one point in every stratum, in an order of its own."""
         generator = np.random.default_rng(self.seed)
         columns = [
             entry.at((generator.permutation(self.points) + generator.random(self.points)) / self.points)
@@ -86,7 +86,7 @@ class LatinHypercube(Table):
 
 
 class ProcessSpread(Table):
-    """Devices of the scenario's drawing as a process would make them; standard deviations."""
+    """Standard deviations of a process that makes devices of the scenario's drawing."""
 
     devices: int = Field(ge=1, le=MAX_POINTS)
     seed: int = Field(1, ge=0)
@@ -139,17 +139,17 @@ class Point:
 
     @property
     def document(self) -> dict[str, Any]:
-        """The scenario with its values; made anew each time, as thousands of them take much room."""
+        """The scenario with its values; built anew at each call, because thousands of them take much memory."""
         return write(self.base, self.values) if self.values else self.base
 
 
 class Sweep:
-    """A campaign, checked but for its points.
+    """A campaign, checked except for its points.
 
     Attributes
     ----------
     document : dict
-        What it was read from.
+        The document it was read from.
     head : Head
         Its tables.
     points : list of Point
@@ -188,20 +188,21 @@ class Sweep:
 
     @staticmethod
     def longest(points: Sequence[Point]) -> Scenario:
-        """Check some points, which takes a millisecond each; return the longest of them.
+        """Check some points, one millisecond each; return the longest of them.
 
         Raises
         ------
         InputError
-            For the first that is no valid scenario.
+            For the first point that is not a valid scenario.
         """
         return max(
-            (Scenario.load(point.document) for point in points), key=lambda found: found.samples or DEFAULT_SAMPLES
+            (Scenario.load(point.document) for point in points),
+            key=lambda scenario: scenario.samples or DEFAULT_SAMPLES,
         )
 
     @cached_property
     def contents(self) -> list[str]:
-        """The hash of every point, of which the keys of its runs are made; a tenth of a millisecond each."""
+        """The hash of every point, from which the keys of its runs are built; a tenth of a millisecond each."""
         return [content_hash(point.document) for point in self.points]
 
     @property
@@ -220,7 +221,7 @@ class Sweep:
                 yield run_key(content, seed), point, seed
 
     def _axes(self) -> list[list[tuple[Values, Values]]]:
-        """Return what is combined: for each axis its steps, each with labels and values."""
+        """Return the axes to combine: the steps of each, with their labels and values."""
         head = self.head
         axes: list[list[tuple[Values, Values]]] = []
         if head.variants:
@@ -235,12 +236,12 @@ class Sweep:
         if head.latin_hypercube is not None:
             axes.append([(values, values) for values in head.latin_hypercube.values()])
         if head.process_spread is not None:
-            found = head.process_spread.values(self.base)
-            axes.append([({"device": float(number)}, values) for number, values in enumerate(found, 1)])
+            drawn = head.process_spread.values(self.base)
+            axes.append([({"device": float(number)}, values) for number, values in enumerate(drawn, 1)])
         return axes
 
     def _check_paths(self, axes: list[list[tuple[Values, Values]]]) -> None:
-        """Refuse what would make the labels of points untrue: seeds that are not used, values written over."""
+        """Refuse settings that make the labels of points wrong: seeds that are not used, values written over."""
         head = self.head
         ranges = head.latin_hypercube.ranges if head.latin_hypercube is not None else {}
         tables = {"set": head.set, "grid": head.grid, "latin_hypercube.ranges": ranges}
@@ -269,7 +270,7 @@ FIELDS = tuple("schema" if name == "schema_" else name for name in Head.model_fi
 
 
 def _distinct(labels: list[str | float], field: str, what: str) -> None:
-    """Refuse what stands twice: its points would be counted twice in every table."""
+    """Refuse repeated entries: their points would count twice in every table."""
     seen: set[str | float] = set()
     for position, label in enumerate(labels):
         if label in seen:
@@ -278,5 +279,5 @@ def _distinct(labels: list[str | float], field: str, what: str) -> None:
 
 
 def _label(value: Any) -> str | float:
-    """Say a value of a grid in a table."""
+    """Write a value of a grid for a table."""
     return value if isinstance(value, str | int | float) and not isinstance(value, bool) else str(value)

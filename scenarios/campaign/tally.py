@@ -56,7 +56,7 @@ class PointTally(BaseModel):
 
 
 class Sums:
-    """Running sums of a point; adding one run after another takes no memory but this."""
+    """Running sums of a point: adding further runs takes no more memory."""
 
     def __init__(self) -> None:
         self.runs = self.ok = self.tripped = 0
@@ -81,7 +81,7 @@ class Sums:
             self._diagnosis.setdefault(name, _DiagnosisSums(found)).add(found)
 
     def tally(self, labels: dict[str, str | float]) -> PointTally:
-        """Return what was added up."""
+        """Return the tally of the runs added so far."""
         return PointTally(
             labels=labels,
             runs=self.runs,
@@ -110,12 +110,12 @@ class _DiagnosisSums:
         self._missed = 0
         self._evidence = np.zeros((2, len(EVIDENCE) + 1), np.int64)
 
-    def add(self, found: Diagnosis) -> None:
-        self._confusion += np.array(found.confusion)
-        self._delays.update(delay for delay in found.delays if delay is not None)
-        self._missed += sum(delay is None for delay in found.delays)
-        if found.healthy:
-            self._evidence += np.array([found.healthy, found.faulty])
+    def add(self, diagnosis: Diagnosis) -> None:
+        self._confusion += np.array(diagnosis.confusion)
+        self._delays.update(delay for delay in diagnosis.delays if delay is not None)
+        self._missed += sum(delay is None for delay in diagnosis.delays)
+        if diagnosis.healthy:
+            self._evidence += np.array([diagnosis.healthy, diagnosis.faulty])
 
     def tally(self) -> DiagnosisTally:
         return DiagnosisTally(
@@ -149,7 +149,7 @@ def receiver_operating_characteristic(healthy: FloatArray, faulty: FloatArray) -
 
 
 def tally(sweep: Sweep, outcomes: dict[str, Outcome] | Iterable[tuple[str, Outcome]]) -> list[PointTally]:
-    """Add up a campaign, point by point; what has not been run yet is left out.
+    """Add up a campaign, point by point, without the runs that are still to come.
 
     Parameters
     ----------
@@ -165,4 +165,4 @@ def tally(sweep: Sweep, outcomes: dict[str, Outcome] | Iterable[tuple[str, Outco
     for key, outcome in outcomes.items() if isinstance(outcomes, dict) else outcomes:
         for position in positions.get(key, ()):
             sums[position].add(outcome)
-    return [one.tally(point.labels) for one, point in zip(sums, sweep.points, strict=True)]
+    return [total.tally(point.labels) for total, point in zip(sums, sweep.points, strict=True)]

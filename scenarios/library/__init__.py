@@ -13,8 +13,8 @@ from scenarios.schema import Scenario
 def ids() -> tuple[str, ...]:
     """Return the id of every scenario in the order of the text: chapters, then appendices. It names the file."""
     names = [entry.name for entry in files(__name__).iterdir() if entry.name.endswith(".toml")]
-    found = [name.removesuffix(".toml") for name in names]
-    return tuple(sorted(found, key=lambda name: (name.startswith("app"), not name.startswith("first"), name)))
+    ids = [name.removesuffix(".toml") for name in names]
+    return tuple(sorted(ids, key=lambda name: (name.startswith("app"), not name.startswith("first"), name)))
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Figures of what happens across the drive: folds, contact, pull-in."""
+"""Figures of the motion across the drive: folds, contact, pull-in."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from core.plant.plane import Plane
 from core.plant.suspension import Suspension
 
 SMALL_UM = 1.0
-"""Travel at which the rotation is read."""
+"""Travel at which the rotation is measured."""
 
 
 def lateral_metrics(board: Board) -> dict[str, float]:
@@ -49,8 +49,8 @@ def lateral_metrics(board: Board) -> dict[str, float]:
 def device_pull_in(device: Device, stiffness_scale: float = 1.0) -> float | None:
     r"""Return the bias of pull-in of a device, perfectly aligned; none where no comb could pull it in.
 
-    A device without a drawing has the beams of LCR-350. It goes with the root of the stiffness against rotation,
-    of which ``stiffness_scale`` is what environment and faults make of it, over nominal.
+    A device without a drawing has the beams of LCR-350. The bias is proportional to the root of the stiffness against
+    rotation; ``stiffness_scale`` is the factor of environment and faults on that stiffness.
     """
     if device.capacitance_gradient == 0.0:
         return None
@@ -69,15 +69,15 @@ def geometry_pull_in(geometry: Geometry, gradient_f_m: float) -> float:
 def _planar(p: Plane.Packed, state: Plane.State, far_um: float) -> dict[str, float]:
     suspension = Suspension(state.suspension.array.copy())
     force, stators = planar_force(p, suspension), stators_of(p)
-    found = _folded(fold(force, stators, lambda q: float(worst(p, float(q[1]), float(q[2]))), 3))
-    found |= _touched(float(state.touched_ms))
+    figures = _folded(fold(force, stators, lambda q: float(worst(p, float(q[1]), float(q[2]))), 3))
+    figures |= _touched(float(state.touched_ms))
     pull_in = bias_pull_in(p, suspension)
     if pull_in is not None:
-        found["device.pull_in_v"] = pull_in
+        figures["device.pull_in_v"] = pull_in
     held = voltage_at(force, SMALL_UM, np.zeros(4), stators)
     if held is not None:
-        found["lateral.far_ratio"] = 1.0 + abs(float(held[0][2])) * far_um / SMALL_UM
-    return found
+        figures["lateral.far_ratio"] = 1.0 + abs(float(held[0][2])) * far_um / SMALL_UM
+    return figures
 
 
 def _folded(end: Fold | None) -> dict[str, float]:

@@ -37,17 +37,17 @@ def device_metrics(spec: Spec) -> dict[str, float]:
     params = spec.environment.params
     stiffness, damping = Environment.scales(params, spec.context())
     temperature = spec.context().temperature_k
-    found = {f"device.{name}": value for name, value in spec.device.metrics(stiffness, damping, temperature).items()}
-    return {**found, "environment.stiffness_scale": stiffness, "environment.damping_scale": damping}
+    figures = {f"device.{name}": value for name, value in spec.device.metrics(stiffness, damping, temperature).items()}
+    return {**figures, "environment.stiffness_scale": stiffness, "environment.damping_scale": damping}
 
 
 def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
-    """Return how well the shuttle followed the model, and at what effort.
+    """Return the errors of the shuttle against the model, and the effort.
 
-    The settling time is the last moment the error left the band of 2 % of the model's amplitude, counted from
-    ``metrics.since_ms``; effort is the ratio of the fundamental of the applied
-    voltage to that of the reference in the tail, the displacement ratio the same of shuttle and model. The overshoot
-    is that over the last step of a reference that is constant in the tail, as a share of what the model moves by.
+    The settling time is the last moment at which the error left the band of 2 % of the model's amplitude, counted from
+    ``metrics.since_ms``. The effort is the ratio of the fundamental of the applied voltage to that of the reference in
+    the tail; the displacement ratio compares shuttle and model in the same way. The overshoot is measured at the last
+    step of a reference that is constant in the tail, as a share of the model's motion.
     """
     dt = board.dt_ms
     x, model = trace["plant.displacement"], trace["model.displacement"]
@@ -57,7 +57,7 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     swing = float(np.max(np.abs(model[tail])))
     outside = np.flatnonzero(np.abs(error[start:]) > SETTLED * swing)
     settling = (float(outside[-1]) + 1.0) * dt if len(outside) else 0.0
-    found = {
+    figures = {
         "control.rms_error_um": _rms(error[start:]),
         "control.tail_rms_error_um": _rms(error[tail]),
         "control.peak_error_um": float(np.max(np.abs(error[start:]))),
@@ -69,26 +69,26 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     rise = float(np.mean(model[tail])) - before
     if abs(rise) > 1e-9 and np.ptp(r[tail]) == 0.0:
         peak = float(np.max((x[step:] - before) * math.copysign(1.0, rise)))
-        found["control.overshoot_pct"] = 100.0 * (peak / abs(rise) - 1.0)
+        figures["control.overshoot_pct"] = 100.0 * (peak / abs(rise) - 1.0)
     if (peak_of := first_peak(x, model)) is not None:
-        found["control.first_peak_pct"] = peak_of
+        figures["control.first_peak_pct"] = peak_of
     frequency = board.spec.tone_hz
     if frequency:
         first = len(u) - len(u[tail])
         asked = abs(fundamental(r[tail], frequency, dt, first))
         if asked > 0.0:
-            found["control.effort_ratio"] = abs(fundamental(u[tail], frequency, dt, first)) / asked
+            figures["control.effort_ratio"] = abs(fundamental(u[tail], frequency, dt, first)) / asked
         phasor = fundamental(x[tail], frequency, dt, first)
         wanted = abs(fundamental(model[tail], frequency, dt, first))
         if wanted > 0.0:
-            found["control.displacement_ratio"] = abs(phasor) / wanted
-        found["control.amplitude_um"] = abs(phasor)
-        found["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
-    return {name: value for name, value in found.items() if math.isfinite(value)}
+            figures["control.displacement_ratio"] = abs(phasor) / wanted
+        figures["control.amplitude_um"] = abs(phasor)
+        figures["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
+    return {name: value for name, value in figures.items() if math.isfinite(value)}
 
 
 def first_peak(x: FloatArray, model: FloatArray) -> float | None:
-    """Return by how much the first peak is higher than the model's, %; nothing when the model does not turn twice."""
+    """Return the excess of the first peak over the model's, %; nothing when the model does not turn twice."""
     slope = np.sign(np.diff(model))
     moving = np.flatnonzero(slope)
     if not len(moving):
@@ -104,29 +104,29 @@ def first_peak(x: FloatArray, model: FloatArray) -> float | None:
 def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str, float]:
     """Return the score of one diagnoser.
 
-    A step that was never found counts with its whole length in the mean delay, and in ``missed_steps``.
+    A step that was never figures counts with its whole length in the mean delay, and in ``missed_steps``.
     """
     prefix = f"diagnosis.{name}"
     counted = [length if delay is None else delay for delay, length in zip(scores.delays, lengths, strict=False)]
-    found: dict[str, float] = {
+    figures: dict[str, float] = {
         f"{prefix}.correct_fraction": scores.correct_fraction,
         f"{prefix}.false_switches": float(scores.false_switches),
         f"{prefix}.missed_steps": float(sum(delay is None for delay in scores.delays)),
     }
     if len(counted) > 1:
-        found[f"{prefix}.mean_delay_samples"] = float(np.mean(counted[1:]))
+        figures[f"{prefix}.mean_delay_samples"] = float(np.mean(counted[1:]))
     for step, delay in enumerate(counted, 1):
-        found[f"{prefix}.delay_samples.{step}"] = float(delay)
+        figures[f"{prefix}.delay_samples.{step}"] = float(delay)
     if scores.nis is not None and math.isfinite(scores.nis):
-        found[f"{prefix}.nis"] = scores.nis
-    return found
+        figures[f"{prefix}.nis"] = scores.nis
+    return figures
 
 
 def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch: Stretch) -> dict[str, float]:
-    """Return how well one identifier knows the device, and whether the input lets it.
+    """Return the errors of one identifier, and whether the input lets it identify the device.
 
     ``error_pct`` is the mean over the tail of the largest relative error of a coefficient; the settling time is the
-    last moment it was above 10 %, counted from ``metrics.since_ms``. ``mass_error_pct`` and the others are those of the
+    last moment it was above 10 %, counted from ``metrics.since_ms``. ``mass_error_pct`` and the like are errors of the
     estimates at the end.
     """
     prefix = f"identify.{name}"
@@ -153,17 +153,17 @@ def step_lengths(truth: FloatArray) -> list[int]:
 
 def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
     """Return every figure of a run."""
-    found = device_metrics(board.spec) | lateral_metrics(board)
+    figures = device_metrics(board.spec) | lateral_metrics(board)
     if board.tick > 1:
-        found |= control_metrics(board, trace, stretch)
-        found |= sensing_metrics(board, trace, stretch)
+        figures |= control_metrics(board, trace, stretch)
+        figures |= sensing_metrics(board, trace, stretch)
     for name in board.spec.identifiers if board.tick > 1 else ():
-        found |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
+        figures |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
     scores = board.scores()
     for name in board.spec.diagnosers:
         if name in scores:
-            found |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
-    return found | verdict_metrics(board, trace)
+            figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
+    return figures | verdict_metrics(board, trace)
 
 
 def _rms(values: FloatArray) -> float:

@@ -1,4 +1,4 @@
-"""What a tick of a board costs with each plant there is, measured."""
+"""Measured cost of a tick of a board with each plant."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PlantCost:
 
 
 def plant_costs(checkpoint: Checkpoint) -> list[PlantCost]:
-    """Measure every plant on copies of a board; the board itself does not notice."""
+    """Measure every plant on copies of a board; the board itself does not change."""
     return [_measure(name, block.title, checkpoint) for name, block in blocks("plant").items()]
 
 

@@ -1,4 +1,4 @@
-"""Which part of a run its figures are taken from."""
+"""The part of a run from which its figures are taken."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class Stretch(Table):
     tail_share: float = Field(TAIL, gt=0, le=1, description="share of the run that counts as its tail")
 
     def start(self, samples: int, dt_ms: float) -> int:
-        """Return the first sample that counts of so many; the last one of a run that ends before."""
+        """Return the first of a number of samples that counts; the last sample if the run ends before it."""
         return min(round(self.since_ms / dt_ms), samples - 1)
 
     def tail(self, samples: int) -> slice:
-        """Return the tail of so many samples, one at least."""
+        """Return the tail of a number of samples, at least one."""
         return slice(min(int(samples * (1.0 - self.tail_share)), samples - 1), None)

@@ -22,7 +22,7 @@ NEAR = 1.5
 
 @dataclass(frozen=True)
 class Sweep:
-    """What was measured, by rising frequency, and what it says of the device."""
+    """The measured response, by rising frequency, and the device identified from it."""
 
     tones: list[Tone]
     found: Identified
@@ -39,10 +39,10 @@ def sweep_sine(
     stop_hz: float | None = None,
     most_ticks: int | None = None,
 ) -> Sweep:
-    """Identify what a board drives, as it is now, on a copy; the board itself does not notice.
+    """Identify the device of a board in its present state, on a copy; the board itself does not change.
 
-    A first pass of sines spans the range, a second one the resonance found. At each tone the transient is waited
-    for, then voltage and measured displacement are fitted with that tone.
+    A first pass of sines spans the range, a second one spans the resonance found. At each tone the sweep waits for the
+    transient, then fits that tone to voltage and measured displacement.
 
     Parameters
     ----------
@@ -114,12 +114,12 @@ def _measure(board: Board, hertz: float, amplitude_v: float, cycles: float, sett
 def _record(board: Board, ticks: int) -> tuple[FloatArray, FloatArray]:
     """Advance and return voltage and measured displacement."""
     columns = [board.signals.index(name) for name in ("drive.voltage", "sensor.displacement")]
-    found = np.empty((ticks, 2))
+    record = np.empty((ticks, 2))
     done = 0
     while done < ticks:
         rows = board.advance(ticks - done)
         if board.trip is not None:
             raise InputError(f"the board tripped: {board.trip.reason}", "study.amplitude_v", "lower the amplitude")
-        found[done : done + rows.count] = rows.outputs[:, columns]
+        record[done : done + rows.count] = rows.outputs[:, columns]
         done += rows.count
-    return found[:, 0], found[:, 1]
+    return record[:, 0], record[:, 1]

@@ -1,4 +1,4 @@
-"""Where a board as it is now pulls in: folds under a slow drive, and the boundary in displacement and velocity."""
+"""The unstable region of a board: folds under a slow drive, and the boundary in displacement and velocity."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.plant.suspension import Suspension
 
 @dataclass(frozen=True)
 class UnstableRegion:
-    """Folds to either side, and the boundary with the drive held; neither where the plant cannot pull in."""
+    """Folds to either side, and the boundary with the drive held; both are empty if the plant cannot pull in."""
 
     plant: str
     folds: list[Fold]

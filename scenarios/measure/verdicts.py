@@ -1,4 +1,4 @@
-"""Figures of what is not a choice between hypotheses: verdicts, alarms, regions."""
+"""Figures of verdicts, alarms and regions, which do not choose between hypotheses."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ TRACED_VERDICTS = ("truth", "winner", "verdict", "alarm", "region", "loss", "est
 def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, float]:
     """Return the figures of every diagnoser that has them; stretches run from one fault or healing to the next.
 
-    ``detected``, ``isolated``, ``ambiguous`` and ``unknown`` are shares of the stretches with something wrong, by the
-    verdict at their end; isolated counts when it is the right one. ``detection_samples`` is the mean delay from the
-    start of such a stretch after a healthy one to the first alarm, and ``false_alarm_fraction`` the share of healthy
-    samples with an alarm, the second half of each stretch only. ``region.<step>`` and ``loss.<step>`` are the
+    ``detected``, ``isolated``, ``ambiguous`` and ``unknown`` are shares of the stretches with a fault, by the
+    verdict at their end; isolated counts only if the fault is the right one. ``detection_samples`` is the mean delay
+    from the start of such a stretch after a healthy one to the first alarm, and ``false_alarm_fraction`` the share of
+    healthy samples with an alarm, the second half of each stretch only. ``region.<step>`` and ``loss.<step>`` are the
     performance at the end of each stretch.
     """
-    found: dict[str, float] = {}
+    figures: dict[str, float] = {}
     edges = _edges(board)
     for name in board.spec.diagnosers:
         prefix = f"diagnosis.{name}"
         verdict, alarm = trace.get(f"{name}.verdict"), trace.get(f"{name}.alarm")
         if verdict is not None:
-            found |= _verdicts(prefix, verdict, trace[f"{name}.winner"], trace[f"{name}.truth"], edges)
+            figures |= _verdicts(prefix, verdict, trace[f"{name}.winner"], trace[f"{name}.truth"], edges)
             alarm = (verdict != NORMAL).astype(np.float64)
         if alarm is not None:
-            found |= _alarms(prefix, alarm, trace[f"{name}.truth"], edges)
+            figures |= _alarms(prefix, alarm, trace[f"{name}.truth"], edges)
         region = trace.get(f"{name}.region")
         if region is not None:
             loss = trace[f"{name}.loss"]
             for step, (_, end) in enumerate(pairwise(edges), 1):
-                found[f"{prefix}.region.{step}"] = float(region[end - 1])
-                found[f"{prefix}.loss.{step}"] = float(loss[end - 1])
+                figures[f"{prefix}.region.{step}"] = float(region[end - 1])
+                figures[f"{prefix}.loss.{step}"] = float(loss[end - 1])
         if f"{name}.estimate" in trace:
-            found[f"{prefix}.estimate"] = float(trace[f"{name}.estimate"][-1])
-    return found
+            figures[f"{prefix}.estimate"] = float(trace[f"{name}.estimate"][-1])
+    return figures
 
 
 def _edges(board: Board) -> list[int]:
@@ -78,5 +78,5 @@ def _alarms(prefix: str, alarm: FloatArray, truth: FloatArray, edges: list[int])
             raised = np.flatnonzero(alarm[start:end])
             delays.append(float(raised[0]) if len(raised) else float(end - start))
         was_healthy = healthy
-    found = {f"{prefix}.detection_samples": float(np.mean(delays))} if delays else {}
-    return found | ({f"{prefix}.false_alarm_fraction": false / quiet} if quiet else {})
+    figures = {f"{prefix}.detection_samples": float(np.mean(delays))} if delays else {}
+    return figures | ({f"{prefix}.false_alarm_fraction": false / quiet} if quiet else {})

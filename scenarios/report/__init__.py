@@ -1,1 +1,1 @@
-"""What people are given of a run or a campaign: traces, reports, drawings, scripts."""
+"""Files of a run or a campaign for people: traces, reports, drawings, scripts."""

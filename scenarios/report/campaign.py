@@ -106,8 +106,8 @@ def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[s
 
 def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
     """Show one diagnoser: curves of all points, then confusion point by point."""
-    found = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
-    drawn = found[:MOST_CURVES]
+    entries = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
+    drawn = entries[:MOST_CURVES]
     curves = [
         Series(f"{label} (area {format_si(entry.roc.area, '')})", entry.roc.false_alarm, entry.roc.detection)
         for label, entry in drawn
@@ -119,12 +119,12 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
         parts.append(f"<div>{chart(title, 'false alarms', 'detections', curves, (0.0, 1.0), (0.0, 1.0))}</div>")
     delays = [_delay_curve(label, entry) for label, entry in drawn if entry.delays]
     if delays:
-        longest = max(one.x[-1] for one in delays)
-        drawing = chart("Detection delay", "samples", "share found by then", delays, (0.0, longest), (0.0, 1.0))
+        longest = max(curve.x[-1] for curve in delays)
+        drawing = chart("Detection delay", "samples", "share entries by then", delays, (0.0, longest), (0.0, 1.0))
         parts.append(f"<div>{drawing}</div>")
     parts.append("</div>")
-    if len(found) > MOST_CURVES:
-        parts.append(f"<p>Of {len(found)} points the first {MOST_CURVES} are drawn; the table of runs has all.</p>")
+    if len(entries) > MOST_CURVES:
+        parts.append(f"<p>Of {len(entries)} points the first {MOST_CURVES} are drawn; the table of runs has all.</p>")
     for label, entry in drawn:
         total = [max(1, sum(row)) for row in entry.confusion]
         rows = [
@@ -138,7 +138,7 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
 
 
 def _delay_curve(label: str, entry: DiagnosisTally) -> Series:
-    """Return the share of changes found within some samples; what was never found keeps it below one."""
+    """Return the share of changes found within some samples; changes that were never found keep it below one."""
     total = sum(entry.delays.values()) + entry.missed
     x, y, sofar = [0.0], [0.0], 0
     for delay, count in sorted(entry.delays.items()):

@@ -46,12 +46,12 @@ def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
 
 
 def say(value: Any) -> str:
-    """Say a cell."""
+    """Write a cell of a table."""
     return format_short(value, "", 6) if isinstance(value, float) else str(value)
 
 
 def as_toml(document: dict[str, Any]) -> str:
-    """Say a document as TOML, which knows no null."""
+    """Write a document as TOML, which has no null."""
     return tomlkit.dumps(_without_null(document))
 
 

@@ -1,4 +1,4 @@
-"""What is kept of a run: its trace, its summary, a report, a drawing, and a script that repeats it."""
+"""Files kept of a run: its trace, its summary, a report, a drawing, and a script that repeats it."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) 
     result : Result
         The run, of the first seed if there are several.
     summary : dict
-        What is told of it.
+        Its summary.
     seeds : list of int
         All its seeds.
     stem : Path
-        Where they go, without the ending; the folder is made.
+        Path of the files without their ending; the folder is created.
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
     document = json.loads(json.dumps(result.scenario.document, default=str))

@@ -15,9 +15,9 @@ from scenarios.run import Result
 
 MOST_EVENTS = 300
 CLOSE_UP = 300
-"""Ticks at the end that are drawn one by one."""
+"""Number of ticks at the end that are drawn one by one."""
 DONE = ("inject", "heal", "set", "switch", "reset_trip", "tripped")
-"""What is marked on the charts."""
+"""Kinds of log entries that are marked on the charts."""
 CHARTS = (
     ("Displacement", ("model.displacement", "plant.displacement", "sensor.displacement")),
     ("Voltage", ("reference.voltage", "drive.voltage")),
@@ -33,7 +33,7 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
     result : Result
         The run; with several seeds the first.
     summary : dict
-        What is told of it, means over the seeds if there are several.
+        Its summary, with means over the seeds if there are several.
     """
     head = result.scenario.head
     seeds = summary.get("seeds")
@@ -49,7 +49,7 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
         body.append(f'<p class="miss">Tripped at {format_in(trip["time_ms"], "ms", 3)}: {escape(trip["reason"])}</p>')
     body += [f'<p class="miss">Warning: {escape(text)}</p>' for text in summary["warnings"]]
     body.append(_expectations(summary["expectations"]))
-    body.append(f'<div class="side">{"".join(f"<div>{one}</div>" for one in _charts(result))}</div>')
+    body.append(f'<div class="side">{"".join(f"<div>{drawing}</div>" for drawing in _charts(result))}</div>')
     body += _verdicts(result)
     spread = summary.get("metrics_std", {})
     figures = [
@@ -89,36 +89,36 @@ def _charts(result: Result) -> list[str]:
     span = (0.0, float(time_ms[-1]))
     signals = {signal.name: signal for signal in result.kept}
     marks = [Mark(entry.time_ms, entry.text) for entry in result.board.log if entry.kind in DONE and entry.tick]
-    found = []
+    charts = []
     for title, names in CHARTS:
         chosen = [name for name in names if name in signals and np.any(result.signal(name))]
         lines = [Series(name, *thin(time_ms, result.signal(name))) for name in chosen]
         if lines:
             label = ", ".join(dict.fromkeys(signals[name].unit for name in chosen))
-            found.append(chart(title, "time, ms", label, lines, span, marks=marks))
+            charts.append(chart(title, "time, ms", label, lines, span, marks=marks))
             if len(time_ms) > 4 * CLOSE_UP:  # too many periods for one picture
                 lines = [Series(n, time_ms[-CLOSE_UP:].tolist(), result.signal(n)[-CLOSE_UP:].tolist()) for n in chosen]
-                found.append(chart(f"{title}, the last {CLOSE_UP} ticks", "time, ms", label, lines))
+                charts.append(chart(f"{title}, the last {CLOSE_UP} ticks", "time, ms", label, lines))
     for name in result.board.spec.identifiers:
         if f"{name}.error_pct" in signals:
             line = Series(name, *thin(time_ms, result.signal(f"{name}.error_pct")))
-            found.append(chart(f"Identifier {name}", "time, ms", "error, %", [line], span, marks=marks))
+            charts.append(chart(f"Identifier {name}", "time, ms", "error, %", [line], span, marks=marks))
     for name, scores in result.board.scores().items():
-        chosen = [f"{name}.probability.{one}" for one in scores.names]
-        if all(one in signals for one in chosen):
+        chosen = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
+        if all(column in signals for column in chosen):
             lines = [
-                Series(one, *thin(time_ms, result.signal(column)))
-                for one, column in zip(scores.names, chosen, strict=True)
+                Series(hypothesis, *thin(time_ms, result.signal(column)))
+                for hypothesis, column in zip(scores.names, chosen, strict=True)
             ]
-            found.append(chart(f"Diagnoser {name}", "time, ms", "probability", lines, span, (0.0, 1.0), marks))
-    return found
+            charts.append(chart(f"Diagnoser {name}", "time, ms", "probability", lines, span, (0.0, 1.0), marks))
+    return charts
 
 
 def _verdicts(result: Result) -> list[str]:
-    """Show what each diagnoser said, against the truth."""
+    """Show the verdicts of each diagnoser against the truth."""
     parts = []
     for name, scores in result.board.scores().items():
-        delays = ", ".join("not found" if one is None else f"{one}" for one in scores.delays)
+        delays = ", ".join("not found" if delay is None else f"{delay}" for delay in scores.delays)
         parts.append(f"<h2>Diagnoser {escape(name)}: truth (rows) and verdict (columns), samples</h2>")
         rows = [[truth, *row] for truth, row in zip(scores.names, scores.confusion, strict=True)]
         parts.append(table(["truth", *scores.names], rows))
@@ -127,8 +127,8 @@ def _verdicts(result: Result) -> list[str]:
 
 
 def _events(result: Result) -> str:
-    """List what happened."""
+    """List the events of the run."""
     entries = [entry for entry in result.board.log if entry.kind != "scheduled"]
     rows = [[format_number(entry.time_ms, 3), entry.tick, entry.actor, entry.text] for entry in entries[:MOST_EVENTS]]
-    more = f"<p>The first {MOST_EVENTS} of {len(entries)}.</p>" if len(entries) > MOST_EVENTS else ""
-    return f"<h2>Events</h2>{more}{table(['time, ms', 'tick', 'who', 'what'], rows)}" if rows else ""
+    cut_off = f"<p>The first {MOST_EVENTS} of {len(entries)}.</p>" if len(entries) > MOST_EVENTS else ""
+    return f"<h2>Events</h2>{cut_off}{table(['time, ms', 'tick', 'who', 'what'], rows)}" if rows else ""

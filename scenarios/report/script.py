@@ -81,9 +81,9 @@ def script(document: dict[str, Any], seeds: Sequence[int], digest: str, file: st
     seeds : sequence of int
         Whole numbers in a row.
     digest : str
-        What the run gave.
+        Digest of the run.
     file : str
-        What the script will be called.
+        Name of the script.
     """
     plain = _plain(document)
     head = HEAD.format(
@@ -104,7 +104,7 @@ def campaign_script(document: dict[str, Any], file: str) -> str:
     document : dict
         The campaign.
     file : str
-        What the script will be called.
+        Name of the script.
     """
     plain = _plain(document)
     head = HEAD.format(

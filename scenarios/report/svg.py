@@ -1,4 +1,4 @@
-"""Charts as SVG text: lines over two axes, in colours and dashes anyone can tell apart."""
+"""Charts as SVG text: lines over two axes, in colours and dashes that all people can tell apart."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Mark:
-    """A moment on the x axis, and what happened there."""
+    """A moment on the x axis, and the event at it."""
 
     x: float
     text: str
@@ -44,9 +44,9 @@ def thin(x: FloatArray, y: FloatArray, columns: int = 400) -> tuple[list[float],
     Parameters
     ----------
     x, y : ndarray, shape (n,)
-        A trace; what is short enough stays as it is.
+        A trace; one that is short enough stays unchanged.
     columns : int
-        Pixels it is meant for.
+        Pixels of its width.
     """
     if len(y) <= 2 * columns:
         return x.tolist(), y.tolist()
@@ -81,15 +81,15 @@ def chart(
     Parameters
     ----------
     title, x_label, y_label : str
-        What it is, and what the axes are, with unit.
+        Texts of the chart and its axes, with units.
     series : sequence of Series
         The lines.
     x_range, y_range : (float, float), optional
-        Instead of what the lines span.
+        Ranges to show instead of those of the lines.
     marks : sequence of Mark
         Moments drawn as upright lines.
     """
-    x_low, x_high = x_range or _range([value for one in series for value in one.x])
+    x_low, x_high = x_range or _range([value for line in series for value in line.x])
     y_low, y_high = y_range or _range(_heights(series))
 
     def place(x: float, y: float) -> tuple[float, float]:
@@ -160,11 +160,11 @@ def _legend(series: Sequence[Series]) -> str:
 
 
 def _heights(series: Sequence[Series]) -> list[float]:
-    """Return all that the y axis must show."""
+    """Return all heights that the y axis must show."""
     return [
         value
-        for one in series
-        for y, spread in zip(one.y, one.spread or [0.0] * len(one.y), strict=True)
+        for line in series
+        for y, spread in zip(line.y, line.spread or [0.0] * len(line.y), strict=True)
         for value in (y - spread, y + spread)
     ]
 

@@ -1,4 +1,4 @@
-"""A run as a small drawing: its motion and its verdicts, or the figures of a study beside what was expected."""
+"""A run as a small drawing: its motion and its verdicts, or the figures of a study beside their expectations."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ MOST_ROWS = 6
 DONE = ("inject", "heal", "switch", "set")
 MEASURED = "#3a8fd0"
 HEALTHY = "#7aa88a"
-"""What a lane shows while the verdict is the first hypothesis, that of a healthy device in most banks."""
+"""Colour of a lane while the verdict is the first hypothesis, that of a healthy device in most banks."""
 
 
 def thumbnail(result: Result) -> str:
     """Return the drawing of a run as SVG; it has no background, so that it suits light and dark.
 
-    Above, the displacement of the model and of the shuttle; below, for the first diagnosers, the truth as a thin
-    strip over the verdict; upright lines are what was done. A study has rows instead: the measured figure as a dot,
-    the expectation as a bar.
+    The upper part shows the displacement of the model and of the shuttle. The lower part shows, for the first
+    diagnosers, the truth as a thin strip over the verdict. Upright lines mark commands. A study has rows instead: the
+    measured figure as a dot, the expectation as a bar.
     """
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
@@ -61,7 +61,7 @@ def _motion(result: Result) -> list[str]:
 
 
 def _band(values: FloatArray, place: Callable[[float], float], colour: str) -> str:
-    """Draw the room between the smallest and the largest value of each column; a slow trace is a line."""
+    """Draw the area between the smallest and the largest value of each column; a slow trace becomes a line."""
     edges = np.linspace(0, len(values), min(COLUMNS, len(values)) + 1).astype(np.int64)
     upper, lower = [], []
     for x, (first, end) in zip(np.linspace(0.0, WIDTH, len(edges) - 1), itertools.pairwise(edges), strict=True):
@@ -78,7 +78,7 @@ def _band(values: FloatArray, place: Callable[[float], float], colour: str) -> s
 
 
 def _lane(verdict: FloatArray, top: float, height: float) -> list[str]:
-    """Draw the hypothesis that is named at each moment; what no hypothesis says is left open."""
+    """Draw the hypothesis named at each moment; moments without a verdict stay empty."""
     picked = verdict[np.linspace(0, len(verdict) - 1, COLUMNS).astype(np.int64)]
     edges = [0, *(np.flatnonzero(np.diff(picked)) + 1).tolist(), COLUMNS]
     width = WIDTH / COLUMNS
@@ -91,7 +91,7 @@ def _lane(verdict: FloatArray, top: float, height: float) -> list[str]:
 
 
 def _figures(result: Result) -> list[str]:
-    """Draw what was measured against what was expected, each in its own scale."""
+    """Draw each measured figure against its expectation, each in its own scale."""
     parts = []
     for row, entry in enumerate(result.scenario.head.expect[:MOST_ROWS]):
         y = 14 + row * (HEIGHT - 16) / MOST_ROWS

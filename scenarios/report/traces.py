@@ -1,4 +1,4 @@
-"""Files on disk: written to a temporary name, then renamed, so that what is there is whole."""
+"""Files on disk: written under a temporary name, then renamed, so that every file there is complete."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ PIECE_TICKS = 1 << 15
 def packing(schema: pa.Schema) -> dict[str, Any]:
     """Say how Parquet is to pack a trace.
 
-    Noise grows in a dictionary, and shrinks when the bytes of its numbers are sorted by their place.
+    A dictionary makes noise larger; sorting the bytes of its numbers by their place makes it smaller.
     """
     floats = [field.name for field in schema if pa.types.is_floating(field.type)]
     return {"use_dictionary": False, "use_byte_stream_split": floats, "compression": "zstd"}
 
 
 def write_parquet(path: Path, columns: dict[str, np.ndarray[Any, Any]], metadata: dict[str, Any]) -> None:
-    """Write columns of one length with metadata under ``combbench``, piece by piece: a trace is never there twice."""
+    """Write columns of one length with metadata under ``combbench``, piece by piece: no trace is in memory twice."""
     fields = [pa.field(name, pa.from_numpy_dtype(values.dtype)) for name, values in columns.items()]
     schema = pa.schema(fields, metadata={"combbench": json.dumps(metadata)})
     temporary = path.with_name(path.name + ".part")

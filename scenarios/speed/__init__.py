@@ -1,1 +1,1 @@
-"""How fast the bench is: each figure as a ratio to a peer measured in the same run."""
+"""Speed of the bench: each figure is a ratio to a peer measured in the same run."""

@@ -1,4 +1,4 @@
-"""How well a campaign uses two processors: its rate on two processes over twice the rate on one."""
+"""Use of two processors by a campaign: its rate on two processes over twice the rate on one."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ REPEATS = 3
 
 
 class _Kept:
-    """A run table in memory, with the moment every batch came."""
+    """A run table in memory that records the moment of every batch."""
 
     def __init__(self) -> None:
         self.batches: list[tuple[float, int]] = []
 
     def have(self, keys: Sequence[str]) -> set[str]:  # noqa: ARG002
-        """Return nothing: all is to be computed."""
+        """Return no keys: all runs are to be computed."""
         return set()
 
     def put(self, found: Found) -> None:
-        """Note when a batch came."""
+        """Record the moment and the size of a batch."""
         self.batches.append((time.perf_counter(), len(found)))
 
 
@@ -35,12 +35,12 @@ def rate(workers: int, runs: int, first_seed: int) -> float:
     workers : int
         Processes.
     runs, first_seed : int
-        How many seeds, and the first of them.
+        Number of seeds, and the first of them.
     """
     document = {"schema": 1, "scenario": "ch5-seven-step", "seeds": {"first": first_seed, "count": runs}}
     table = _Kept()
     Campaign(Sweep(document), table, workers=workers).run()
-    # The clock starts behind the first quarter, when all processes are up and batches have their size.
+    # The clock starts after the first quarter, when all processes are up and batches have their size.
     done = 0
     for moment, count in table.batches:
         done += count
@@ -52,4 +52,4 @@ def rate(workers: int, runs: int, first_seed: int) -> float:
 def scaling(runs: int, repeats: int = REPEATS) -> tuple[float, float]:
     """Return the median of rate(2) / (2 rate(1)) over alternating measurements, and the best rate of two processes."""
     pairs = [(rate(1, runs // 2, 1), rate(2, runs, 1)) for _ in range(repeats)]
-    return median(two / (2.0 * one) for one, two in pairs), max(two for _, two in pairs)
+    return median(double / (2.0 * single) for single, double in pairs), max(double for _, double in pairs)

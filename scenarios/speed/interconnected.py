@@ -1,4 +1,4 @@
-"""The loop of direct MRAC as python-control would have it: an oracle in continuous time, and a peer for speed."""
+"""The loop of direct MRAC in python-control: an oracle in continuous time, and a peer for speed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def adaptive_loop(context: Context, stiffness: float = 1.0, gain: float = 1.0) -
     Parameters
     ----------
     context : Context
-        Whose device it is.
+        Context with the device.
     stiffness : float
         True stiffness over nominal.
     gain : float

@@ -1,4 +1,4 @@
-"""What speed is held against: filterpy, python-control, scipy and padasip, each at the same task."""
+"""Peers for the speed: filterpy, python-control, scipy and padasip, each at the same task."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def estimate_record(s: Estimate, regressors: FloatArray, measured: FloatArray, f
     forgetting, limit : float
         Forgetting factor and largest trace.
     """
-    n = 4  # known when it is compiled, so that the loops are unrolled
+    n = 4  # known at compile time, so that the loops are unrolled
     for i in range(regressors.shape[0]):
         error = measured[i]
         for j in range(n):
@@ -100,7 +100,7 @@ def estimate_start(covariance: float) -> Estimate:
 
 
 def regressors_of(u: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the regressors [u, u, -y, -y] of a record and what they should give."""
+    """Return the regressors [u, u, -y, -y] of a record and the measurements they should explain."""
     return np.column_stack([u[1:-1], u[:-2], -y[1:-1], -y[:-2]]), y[2:]
 
 

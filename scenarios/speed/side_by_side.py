@@ -1,4 +1,4 @@
-"""The seven steps of 5.2.4 with the library's diagnosers side by side: how long a run of them takes."""
+"""Duration of a run of the seven steps of 5.2.4 with the library's diagnosers side by side."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ DIAGNOSERS: dict[str, dict[str, Any]] = {
 
 
 def side_by_side() -> Scenario:
-    """Return the seven steps with all of them on the same samples."""
+    """Return the seven steps with all diagnosers on the same samples."""
     return with_values(get("ch5-seven-step"), {"diagnosers": DIAGNOSERS, "expect": []})
 
 
 def seven_steps() -> Callable[[], float]:
-    """Return the measurement of a run as a bench pays it, ns: blocks, trace rows, events, log, digest."""
+    """Return the measurement of a run at its full cost on a bench, ns: blocks, trace rows, events, log, digest."""
     scenario = side_by_side()
 
     def measure() -> float:

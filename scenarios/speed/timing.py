@@ -1,4 +1,4 @@
-"""What things cost: CPU time of a piece of work, of a tick of a board, of some of its blocks."""
+"""CPU time of a piece of work, of a tick of a board, of some of its blocks."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ def cpu_ns(work: Callable[[], Any], units: int) -> float:
 
 
 def interleaved(candidates: Mapping[str, Callable[[], float]], repeats: int = REPEATS) -> dict[str, float]:
-    """Measure candidates in turn and return the median of each, so that drift meets all alike."""
-    found: dict[str, list[float]] = {name: [] for name in candidates}
+    """Measure candidates in turn and return the median of each, so that drift affects all in the same way."""
+    costs: dict[str, list[float]] = {name: [] for name in candidates}
     for measure in candidates.values():
         measure()
     for _ in range(repeats):
         for name, measure in candidates.items():
-            found[name].append(measure())
-    return {name: median(values) for name, values in found.items()}
+            costs[name].append(measure())
+    return {name: median(values) for name, values in costs.items()}
 
 
 def advance_cost(board: Board, ticks: int = 100 * CHUNK) -> float:
-    """Return the cost of a tick as a bench pays it: blocks, trace rows, log, digest, ns."""
+    """Return the full cost of a tick on a bench, ns: blocks, trace rows, log, digest."""
 
     def work() -> None:
         for _ in range(ticks // CHUNK):
@@ -61,11 +61,11 @@ def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:
 
 
 ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive")
-"""Blocks that keep every signal moving: with frozen inputs a block is not doing its usual work."""
+"""Blocks that keep every signal moving: with frozen inputs a block does not do its usual work."""
 
 
 def block_costs(board: Board, *only: str) -> dict[str, float]:
-    """Return the cost of some blocks or all, ns per tick, the dispatch included: a tick with it run once more."""
+    """Return the cost of some blocks or all, ns per tick, dispatch included: a tick with it run once more."""
     candidates = {"": partial(loop_cost, board, [*ALIVE], 50_000)}
     for instance in board.wiring.instances:
         if not only or instance.key in only:
