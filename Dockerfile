@@ -31,7 +31,7 @@ COPY server server
 ENV COMBBENCH_KERNEL_CACHE=/app/kernels
 RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
  && .venv/bin/python -m compileall -q core scenarios server .venv/lib \
- && .venv/bin/python scripts/warm.py && chmod -R a+rX kernels \
+ && .venv/bin/python -m scenarios.kernels && chmod -R a+rX kernels \
  && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools
 
 # ---- what runs

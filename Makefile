@@ -14,12 +14,14 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run setup test check fix dev bench load soak image codegen digests lock clean help
+.PHONY: run setup first-kernels test check fix dev bench load soak image codegen digests lock clean help
 
-run: setup  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
+run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
+	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels
 	@.venv/bin/combbench serve $(ARGS) || [ $$? -eq 130 ]
 
-setup: $(PYTHON_STAMP) $(PAGE) $(KERNEL_STAMP)  ## Set everything up, serve nothing
+setup: $(PYTHON_STAMP)  ## Set everything up, serve nothing
+	@$(MAKE) --no-print-directory -j2 $(PAGE) $(KERNEL_STAMP)
 
 test: setup  ## Run every test there is: lint, types, imports, Python, TypeScript, browser
 	@.venv/bin/python scripts/run_tests.py
@@ -68,8 +70,12 @@ $(PYTHON_STAMP): requirements.lock pyproject.toml scripts/venv
 	@scripts/venv
 	@touch $@
 
+# The server starts with the kernels of one bench and compiles the others while it runs.
+first-kernels: $(PYTHON_STAMP)
+	@test $(KERNEL_STAMP) -nt $(PYTHON_STAMP) || .venv/bin/python -m scenarios.kernels first
+
 $(KERNEL_STAMP): $(PYTHON_STAMP) $(KERNEL_SOURCE)
-	@.venv/bin/python scripts/warm.py
+	@.venv/bin/python -m scenarios.kernels
 	@touch $@
 
 $(NODE_STAMP): web/package.json web/package-lock.json | $(PYTHON_STAMP)

@@ -1,96 +1,28 @@
-"""What a block is: parameters, ports, equations and one compiled step.
+"""What a block is: parameters, ports, equations and one step.
 
-A step has one signature, ``step(p, s, w, io)``: its own packed parameters, its own state, the board's signal
-vector and the indices of its ports in that vector (inputs, then outputs, then taps, in the order declared).
-The same Python function, run uncompiled, is its own oracle.
+A step is ``step(p, s, x)``: what it reads, its state, and its ports, all by name. A block declares each once, in the
+classes ``Params`` (what people set), ``Packed``, ``State`` and ``Ports``. The same function, run uncompiled, is its own
+oracle.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self, TypeVar, cast
+from typing import Any, ClassVar, Self
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from core.ports import KINDS, BlockPorts, Port
+from core.record import Record
 from core.table import Table
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
-Step = Callable[[Any, Any, Any, Any], None]
-F = TypeVar("F", bound=Callable[..., Any])
-
-TICK, TIME_MS, RESERVED = 0, 1, 2
-"""Signals every step may read without a port: the tick, and device time in ms."""
-
-
-def kernel(function: F) -> F:
-    """Compile a helper that steps call: strict arithmetic, no GIL, cached."""
-    return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
-
-
-def inlined(function: F) -> F:
-    """Compile a helper into whatever calls it: for the few whose call would cost as much as their work."""
-    return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function))
-
-
-SMALL = 1e-100
-"""What is smaller counts as nothing."""
-
-
-@kernel
-def settled(value: float) -> float:
-    """Return ``value``, or zero once it is too small to matter.
-
-    States that decay for ever end as subnormal numbers, on which a processor is ten times slower. What is not a
-    number stays so: the guard must see it.
-    """
-    return 0.0 if abs(value) < SMALL else value
-
-
-@dataclass(frozen=True)
-class Port:
-    """One signal (or a vector of them) a block reads or writes.
-
-    Parameters
-    ----------
-    name : str
-        Port name; the signal is called ``<instance>.<name>``.
-    unit, meaning : str
-        Shown to people.
-    source : str
-        For inputs: the signal it is wired to unless the wiring says otherwise. One that ends in ``?`` may be
-        missing and reads 0 then.
-    labels : tuple of str
-        For vectors: one name per component.
-    each : str
-        For vectors: the list parameter whose elements' names are the labels.
-    hidden : bool
-        Plumbing: neither traced nor offered to scopes.
-    warning : str
-        For a tap: what the log says when it rises from 0.
-    """
-
-    name: str
-    unit: str = "1"
-    meaning: str = ""
-    source: str = ""
-    labels: tuple[str, ...] = ()
-    each: str = ""
-    hidden: bool = False
-    warning: str = ""
-
-    def names(self, params: BlockParams) -> tuple[str, ...]:
-        """Return the component names below the instance, one for a scalar."""
-        labels = self.labels
-        if self.each:
-            labels = tuple(str(item.name) for item in getattr(params, self.each))
-        return tuple(f"{self.name}.{label}" for label in labels) if labels else (self.name,)
 
 
 @dataclass(frozen=True)
@@ -235,28 +167,49 @@ class Context:
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
 
 
+LOOP = "board"
+"""The family of the blocks in ``core/loop``, which every bench has."""
+
+
 class Block:
-    """Base of every block; a subclass declares, ``pack`` and ``state`` turn the declaration into arrays."""
+    """Base of every block; a subclass declares, ``pack`` and ``state`` turn the declaration into records."""
 
     family: ClassVar[str]
     name: ClassVar[str]
     title: ClassVar[str]
+    changes: ClassVar[str] = ""
+    shows: ClassVar[str] = ""
+    suggested: ClassVar[float | None] = None
+    """Of a fault: the parts of the device it changes, the part it is seen on, a severity to begin with."""
     Params: ClassVar[type[BlockParams]]
+    Packed: ClassVar[type[Record]] = Record
+    State: ClassVar[type[Record]] = Record
+    Ports: ClassVar[type[BlockPorts]] = BlockPorts
     inputs: ClassVar[tuple[Port, ...]] = ()
     outputs: ClassVar[tuple[Port, ...]] = ()
     taps: ClassVar[tuple[Port, ...]] = ()
     equations: ClassVar[tuple[Equation, ...]] = ()
     weaknesses: ClassVar[tuple[str, ...]] = ()
     """Where the block is known to be weak, in plain sentences with figures; read before it is trusted."""
-    step: ClassVar[Step]
+    lengths: ClassVar[tuple[str, ...]] = ()
+    """Parameters that set the length of the tail of ``State``; none of them may change while the board runs."""
     every_tick: ClassVar[bool] = False
     """Whether the step is called at every tick though the block runs every N, because it has to do between."""
 
     def __init_subclass__(cls) -> None:
-        """Name the block after its file and its family after its folder."""
+        """Name the block after its file and its family after its folder; sort its ports by kind."""
         path = cls.__module__.split(".")
         cls.name = path[-1]
-        cls.family = path[-2] if len(path) > 1 else ""
+        folder = path[-2] if len(path) > 1 else ""
+        cls.family = LOOP if folder == "loop" else folder
+        cls.inputs, cls.outputs, cls.taps = (
+            tuple(port for port in cls.Ports.declared if port.kind == kind) for kind in KINDS
+        )
+
+    @staticmethod
+    def step(p: Any, s: Any, x: Any) -> None:
+        """Compute one sample: read ``p``, read and write ``s`` and ``x``."""
+        raise NotImplementedError
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:  # noqa: ARG003 (most blocks suit every device)
@@ -264,16 +217,44 @@ class Block:
         return ""
 
     @classmethod
+    def rests(cls, params: Any) -> bool:  # noqa: ARG003 (most blocks never rest)
+        """Say whether the block has nothing to do with these parameters, so that it need not run."""
+        return False
+
+    @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:  # noqa: ARG003 (most blocks take it as it is)
         """Say what the block takes the voltage for and loses by it under a tone; nothing when that is little."""
         return ""
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        raise NotImplementedError
+    def pack(cls, params: Any, context: Context) -> Record:  # noqa: ARG003 (some read parameters only)
+        """Return what the step reads; a number left blank is the parameter of its name."""
+        return cls.Packed.blank()
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:  # noqa: ARG003 (most blocks have none)
+    def state(cls, params: Any, context: Context) -> Record:  # noqa: ARG003 (most begin with zeros)
         """Return the initial state."""
-        return np.zeros(0)
+        return cls.State.zeros()
+
+    @classmethod
+    def packed(cls, params: BlockParams, context: Context) -> FloatArray:
+        """Return the numbers the step reads.
+
+        Raises
+        ------
+        TypeError
+            When neither ``pack`` nor a parameter says one of them.
+        """
+        record = cls.pack(params, context)
+        for name in record.blanks():
+            if "." in name or not hasattr(params, name):
+                raise TypeError(f"{cls.__module__}: pack leaves {name} blank, and no parameter has this name")
+            setattr(record, name, float(getattr(params, name)))
+        numbers: FloatArray = record.array
+        return numbers
+
+    @classmethod
+    def initial(cls, params: BlockParams, context: Context) -> FloatArray:
+        """Return the numbers of the initial state."""
+        numbers: FloatArray = cls.state(params, context).array
+        return numbers

@@ -1,4 +1,4 @@
-"""What the bench says when it is given something it cannot take."""
+"""Errors for input that the bench refuses."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ UNITS = (
 
 
 ALTERNATIVE = re.compile(r"(?:list|dict|literal)\[.*\]")
-"""What pydantic puts into the place of a value that may be one of several types, to say of which it speaks."""
+"""Part of a pydantic location that names one of the types a value may have."""
 
 
 def one_line(text: str) -> str:
-    """Keep what a caller wrote from breaking the line it is told in."""
-    return "".join(one if one.isprintable() else " " for one in text)
+    """Replace characters of a caller's text that would break the line it is quoted in."""
+    return "".join(character if character.isprintable() else " " for character in text)
 
 
 class InputError(ValueError):
@@ -52,11 +52,11 @@ class InputError(ValueError):
     Parameters
     ----------
     message : str
-        What was wrong and what is allowed.
+        The mistake, and the values that are allowed.
     field : str
         Dotted path of the field, empty when there is none.
     hint : str
-        What to do instead.
+        Advice for the caller.
     code : str
         Stable word for programs: ``invalid``, ``unknown``, ``conflict``, ``not_live``.
     """
@@ -70,7 +70,7 @@ class InputError(ValueError):
         self.code = code
 
     def as_dict(self) -> dict[str, str]:
-        """Return the shared error shape."""
+        """Return the error in the form that all interfaces share."""
         return {"code": self.code, "message": str(self), "field": self.field, "hint": self.hint}
 
     def under(self, prefix: str) -> InputError:
@@ -80,7 +80,7 @@ class InputError(ValueError):
 
 
 def unknown(what: str, name: object, allowed: Iterable[str], field: str = "") -> InputError:
-    """Build the error for a name that does not exist, with the nearest that does."""
+    """Build the error for a name that does not exist, and suggest the nearest names."""
     names = list(allowed)
     near = difflib.get_close_matches(str(name), names, n=1)
     hint = f"did you mean {near[0]}?" if near else ""
@@ -102,7 +102,7 @@ def finite(value: float, field: str = "") -> float:
 
 
 def field_of(complaint: Mapping[str, Any]) -> str:
-    """Return the dotted place of a complaint of pydantic as people write it."""
+    """Return the dotted path of the field pydantic complains about."""
     parts = [str(part) for part in complaint["loc"] if not ALTERNATIVE.fullmatch(str(part))]
     if parts[-1:] == ["str"] and complaint["type"] == "string_type":
         del parts[-1]
@@ -110,7 +110,7 @@ def field_of(complaint: Mapping[str, Any]) -> str:
 
 
 def either(sayings: Iterable[str], verb: str) -> str:
-    """Join what pydantic says of a value that may be one of several types: once for each, and the verb once."""
+    """Join pydantic's messages about a value that may have one of several types, without repeating the verb."""
     return " or ".join(dict.fromkeys(sayings)).replace(f" or {verb} ", " or ")
 
 
@@ -120,12 +120,12 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
     Parameters
     ----------
     error : ValidationError
-        What pydantic raised.
+        The error pydantic raised.
     known : mapping of str to sequence of str, optional
         Field names allowed under each dotted parent, to suggest the one that was meant.
     """
-    found = error.errors(include_url=False)
-    first, path = found[0], field_of(found[0])
+    complaints = error.errors(include_url=False)
+    first, path = complaints[0], field_of(complaints[0])
     given = first.get("input")
     kind = first["type"]
     if kind == "extra_forbidden":
@@ -152,8 +152,8 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
         "model_type": "must be a table",
     }
     if kind in sayings:
-        same = [one for one in found if field_of(one) == path and one["type"] in sayings]
-        saying = either((sayings[one["type"]].format(**one.get("ctx", {})) for one in same), "must be")
+        same = [item for item in complaints if field_of(item) == path and item["type"] in sayings]
+        saying = either((sayings[item["type"]].format(**item.get("ctx", {})) for item in same), "must be")
     else:
         saying = str(first["msg"]).removeprefix("Value error, ")
         if kind == "value_error":
@@ -162,7 +162,7 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
 
 
 def unknown_field(leaf: str, allowed: Sequence[str], path: str) -> InputError:
-    """Build the error for a field nobody declared; a wrong unit is named as such."""
+    """Build the error for a field that is not declared; a wrong unit in its name is pointed out."""
     stem = _without_unit(leaf)
     for name in allowed:
         if name != leaf and _without_unit(name) == stem:

@@ -1,21 +1,14 @@
 r"""Kernels that controllers and identifiers estimate with: least squares on half a covariance, state filters.
 
-All work on one flat state array and are told where in it things stand. Of a covariance only the lower triangle is kept,
-row by row, so that it stays symmetric whatever the rounding.
+A covariance is stored as its lower triangle, row by row, so that rounding cannot make it asymmetric.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import SMALL, kernel, settled
 from core.device.oscillator import transition, within
-from core.voltage import add_moved
-
-FILTER_SIZE = 7
-"""Packed numbers of a state filter."""
-DRIVEN_SIZE = FILTER_SIZE + 4
-"""Packed numbers of one that a voltage drives."""
+from core.kernel import SMALL, flush_tiny, kernel
+from core.record import Record, Vector
+from core.voltage import Motion, Moves, add_moves
 
 
 def triangle(n: int) -> int:
@@ -34,22 +27,95 @@ def entry(row: int, column: int) -> int:
     return row * (row + 1) // 2 + column if row >= column else column * (column + 1) // 2 + row
 
 
+class StateFilter(Record):
+    r"""Packed :math:`1/(s+\lambda)^2` for an interval: its transition, :math:`2\lambda`, :math:`\lambda^2`, and h."""
+
+    phi11: float
+    phi12: float
+    phi21: float
+    phi22: float
+    twice_pole: float
+    square: float
+    h: float
+
+
+class DrivenFilter(StateFilter, Moves):
+    """A state filter of a voltage, and the effect of one volt more in the middle or at the end than at the start."""
+
+
+def fill_filter(p: StateFilter, pole: float, h: float) -> None:
+    """Pack a state filter."""
+    p.phi11, p.phi12, p.phi21, p.phi22 = transition(1.0, 2.0 * pole, pole * pole, h)
+    p.twice_pole, p.square, p.h = 2.0 * pole, pole * pole, h
+
+
+def filter_of(pole: float, h: float) -> StateFilter:
+    """Return a state filter."""
+    packed = StateFilter.blank()
+    fill_filter(packed, pole, h)
+    return packed
+
+
+def driven_filter_of(pole: float, h: float, analogue: bool) -> DrivenFilter:
+    """Return a state filter of a voltage."""
+    packed = DrivenFilter.blank()
+    fill_filter(packed, pole, h)
+    effects = within(1.0, 2.0 * pole, pole * pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
+    packed.middle1, packed.middle2, packed.end1, packed.end2 = effects
+    return packed
+
+
 @kernel
-def trace(s: Any, covariance: int, n: int) -> float:
+def filter_input(p: StateFilter, s: Motion, before: float, now: float) -> None:
+    r"""Advance :math:`\ddot q+2\lambda\dot q+\lambda^2q=x` over an interval, exact for an input on a straight line.
+
+    A held input has ``before`` equal to ``now``. For a measured input the line between two samples is right to second
+    order; a held one would lag by half a sample.
+
+    Parameters
+    ----------
+    p : StateFilter
+    s : Motion
+        q and its derivative.
+    before, now : float
+        Input at the start and at the end of the interval.
+    """
+    slope = (now - before) / (p.h * p.square)
+    rest = (before - p.twice_pole * slope) / p.square
+    q = s.x - rest
+    rate = s.v - slope
+    s.x = flush_tiny(p.phi11 * q + p.phi12 * rate + rest + slope * p.h)
+    s.v = flush_tiny(p.phi21 * q + p.phi22 * rate + slope)
+
+
+@kernel
+def filter_voltage(p: DrivenFilter, s: Motion, u: float, middle: float, end: float) -> None:
+    """Advance a state filter under a voltage ``u``, more by ``middle`` and ``end`` in the middle and at the end."""
+    filter_input(p, s, u, u)
+    add_moves(p, s, middle, end)
+
+
+@kernel
+def filtered_second_derivative(p: StateFilter, s: Motion, now: float) -> float:
+    """Return the filtered second derivative of the input."""
+    return float(now - p.twice_pole * s.v - p.square * s.x)
+
+
+@kernel
+def trace_of(covariance: Vector, n: int) -> float:
     """Return the trace of a covariance."""
     total = 0.0
     for i in range(n):
-        total += s[covariance + entry(i, i)]
+        total += covariance[entry(i, i)]
     return total
 
 
 @kernel
-def least_squares(
-    s: Any,
-    theta: int,
-    covariance: int,
-    regressor: int,
-    product: int,
+def estimate(
+    theta: Vector,
+    covariance: Vector,
+    regressor: Vector,
+    product: Vector,
     n: int,
     error: float,
     noise: float,
@@ -64,18 +130,16 @@ def least_squares(
     so that :math:`P^{-1}\leftarrow\mu(P^{-1}+\phi\phi^T/r)`: with :math:`r=\mu` the usual discrete recursion, with
     :math:`r=m^2\mu/h,\;\mu=e^{-Bh}` the exact sample of the continuous law with rate B and normaliser m. A covariance
     whose trace would grow beyond the limit stays as it is (Ioannou and Sun, Robust Adaptive Control, 4.3.6): the
-    estimate goes on learning, and what is not excited does not wind up.
+    estimate goes on learning, and parameters that are not excited do not wind up.
 
     Parameters
     ----------
-    s : array
-        State that holds everything below.
-    theta, covariance, regressor, product : int
-        Where the estimate, the lower triangle of its covariance, the regressor and n scratch numbers begin.
+    theta, covariance, regressor, product : vectors
+        The estimate, the lower triangle of its covariance, the regressor and n scratch numbers.
     n : int
         Number of parameters.
     error : float
-        What was measured minus what the estimate said.
+        Measured value minus the prediction of the estimate.
     noise : float
         Variance r of that error, > 0.
     forgetting : float
@@ -86,105 +150,57 @@ def least_squares(
     information = 0.0
     before = 0.0
     lost = 0.0
-    row = covariance
+    row = 0
     for i in range(n):
         total = 0.0
         for j in range(i):
-            total += s[row + j] * s[regressor + j]
+            total += covariance[row + j] * regressor[j]
         at = row + i
-        before += s[at]
+        before += covariance[at]
         # the rest of the row stands in the column below the diagonal
         for j in range(i, n):
-            total += s[at] * s[regressor + j]
+            total += covariance[at] * regressor[j]
             at += j + 1
-        s[product + i] = total
-        information += s[regressor + i] * total
+        product[i] = total
+        information += regressor[i] * total
         lost += total * total
         row += i + 1
     inverse = 1.0 / (noise + information)
     for i in range(n):
-        s[theta + i] += s[product + i] * inverse * error
+        theta[i] += product[i] * inverse * error
     after = (before - lost * inverse) / forgetting
     if limit <= 0.0 or after <= limit or after <= before:
         grow = 1.0 / forgetting
-        at = covariance
+        at = 0
         small = False
         for i in range(n):
-            gain = s[product + i] * inverse
+            gain = product[i] * inverse
             for j in range(i + 1):
-                value = (s[at] - gain * s[product + j]) * grow
+                value = (covariance[at] - gain * product[j]) * grow
                 small |= abs(value) < SMALL
-                s[at] = value
+                covariance[at] = value
                 at += 1
         if small:
-            for i in range(covariance, at):
-                s[i] = settled(s[i])
+            for i in range(at):
+                covariance[i] = flush_tiny(covariance[i])
     return information
 
 
 @kernel
-def project(s: Any, theta: int, covariance: int, n: int, which: int, low: float, high: float) -> None:
-    r"""Bring one parameter back into its bounds, and the others along by what is known of them together.
+def project_onto(theta: Vector, covariance: Vector, n: int, which: int, low: float, high: float) -> None:
+    r"""Bring one parameter back into its bounds, and move the others with it as their covariance says.
 
     .. math:: \theta\leftarrow\theta+\frac{Pe_i}{P_{ii}}(\text{bound}-\theta_i)
 
-    is the nearest estimate within the bounds in the metric of :math:`P^{-1}`, so the projection never undoes what the
-    update has gained.
+    The result is the nearest estimate within the bounds in the metric of :math:`P^{-1}`, so the projection never undoes
+    what the update has gained.
     """
-    value = s[theta + which]
+    value = theta[which]
     missing = min(max(value, low), high) - value
-    variance = s[covariance + entry(which, which)]
+    variance = covariance[entry(which, which)]
     if missing == 0.0:
         return
     if variance > 0.0:
         for i in range(n):
-            s[theta + i] += s[covariance + entry(i, which)] / variance * missing
-    s[theta + which] = min(max(value, low), high)
-
-
-def state_filter(pole: float, h: float) -> list[float]:
-    r"""Pack :math:`1/(s+\lambda)^2` for an interval: its transition, :math:`2\lambda`, :math:`\lambda^2`, and h."""
-    return [*transition(1.0, 2.0 * pole, pole * pole, h), 2.0 * pole, pole * pole, h]
-
-
-@kernel
-def advance_filter(p: Any, packed: int, s: Any, at: int, before: float, now: float) -> None:
-    r"""Advance :math:`\ddot q+2\lambda\dot q+\lambda^2q=x` over an interval, exact for an input on a straight line.
-
-    A held input has ``before`` equal to ``now``; for a measured one the line between two samples is right to second
-    order, while holding it lags by half a sample.
-
-    Parameters
-    ----------
-    p, packed
-        Packed parameters, and where those of ``state_filter`` begin.
-    s, at
-        State, and where q and its derivative stand.
-    before, now : float
-        Input at the start and at the end of the interval.
-    """
-    slope = (now - before) / (p[packed + 6] * p[packed + 5])
-    rest = (before - p[packed + 4] * slope) / p[packed + 5]
-    q = s[at] - rest
-    rate = s[at + 1] - slope
-    s[at] = settled(p[packed] * q + p[packed + 1] * rate + rest + slope * p[packed + 6])
-    s[at + 1] = settled(p[packed + 2] * q + p[packed + 3] * rate + slope)
-
-
-def driven_filter(pole: float, h: float, analogue: bool) -> list[float]:
-    """Pack a state filter of a voltage, and the effect of a volt more in the middle and at the end of an interval."""
-    more = within(1.0, 2.0 * pole, pole * pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
-    return [*state_filter(pole, h), *more]
-
-
-@kernel
-def drive_filter(p: Any, packed: int, s: Any, at: int, u: float, middle: float, end: float) -> None:
-    """Advance a state filter under a voltage: at the start, and how much more it was in the middle and at the end."""
-    advance_filter(p, packed, s, at, u, u)
-    add_moved(p, packed + FILTER_SIZE, s, at, middle, end)
-
-
-@kernel
-def second_derivative(p: Any, packed: int, s: Any, at: int, now: float) -> float:
-    """Return the filtered second derivative of the input."""
-    return float(now - p[packed + 4] * s[at + 1] - p[packed + 5] * s[at])
+            theta[i] += covariance[entry(i, which)] / variance * missing
+    theta[which] = min(max(value, low), high)

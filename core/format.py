@@ -1,7 +1,7 @@
-"""How numbers are written for people, in reports, pictures, 3D and events.
+"""Formats numbers for people, in reports, pictures, 3D and events.
 
-The page writes them the same way (``web/src/ui/format.ts``); ``web/src/ui/format-cases.json`` holds both to one text
-for one value.
+The page formats them the same way (``web/src/ui/format.ts``); ``web/src/ui/format-cases.json`` tests that both write
+the same text for the same value.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 
 MINUS, THIN, SPACE, NOTHING = "−", "\u2009", "\u00a0", "–"
 IMMENSE = 1e15
-"""From here on a number with fixed decimals would be a row of digits that mean nothing."""
+"""From this size on, fixed decimals would show a row of digits that mean nothing."""
 LEAST_PLAIN, MOST_PLAIN = 1e-3, 1e6
-"""Numbers without a prefix are written out between these."""
+"""Numbers without a prefix are written out in full between these sizes."""
 
 UNITS = {
     **{"m": (1.0, "m"), "mm": (1e-3, "m"), "um": (1e-6, "m"), "nm": (1e-9, "m")},
@@ -36,7 +36,7 @@ _EXACT = Context(prec=100, rounding=ROUND_HALF_UP)
 
 @dataclass(frozen=True)
 class UnitScale:
-    """How numbers of one unit are shown: shown value = value times factor, with so many decimals."""
+    """How numbers of one unit are shown: the shown value is the value times the factor, with a number of decimals."""
 
     factor: float
     unit: str
@@ -45,12 +45,12 @@ class UnitScale:
 
 
 def unit_scale(unit: str, magnitude: float, digits: int = 4) -> UnitScale:
-    """Return the scale on which the largest value to be shown reads as 1 to 999 of a prefixed unit."""
+    """Return the scale on which the largest shown value reads as 1 to 999 of a prefixed unit."""
     to_base, name = UNITS.get(unit, (1.0, unit_text(unit)))
-    size = round_to(abs(magnitude) * to_base, digits)  # what rounds up to 1000 takes the next prefix
-    found = _prefix(size or to_base) if unit in UNITS else _plain(size)
-    if found is not None:
-        scale, prefix = found
+    size = round_to(abs(magnitude) * to_base, digits)  # a size that rounds up to 1000 takes the next prefix
+    chosen = _prefix(size or to_base) if unit in UNITS else _plain(size)
+    if chosen is not None:
+        scale, prefix = chosen
         return UnitScale(to_base / scale, prefix.strip() + name, _decimals_for(size / scale, digits))
     power = 3 * (_power(size) // 3)
     exponent = f"e{MINUS if power < 0 else ''}{abs(power)}" if power else ""
@@ -71,12 +71,12 @@ def format_number(value: float, decimals: int) -> str:
 
 
 def format_si(value: float, unit: str, digits: int = 4) -> str:
-    """Write a value with an SI-prefixed unit and all its significant digits: what is measured."""
+    """Write a value with an SI-prefixed unit and all its significant digits, as for measured values."""
     return format_on(unit_scale(unit, value, digits), value) if math.isfinite(value) else NOTHING
 
 
 def format_short(value: float, unit: str, digits: int = 4) -> str:
-    """Write a value with an SI-prefixed unit in as few digits as it needs: what was chosen."""
+    """Write a value with an SI-prefixed unit in as few digits as it needs, as for chosen values."""
     if not math.isfinite(value):
         return NOTHING
     scale = unit_scale(unit, value, digits)
@@ -97,12 +97,12 @@ def format_in(value: float, unit: str, decimals: int) -> str:
 
 
 def format_count(count: float, noun: str) -> str:
-    """Say how many of something."""
+    """Write a count with its noun, in the singular or the plural."""
     return _with_unit(format_number(count, 0), noun if abs(count) == 1 else f"{noun}s")
 
 
 def tick_labels(ticks: Sequence[float]) -> list[str]:
-    """Label the ticks of an axis: as many decimals as its steps need, and no more."""
+    """Label the ticks of an axis with as many decimals as its steps need."""
     scale = unit_scale("", max(map(abs, ticks), default=0.0))
     shown = [round_to(tick * scale.factor, 12) for tick in ticks]
     decimals = max((_decimals_of(tick, 9) for tick in shown), default=0)
@@ -120,7 +120,7 @@ def unit_text(unit: str) -> str:
 
 
 def round_to(value: float, digits: int) -> float:
-    """Return a value in so many significant digits; a half goes away from zero."""
+    """Round a value to a number of significant digits; a half goes away from zero."""
     return float(Context(prec=digits, rounding=ROUND_HALF_UP).create_decimal(Decimal(value)))
 
 
@@ -131,7 +131,7 @@ def _plain(size: float) -> tuple[float, str] | None:
 def _prefix(size: float) -> tuple[float, str] | None:
     if size >= 1e3 * PREFIXES[0][0]:
         return None
-    return next((found for found in PREFIXES if size >= found[0]), None)
+    return next((prefix for prefix in PREFIXES if size >= prefix[0]), None)
 
 
 def _decimals_for(shown: float, digits: int) -> int:

@@ -12,7 +12,8 @@ import math
 
 import numpy as np
 
-from core.block import kernel
+from core.elementary import log
+from core.kernel import kernel
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 MULTIPLIER_1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -67,7 +68,7 @@ def normal(key: float, tick: float) -> float:
         den = den * r + 1.0
         return q * num / den
     r = 0.5 + q if q < 0.0 else 0.5 - q
-    r = math.sqrt(-math.log(r))
+    r = math.sqrt(-log(r))
     if r <= 5.0:
         r -= 1.6
         num = 7.74545014278341407640e-4

@@ -11,10 +11,11 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from core.block import Block, BlockParams, Equation, Port
+from core.block import LOOP, Block, BlockParams, Equation
 from core.errors import unknown
+from core.ports import Port
 
-FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", "board")
+FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", LOOP)
 
 
 class PortCard(BaseModel):
@@ -80,23 +81,42 @@ def blocks(family: str) -> dict[str, type[Block]]:
     """
     if family not in FAMILIES:
         raise unknown("family", family, FAMILIES)
-    package = importlib.import_module(f"core.{family}")
+    folder = "core.loop" if family == LOOP else f"core.{family}"
+    package = importlib.import_module(folder)
     found: dict[str, type[Block]] = {}
     for module_info in pkgutil.iter_modules(package.__path__):
-        module = importlib.import_module(f"core.{family}.{module_info.name}")
+        module = importlib.import_module(f"{folder}.{module_info.name}")
         for value in vars(module).values():
             if (
                 isinstance(value, type)
                 and issubclass(value, Block)
                 and value.__module__ == module.__name__
-                and hasattr(value, "step")
+                and hasattr(value, "title")  # the bases of families have none
             ):
                 found[value.name] = value
     for entry in entry_points(group=f"combbench.{family}"):
         loaded: type[Block] = entry.load()
         loaded.name, loaded.family = entry.name, family
         found[entry.name] = loaded
+    for loaded in found.values():
+        _check_lengths(loaded)
     return dict(sorted(found.items()))
+
+
+def _check_lengths(entry: type[Block]) -> None:
+    """Refuse a block whose state could change its length while the board runs.
+
+    Raises
+    ------
+    TypeError
+        When the parameters that set the length are not named, not there, or tunable while running.
+    """
+    if entry.State.layout.tails and not entry.lengths:
+        raise TypeError(f"{entry.__module__}: the state has a tail; name the parameters of its length in lengths")
+    for name in entry.lengths:
+        info = entry.Params.model_fields.get(name)
+        if info is None or is_live(info):
+            raise TypeError(f"{entry.__module__}: {name} sets the length of the state, so it must be there, live=False")
 
 
 def block(family: str, name: object, field: str = "") -> type[Block]:
@@ -145,9 +165,9 @@ def card(entry: type[Block]) -> BlockCard:
         name=entry.name,
         title=entry.title,
         summary=" ".join((entry.__doc__ or "").strip().split("\n\n")[0].split()),
-        changes=getattr(entry, "changes", None),
-        shows=getattr(entry, "shows", None),
-        suggested=getattr(entry, "suggested", None),
+        changes=entry.changes or None,
+        shows=entry.shows or None,
+        suggested=entry.suggested,
         weaknesses=list(entry.weaknesses),
         equations=[equation_card(equation) for equation in entry.equations],
         parameters=parameter_cards(entry.Params),

@@ -1,4 +1,4 @@
-"""The names, units and places of everything that can be seen."""
+"""The names, units and places of all signals of a board."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from core.errors import unknown
 
 CLOCK = ("tick", "time_ms")
-"""What stands beside the signals in every trace."""
+"""Columns of every trace that are not signals."""
 
 
 class Signal(BaseModel):
@@ -55,7 +55,7 @@ class SignalTable(Sequence[Signal]):
 
     @property
     def taps(self) -> Sequence[Signal]:
-        """What follows the outputs."""
+        """Traced signals that follow the outputs."""
         return self._signals[self.outputs :]
 
     def index(self, name: str) -> int:  # type: ignore[override]

@@ -47,8 +47,8 @@ def force_un_per_v(force_n_per_v: float) -> float:
 def thermal_force_un(temperature_k: float, dt_ms: float) -> float:
     r"""Held thermomechanical force per square root of damping, uN / sqrt(uN ms/um).
 
-    White force of two-sided density :math:`2 k_B T \beta` held over one sample has the standard
-    deviation :math:`\sqrt{2 k_B T \beta / dt}`; the damping is multiplied in where it is known.
+    A white force of two-sided density :math:`2 k_B T \beta`, held over one sample, has the standard
+    deviation :math:`\sqrt{2 k_B T \beta / dt}`. The step multiplies by the root of the damping, which faults change.
     """
     per_si_damping: float = 2.0 * BOLTZMANN * temperature_k / (dt_ms / MS_PER_S)
     in_newton_squared_per_internal = per_si_damping / UN_MS_UM_PER_NS_M

@@ -1,16 +1,17 @@
-r"""The voltage of an interval, as a device feels it: it moves between ticks, and within one when the drive is analogue.
+r"""The effect on a device of a voltage that moves over the interval between two samples.
 
-Over an interval of N ticks the forced response of a device is that of a constant voltage only for one device, and it
-takes two numbers to say: the displacement is :math:`\alpha_i`, and what is left of it an interval later, when the free
-motion is taken out, :math:`\beta_i`:
+The voltage may change at every tick, and within a tick when the drive is analogue. Two numbers describe its effect on a
+device over an interval of N ticks: the displacement :math:`\alpha_i` that it has caused by the end of the interval, and
+the displacement :math:`\beta_i` that is left of it one interval later, once the free motion is taken out:
 
 .. math:: y_i+a_1y_{i-1}+a_2y_{i-2}=\alpha_i+\beta_{i-1},\qquad
     \alpha_i=g_1,\;\beta_i=\Phi_{12}g_2-\Phi_{22}g_1,\quad
     g=\sum_j\varphi^{N-1-j}\int_0^h e^{A(h-\tau)}B\,u_j(\tau)\,d\tau
 
-Under a voltage that is held over the interval :math:`\alpha=b_0u,\;\beta=b_1u`. So :math:`\alpha/b_0` and
-:math:`\beta/b_1` of the nominal device are the voltages a difference equation is to be given: means of the ticks,
-weighed as that device does. For the nominal device they are exact, for its neighbours nearly so (``lost``).
+Under a voltage that is held over the interval, :math:`\alpha=b_0u,\;\beta=b_1u`. A difference equation is therefore
+given the voltages :math:`\alpha/b_0` and :math:`\beta/b_1` of the nominal device: means over the ticks, weighted by the
+response of that device. They are exact for the nominal device and nearly exact for its neighbours (`lost` returns the
+error).
 """
 
 from __future__ import annotations
@@ -18,116 +19,189 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
-from core.block import Context, Oscillator, Port, inlined, kernel
+from core.block import Context, Oscillator
 from core.device.oscillator import transition, within
 from core.format import format_short
+from core.kernel import flush_tiny, inlined, kernel
+from core.ports import BlockPorts, reads
+from core.record import Record
 
-APPLIED_PORTS = (
-    Port("applied", "V", "voltage applied at the start of the sample that ends now", source="drive.voltage"),
-    Port("middle", "V", "the same in its middle", source="drive.middle"),
-    Port("end", "V", "the same at its end", source="drive.end"),
-)
-"""A held voltage is the same in all of them."""
-
-PHI11, PHI12, PHI21, PHI22, PUSH1, PUSH2, MIDDLE1, MIDDLE2, END1, END2 = range(10)
-"""A device over a tick: transition, effect of a held volt, and of a volt more in the middle and at the end."""
-TICK_SIZE = 10
-LATER1, LATER2, FIRST_SHARE, SECOND_SHARE, INTERVAL_SIZE = range(TICK_SIZE, TICK_SIZE + 5)
-"""Behind it, over the interval: :math:`-\\Phi_{22},\\;\\Phi_{12}`, and the inverses of b0 and b1 of a unit gain."""
-BEGUN, START, GAINED1, GAINED2, STATES = range(5)
-"""State: whether the interval has begun, the voltage at its start, what motion the rest of it has made so far."""
 MOST_LOST = 1e-3
-"""Share of the response to a tone that may be lost unsaid."""
+"""Largest share of the response to a tone that may be lost without a caution."""
+
+
+class AppliedPorts(BlockPorts):
+    """The voltage at the start, middle and end of the tick that ends now, all equal when the drive holds it."""
+
+    applied: float = reads("drive.voltage", "V", "voltage applied at the start of the sample that ends now")
+    middle: float = reads("drive.middle", "V", "the same in its middle")
+    end: float = reads("drive.end", "V", "the same at its end")
+
+
+class MeasuredPorts(BlockPorts):
+    """The measured displacement."""
+
+    measured: float = reads("sensor.displacement", "um", "measured displacement")
+
+
+class ObservedPorts(MeasuredPorts, AppliedPorts):
+    """The measured displacement and the voltage that caused it: an identifier or a bank knows no more of the device."""
+
+
+class Moves(Record):
+    """Displacement and velocity gained from one volt more than at the start, in the middle or at the end of a tick."""
+
+    middle1: float
+    middle2: float
+    end1: float
+    end2: float
+
+
+class Tick(Moves):
+    """A device over a tick: transition, effect of a held volt, and of one volt more in the middle or at the end."""
+
+    phi11: float
+    phi12: float
+    phi21: float
+    phi22: float
+    push1: float
+    push2: float
+
+
+class Interval(Tick):
+    r"""A device over a tick and over the interval.
+
+    Of the interval it holds :math:`-\Phi_{22},\;\Phi_{12}`, and the inverses of b0 and b1 for a unit gain.
+    """
+
+    later1: float
+    later2: float
+    first_share: float
+    second_share: float
+
+
+class Motion(Record):
+    """Displacement and velocity, or a filtered signal and its derivative."""
+
+    x: float
+    v: float
+
+
+class Gathered(Record):
+    """Whether an interval has begun, the voltage at its start, and the motion caused by later changes of it."""
+
+    begun: float
+    start: float
+    gained1: float
+    gained2: float
 
 
 @inlined
-def moved(w: Any, io: Any, at: int) -> tuple[float, float, float]:
-    """Return the voltage at the start of the tick that ends now, and how much more it was in the middle and the end."""
-    u = w[io[at]]
-    return u, w[io[at + 1]] - u, w[io[at + 2]] - u
+def moves(x: AppliedPorts) -> tuple[float, float, float]:
+    """Return the voltage at the start of the tick that ends now, and by how much its middle and its end exceed that."""
+    u = x.applied
+    return u, x.middle - u, x.end - u
 
 
-def pack_tick(device: Oscillator, gain: float, h: float, analogue: bool) -> list[float]:
-    """Pack a device over a tick; its stiffness times its displacement at rest is the gain times the voltage."""
-    phi = transition(device.mass, device.damping, device.stiffness, h)
-    more = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
+def fill_tick(p: Tick, device: Oscillator, gain: float, h: float, analogue: bool) -> None:
+    """Pack a device over a tick; at rest, its stiffness times its displacement is the gain times the voltage."""
+    p.phi11, p.phi12, p.phi21, p.phi22 = transition(device.mass, device.damping, device.stiffness, h)
     rest = gain / device.stiffness
-    return [*phi, (1.0 - phi[0]) * rest, -phi[2] * rest, *more]
+    p.push1, p.push2 = (1.0 - p.phi11) * rest, -p.phi21 * rest
+    effects = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
+    p.middle1, p.middle2, p.end1, p.end2 = effects
 
 
-def pack_interval(context: Context) -> list[float]:
-    """Pack the nominal device over a tick and over the interval of the block, for a displacement at rest of 1 um/V."""
-    device = context.device
-    tick = pack_tick(device, device.stiffness, context.dt_ms / context.every, context.analogue)
+def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
+    """Return a device over a tick."""
+    tick = Tick.blank()
+    fill_tick(tick, device, gain, h, analogue)
+    return tick
+
+
+def interval_of(context: Context) -> Interval:
+    """Return the nominal device over a tick and the interval of the block, for a displacement at rest of 1 um/V."""
+    device, interval = context.device, Interval.blank()
+    fill_tick(interval, device, device.stiffness, context.dt_ms / context.every, context.analogue)
     b0, b1, _, _ = difference_equation(device, 1.0, context.dt_ms)
     _, phi12, _, phi22 = transition(device.mass, device.damping, device.stiffness, context.dt_ms)
-    return [*tick, -phi22, phi12, 1.0 / b0 if b0 else 0.0, 1.0 / b1 if b1 else 0.0]
+    interval.later1, interval.later2 = -phi22, phi12
+    interval.first_share, interval.second_share = 1.0 / b0 if b0 else 0.0, 1.0 / b1 if b1 else 0.0
+    return interval
+
+
+@kernel
+def advance_motion(p: Tick, s: Motion, u: float) -> None:
+    """Advance a motion over an interval with a held voltage."""
+    x = s.x
+    v = s.v
+    s.x = flush_tiny(p.phi11 * x + p.phi12 * v + p.push1 * u)
+    s.v = flush_tiny(p.phi21 * x + p.phi22 * v + p.push2 * u)
+
+
+@kernel
+def add_moves(p: Moves, s: Motion, middle: float, end: float) -> None:
+    """Add the effect on a motion of the volts by which the middle and the end of a tick exceed its start."""
+    s.x += p.middle1 * middle + p.end1 * end
+    s.v += p.middle2 * middle + p.end2 * end
+
+
+@kernel
+def gather(p: Tick, s: Gathered, u: float, middle: float, end: float) -> None:
+    """Add a tick to the interval, with its voltage at the start, in the middle and at the end.
+
+    The gathered motion is the effect of the voltage less its value at the start of the interval. A voltage that is held
+    over the whole interval therefore adds nothing, to the bit.
+    """
+    if s.begun == 0.0:
+        s.begun = 1.0
+        s.start = u
+        s.gained1 = 0.0
+        s.gained2 = 0.0
+    x = s.gained1
+    v = s.gained2
+    if middle == u and end == u and u == s.start and x == 0.0 and v == 0.0:
+        return
+    rise = u - s.start
+    middle -= u
+    end -= u
+    gain1 = p.push1 * rise + p.middle1 * middle + p.end1 * end
+    gain2 = p.push2 * rise + p.middle2 * middle + p.end2 * end
+    s.gained1 = p.phi11 * x + p.phi12 * v + gain1
+    s.gained2 = p.phi21 * x + p.phi22 * v + gain2
+
+
+@kernel
+def weighed_voltages(p: Interval, s: Gathered) -> tuple[float, float]:
+    r"""Return :math:`\alpha/b_0` and :math:`\beta/b_1` of the interval that ends now; the next tick starts anew."""
+    s.begun = 0.0
+    x = s.gained1
+    if x == 0.0 and s.gained2 == 0.0:
+        return s.start, s.start
+    later = p.later1 * x + p.later2 * s.gained2
+    return s.start + p.first_share * x, s.start + p.second_share * later
 
 
 def difference_equation(device: Oscillator, rest: float, h: float) -> tuple[float, float, float, float]:
-    """Return b0, b1, a1, a2 of a device under a held voltage, of which a volt moves it by ``rest`` in the end."""
+    """Return b0, b1, a1, a2 of a device under a held voltage; one volt displaces it by ``rest`` in the steady state."""
     f11, f12, f21, f22 = transition(device.mass, device.damping, device.stiffness, h)
     g1, g2 = (1.0 - f11) * rest, -f21 * rest
     return g1, f12 * g2 - f22 * g1, -(f11 + f22), f11 * f22 - f12 * f21
 
 
-@kernel
-def add_moved(p: Any, more: int, s: Any, at: int, middle: float, end: float) -> None:
-    """Add to a motion what the voltage of a tick was more in its middle and at its end; the effects are at ``more``."""
-    s[at] += p[more] * middle + p[more + 2] * end
-    s[at + 1] += p[more + 1] * middle + p[more + 3] * end
-
-
-@kernel
-def follow(p: Any, at: int, s: Any, b: int, u: float, middle: float, end: float) -> None:
-    """Take in a tick: its voltage at the start, in the middle and at the end.
-
-    What is gathered is the motion by what the voltage is more than at the start of the interval, so that a voltage held
-    over all of it adds nothing, to the bit.
-    """
-    if s[b + BEGUN] == 0.0:
-        s[b + BEGUN] = 1.0
-        s[b + START] = u
-        s[b + GAINED1] = 0.0
-        s[b + GAINED2] = 0.0
-    x = s[b + GAINED1]
-    v = s[b + GAINED2]
-    if middle == u and end == u and u == s[b + START] and x == 0.0 and v == 0.0:
-        return
-    more = u - s[b + START]
-    middle -= u
-    end -= u
-    own1 = p[at + PUSH1] * more + p[at + MIDDLE1] * middle + p[at + END1] * end
-    own2 = p[at + PUSH2] * more + p[at + MIDDLE2] * middle + p[at + END2] * end
-    s[b + GAINED1] = p[at + PHI11] * x + p[at + PHI12] * v + own1
-    s[b + GAINED2] = p[at + PHI21] * x + p[at + PHI22] * v + own2
-
-
-@kernel
-def weighed(p: Any, at: int, s: Any, b: int) -> tuple[float, float]:
-    r"""Return :math:`\alpha/b_0` and :math:`\beta/b_1` of the interval that ends now; the next tick begins another."""
-    s[b + BEGUN] = 0.0
-    x = s[b + GAINED1]
-    if x == 0.0 and s[b + GAINED2] == 0.0:
-        return s[b + START], s[b + START]
-    later = p[at + LATER1] * x + p[at + LATER2] * s[b + GAINED2]
-    return s[b + START] + p[at + FIRST_SHARE] * x, s[b + START] + p[at + SECOND_SHARE] * later
-
-
 def lost(nominal: Oscillator, other: Oscillator, context: Context, hz: float) -> float:
-    r"""Return how far the response of a device to a tone is from what its difference equation says of it, as a share.
+    r"""Return the error of a device's difference equation in the response to a tone, as a share of that response.
 
-    When that equation is given the voltages as the nominal device weighs them. In a steady state
-    :math:`g=(e^{j\omega Nh}I-\Phi)X`, with X the phasor of the state.
+    The equation is given the voltages weighted by the nominal device. In a steady state
+    :math:`g=(e^{j\omega Nh}I-\Phi)X`, where X is the phasor of the state.
 
     Parameters
     ----------
     nominal, other : Oscillator
-        The device whose weights are taken, and the one whose response is asked for.
+        The device that weights the voltages, and the device of the response.
     context : Context
         Interval, ticks, and whether the drive is analogue.
     hz : float
@@ -154,17 +228,17 @@ def lost(nominal: Oscillator, other: Oscillator, context: Context, hz: float) ->
     b0, b1, a1, a2 = difference_equation(other, 1.0, context.dt_ms)
     _, alpha, beta = response(nominal)
     true = response(other)[0]
-    said = (b0 / n0 * alpha * shift + b1 / n1 * beta) / (shift * shift + a1 * shift + a2)
-    return abs(said / true - 1.0)
+    predicted = (b0 / n0 * alpha * shift + b1 / n1 * beta) / (shift * shift + a1 * shift + a2)
+    return abs(predicted / true - 1.0)
 
 
 def caution(context: Context, others: Mapping[str, Oscillator], hz: float) -> str:
-    """Say how much of the response of which device a difference equation loses at a tone; nothing when it is little."""
+    """Name the device whose difference equation loses most of its response to a tone, and how much; "" if little."""
     shares = {name: lost(context.device, device, context, hz) for name, device in others.items()}
     worst = max(shares, key=lambda name: shares[name], default="")
     if not worst or shares[worst] <= MOST_LOST:
         return ""
-    what = f"the voltages of {context.every} ticks" if context.every > 1 else "the voltage within a tick"
+    span = f"the voltages of {context.every} ticks" if context.every > 1 else "the voltage within a tick"
     share = format_short(100.0 * shares[worst], "%", 2)
-    text = f"weighs {what} as the nominal device does: {share} of the response of {worst}"
+    text = f"weighs {span} as the nominal device does: {share} of the response of {worst}"
     return f"{text} at {format_short(hz, 'Hz')} are lost to it"

@@ -14,7 +14,7 @@ import math
 import subprocess
 from pathlib import Path
 
-from scenarios.svg import Series, chart
+from scenarios.report.svg import Series, chart
 
 RUNS = 100
 FOLDER = Path("monte-carlo-roc")

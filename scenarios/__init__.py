@@ -1,4 +1,4 @@
-"""What to run: scenarios, runs, reports. Importing this first gives compiled kernels their cache."""
+"""Scenarios, runs and reports. Importing this first gives compiled kernels their cache."""
 
 from scenarios.kernel_cache import prepare
 

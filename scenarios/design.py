@@ -1,4 +1,4 @@
-"""What a device on the drawing board would be: its figures, its response, what the process makes of it."""
+"""Properties of a device on the drawing board: its figures, its response, its spread from the process."""
 
 from __future__ import annotations
 
@@ -9,19 +9,20 @@ import numpy as np
 from pydantic import ValidationError
 
 from core.block import FloatArray
-from core.board.spec import Spec, parse
+from core.board.parse import parse
+from core.board.spec import Spec
 from core.device.frequency import Band, response, tolerance_band
 from core.device.geometry import Geometry
 from core.device.spread import Spread, Tolerances, draw, evaluate, sensitivity
 from core.errors import InputError
-from scenarios.lateral_metrics import device_pull_in
-from scenarios.metrics import device_metrics
+from scenarios.measure.lateral import device_pull_in
+from scenarios.measure.metrics import device_metrics
 from scenarios.studies.process_spread import STEPS
 
 DRAWS = 400
 """Devices drawn for the band."""
 SHARES = (1.0, 99.0)
-"""Percentiles the band lies between."""
+"""Percentiles at the limits of the band."""
 TOLERANCE = 0.05
 """Share by which mass, damping and stiffness vary where there is no drawing (assumed)."""
 
@@ -39,9 +40,9 @@ def designed(device: dict[str, Any], environment: dict[str, Any]) -> Spec:
 
 def device_figures(spec: Spec) -> dict[str, float]:
     """Return the figures of the device in its environment, by the names of its metrics without ``device.``."""
-    found = {name.removeprefix("device."): value for name, value in device_metrics(spec).items()}
-    volts = device_pull_in(spec.device, found["environment.stiffness_scale"])
-    return found if volts is None else {**found, "pull_in_v": volts}
+    figures = {name.removeprefix("device."): value for name, value in device_metrics(spec).items()}
+    volts = device_pull_in(spec.device, figures["environment.stiffness_scale"])
+    return figures if volts is None else {**figures, "pull_in_v": volts}
 
 
 def parameters(spec: Spec) -> dict[str, float]:
@@ -52,20 +53,20 @@ def parameters(spec: Spec) -> dict[str, float]:
     InputError
         For a transfer function, which has none.
     """
-    found = device_figures(spec)
-    return {name: found[name] for name in spec.device.resolved}
+    figures = device_figures(spec)
+    return {name: figures[name] for name in spec.device.resolved}
 
 
 def sensitivities(geometry: Geometry) -> dict[str, dict[str, float]]:
-    """Return what one step of a number of the drawing does to each parameter, percent; steps that leave nothing out."""
-    found = {}
+    """Return the change of each parameter, percent, by one step of each number of the drawing that allows one."""
+    changes = {}
     for name, step in STEPS.items():
         try:
             Geometry.model_validate({**geometry.model_dump(), name: getattr(geometry, name) + step})
         except ValidationError:
             continue
-        found[name] = sensitivity(geometry, name, step)
-    return found
+        changes[name] = sensitivity(geometry, name, step)
+    return changes
 
 
 def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
@@ -95,21 +96,21 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
     decibels, degrees = 20.0 * np.log10(np.abs(all_of_them)), np.degrees(np.angle(all_of_them))
     low_db, high_db = np.percentile(decibels, SHARES, axis=0)
     low_deg, high_deg = np.percentile(degrees, SHARES, axis=0)
-    own = response(**nominal, frequency_hz=frequency_hz) * at_rest
-    own_db, own_deg = 20.0 * np.log10(np.abs(own)), np.degrees(np.angle(own))
-    return Band(frequency_hz, low_db, own_db, high_db, low_deg, own_deg, high_deg)
+    curve = response(**nominal, frequency_hz=frequency_hz) * at_rest
+    middle_db, middle_deg = 20.0 * np.log10(np.abs(curve)), np.degrees(np.angle(curve))
+    return Band(frequency_hz, low_db, middle_db, high_db, low_deg, middle_deg, high_deg)
 
 
 def process(spec: Spec, draws: int, seed: int) -> Spread:
     """Draw devices from the process: mass, damping, stiffness and force per volt in their environment.
 
-    What the device states beside its drawing varies by the same share as what the drawing gives. Stators that pull
-    alike leave no force to vary.
+    A value that the device states beside its drawing varies by the same share as the value from the drawing. Stators
+    that pull alike leave no force to vary.
 
     Raises
     ------
     InputError
-        Without a drawing, or when the process leaves nothing of a beam or a gap.
+        Without a drawing, or if a beam or a gap vanishes in the process.
     """
     if spec.device.geometry is None:
         raise InputError("has no drawing to vary", "device.id", "choose lcr-350")
@@ -117,11 +118,11 @@ def process(spec: Spec, draws: int, seed: int) -> Spread:
     nominal, force = parameters(spec), abs(spec.device.signed_force_n_per_v)
     if force > 0.0:
         nominal["force"] = force
-    found = {name: value * spread.found[name] for name, value in nominal.items()}
-    omega = np.sqrt(found["stiffness_n_m"] / found["mass_kg"])
-    found["f0_hz"] = omega / (2.0 * np.pi)
-    found["quality_factor"] = omega * found["mass_kg"] / found["damping_ns_m"]
-    return Spread(spread.drawn, found)
+    drawn = {name: value * spread.found[name] for name, value in nominal.items()}
+    omega = np.sqrt(drawn["stiffness_n_m"] / drawn["mass_kg"])
+    drawn["f0_hz"] = omega / (2.0 * np.pi)
+    drawn["quality_factor"] = omega * drawn["mass_kg"] / drawn["damping_ns_m"]
+    return Spread(spread.drawn, drawn)
 
 
 def _shares(geometry: Geometry, draws: int, seed: int) -> Spread:
@@ -132,7 +133,7 @@ def _shares(geometry: Geometry, draws: int, seed: int) -> Spread:
 
 @dataclass(frozen=True)
 class Statistics:
-    """How far one parameter of drawn devices lies apart."""
+    """Spread of one parameter over the drawn devices."""
 
     variation_pct: float
     p01: float
@@ -141,6 +142,6 @@ class Statistics:
 
     @classmethod
     def of(cls, spread: Spread, name: str) -> Statistics:
-        """Return those of one parameter."""
+        """Return the statistics of one parameter."""
         low, middle, high = (spread.percentile(name, share) for share in (1.0, 50.0, 99.0))
         return cls(spread.variation_pct(name), low, middle, high)

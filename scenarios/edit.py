@@ -1,4 +1,4 @@
-"""Changes to a scenario by dotted paths: what ``--set`` does."""
+"""Changes to a scenario by dotted paths, for ``--set``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:
-    """Read ``path=value``; the value as TOML, or as plain text when it is none.
+    """Read ``path=value``; the value is TOML, or plain text if it is not valid TOML.
 
     Raises
     ------

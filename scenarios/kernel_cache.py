@@ -1,41 +1,48 @@
-"""Where compiled kernels are kept.
-
-Numba keys its cache on the file of the function it compiles, so an edit in a file that function calls would run
-stale code. The folder is therefore named after a hash of all of ``core``.
-"""
+"""Keeps compiled kernels in a folder."""
 
 from __future__ import annotations
 
-import hashlib
+import contextlib
 import logging
 import os
-import sys
 import tempfile
 from functools import cache
 from pathlib import Path
 
-CORE = Path(__file__).resolve().parent.parent / "core"
+from core.kernel_cache import keep_on
+
+
+class Folder:
+    """A folder of compiled kernels, a file for each; several processes may use it."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def get(self, name: str) -> bytes | None:
+        """Return a kernel, if it is there."""
+        try:
+            return (self._path / name).read_bytes()
+        except OSError:
+            return None
+
+    def put(self, name: str, code: bytes) -> None:
+        """Keep a kernel, whole or not at all."""
+        with contextlib.suppress(OSError):
+            with tempfile.NamedTemporaryFile(dir=self._path, delete=False) as part:
+                part.write(code)
+            os.replace(part.name, self._path / name)
 
 
 @cache
-def core_hash() -> str:
-    """Return a hash of every Python file of ``core``."""
-    digest = hashlib.sha256()
-    for path in sorted(CORE.rglob("*.py")):
-        digest.update(path.relative_to(CORE).as_posix().encode())
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
 def folder() -> Path | None:
-    """Return a folder for the cache that can be written, or none."""
+    """Return a folder for compiled kernels that can be written, or none."""
     given = os.environ.get("COMBBENCH_KERNEL_CACHE")
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     candidates = (
         [Path(given)] if given else [Path(home) / "combbench", Path(tempfile.gettempdir()) / f"combbench-{os.getuid()}"]
     )
     for candidate in candidates:
-        path = candidate / f"kernels-{core_hash()}"
+        path = candidate / "kernels"
         try:
             path.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError:
@@ -46,12 +53,9 @@ def folder() -> Path | None:
 
 
 def prepare() -> None:
-    """Point numba at the cache; without a writable folder kernels are compiled anew at every start."""
+    """Keep compiled kernels; without a writable folder they are compiled anew at every start."""
     path = folder()
     if path is None:
         logging.getLogger(__name__).warning("no writable folder for compiled kernels; set COMBBENCH_KERNEL_CACHE")
-        return
-    os.environ["NUMBA_CACHE_DIR"] = str(path)
-    if "numba" in sys.modules:
-        # numba read its settings before we could; tell it again
-        vars(sys.modules["numba"].config)["CACHE_DIR"] = str(path)
+    else:
+        keep_on(Folder(path))

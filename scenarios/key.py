@@ -1,4 +1,4 @@
-"""The key of a run: the same scenario, seed and version give the same bits, so one run of them is enough."""
+"""The key of a run: the same scenario, seed and version give the same bits, so such a run is computed only once."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from core.board.document import with_values
-from scenarios.kernel_cache import CORE
 
 SCENARIOS = Path(__file__).resolve().parent
+CORE = SCENARIOS.parent / "core"
 
 
 @cache
 def code_version() -> str:
-    """Return a hash of all code a result depends on: every Python file of ``core`` and ``scenarios``."""
+    """Return a hash of the code that results depend on: every Python file of ``core`` and ``scenarios``."""
     digest = hashlib.sha256()
     for folder in (CORE, SCENARIOS):
         for path in sorted(folder.rglob("*.py")):
@@ -26,7 +26,7 @@ def code_version() -> str:
 
 
 def content_hash(document: dict[str, Any]) -> str:
-    """Return a hash of a scenario without its seed; neither the order of fields nor where they stand matters."""
+    """Return a hash of a scenario without its seed; the order of fields does not matter."""
     content = {name: value for name, value in with_values(document, {}).items() if name != "seed"}
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()
 

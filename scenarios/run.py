@@ -15,11 +15,12 @@ from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
 from core.board.observer import cautions
+from core.board.parse import changed
 from core.errors import InputError
 from core.signals import Signal, SignalTable
-from scenarios.metrics import device_metrics, measure
+from scenarios.measure.metrics import device_metrics, measure
+from scenarios.measure.verdicts import TRACED_VERDICTS
 from scenarios.schema import Scenario
-from scenarios.verdict_metrics import TRACED_VERDICTS
 
 DEFAULT_SAMPLES = 10_000
 """Length of a run whose scenario has no end."""
@@ -34,7 +35,7 @@ TRACED_FIGURES = (
 
 @dataclass
 class Result:
-    """What a run gave."""
+    """The result of a run."""
 
     scenario: Scenario
     seed: int
@@ -53,7 +54,7 @@ class Result:
 
     @property
     def kept(self) -> list[Signal]:
-        """Signals whose traces were kept: the outputs, and the taps if there was to be a trace of them."""
+        """Signals whose traces were kept: the outputs, and the taps if the caller asked for them."""
         return [signal for signal in self.board.signals if signal.kind == "output" or self.taps is not None]
 
     def signal(self, name: str) -> FloatArray:
@@ -72,7 +73,7 @@ class Result:
         return self.taps[:, column - self.outputs.shape[1]]
 
     def expectations(self) -> list[dict[str, Any]]:
-        """Return each expectation with what was measured."""
+        """Return each expectation with the measured figure."""
         return judge(self.scenario, self.metrics)
 
     def summary(self) -> dict[str, Any]:
@@ -90,7 +91,7 @@ class Result:
 
 
 def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]:
-    """Return each expectation of a scenario with what was measured."""
+    """Return each expectation of a scenario with the measured figure."""
     return [
         {
             "metric": entry.metric,
@@ -144,10 +145,11 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     InputError
         When an event could never be carried out.
     """
-    document = dict(scenario.bench)
+    spec, twins = scenario.spec, scenario.twins
     if seed is not None:
-        document["seed"] = seed
-    board = make(document, compiled=compiled)
+        spec = changed(spec, {"seed": seed})
+        twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
+    board = make(spec, twins, compiled=compiled)
     for position, event in enumerate(scenario.head.events):
         for command in event.commands():
             try:
@@ -158,7 +160,7 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
 
 
 WORKER_BYTES, WORKING_COLUMNS = 400_000_000, 16
-"""Beside the trace: the process itself, a piece of the trace being written, and some columns worked on."""
+"""Memory beside the trace: the process itself, a piece of the trace being written, and the columns worked on."""
 
 
 def run_bytes(board: Board, samples: int, *, taps: bool) -> int:
@@ -180,7 +182,7 @@ def run(
     Parameters
     ----------
     scenario : Scenario
-        What to run; one without a length runs `DEFAULT_SAMPLES`.
+        The scenario to run; one without a length runs `DEFAULT_SAMPLES`.
     seed : int, optional
         Instead of the scenario's own.
     taps : bool
@@ -200,7 +202,7 @@ def run(
     while board.tick < samples:
         rows = board.advance(samples - board.tick)
         if rows.count == 0:
-            break  # tripped, and nothing is waiting that would reset it
+            break  # tripped, and no waiting command would reset it
         outputs[rows.first_tick : board.tick] = rows.outputs
         if kept is not None:
             kept[rows.first_tick : board.tick] = rows.taps
@@ -211,8 +213,8 @@ def run(
     metrics = _figures(board, outputs, scenario)
     if isinstance(board, Ensemble):
         for name, twin in board.twins.items():
-            found = _figures(twin, outputs, scenario, board.signals, f"{name}:")
-            metrics |= {f"twins.{name}.{metric}": value for metric, value in found.items()}
+            figures = _figures(twin, outputs, scenario, board.signals, f"{name}:")
+            metrics |= {f"twins.{name}.{metric}": value for metric, value in figures.items()}
     return Result(
         scenario,
         board.spec.seed,
@@ -220,7 +222,7 @@ def run(
         board.digest(),
         elapsed,
         metrics,
-        # a warning that came and went is told once
+        # a warning that came and went is listed once
         list(dict.fromkeys(entry.text for entry in board.log if entry.kind == "warning")),
         outputs,
         kept[: board.tick] if kept is not None else None,
@@ -230,7 +232,7 @@ def run(
 def _figures(
     board: Board, outputs: FloatArray, scenario: Scenario, signals: SignalTable | None = None, prefix: str = ""
 ) -> dict[str, float]:
-    """Return the figures of a board from the trace, or of a twin from the trace of all."""
+    """Return the figures of a board from the trace, or those of a twin from the trace of all boards."""
     table = signals or board.signals
     names = [*TRACED_FIGURES, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]
@@ -241,7 +243,7 @@ def _figures(
 
 
 def _run_study(scenario: Scenario, board: Board) -> Result:
-    """Make a study of a bench; nothing is traced, and the digest is that of the figures."""
+    """Make a study of a bench, without a trace; the digest is the one of the figures."""
     assert scenario.study is not None
     study, params = scenario.study
     nothing = np.empty((0, board.signals.outputs)), np.empty((0, len(board.signals) - board.signals.outputs))

@@ -1,4 +1,4 @@
-"""A scenario: a bench, what happens to it, and what is expected of it."""
+"""A scenario: a bench, its events, and its expectations."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from pydantic import Field, ValidationError, model_validator
 
 from core.board.commands import LONGEST_MS, Command, Timed, parse_command
 from core.board.document import Document
-from core.board.ensemble import twin_documents
-from core.board.spec import FIELDS, parse
+from core.board.ensemble import twin_specs
+from core.board.parse import parse
+from core.board.spec import FIELDS
 from core.errors import InputError, from_validation, unknown_field
 from core.format import format_short
 from core.nesting import read_toml
 from core.table import Table
-from scenarios.stretch import Stretch
+from scenarios.measure.stretch import Stretch
 from scenarios.studies import parse_study
 
 Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
@@ -54,21 +55,21 @@ class Event(Table):
 
     def commands(self) -> list[Command]:
         """Return the commands of the event, in the order they take effect."""
-        found: list[dict[str, Any]] = []
+        commands: list[dict[str, Any]] = []
         if self.reset_trip:
-            found.append({"kind": "reset_trip"})
+            commands.append({"kind": "reset_trip"})
         if self.heal:
-            found.append({"kind": "heal", "faults": self.heal})
+            commands.append({"kind": "heal", "faults": self.heal})
         if self.fault is not None:
             profile = {"profile": self.profile} if self.profile is not None else {}
             chosen = {"parameters": self.parameters} if self.parameters else {}
-            found.append({"kind": "inject", "fault": self.fault, "severity": self.severity, **profile, **chosen})
+            commands.append({"kind": "inject", "fault": self.fault, "severity": self.severity, **profile, **chosen})
         if self.set:
-            found.append({"kind": "set", "values": self.set})
+            commands.append({"kind": "set", "values": self.set})
         if self.switch:
-            found.append({"kind": "switch", "controller": self.switch, "cold": self.cold})
+            commands.append({"kind": "switch", "controller": self.switch, "cold": self.cold})
         moment = self.model_dump(include=set(Timed.model_fields), exclude_none=True)
-        return [parse_command({**command, **moment}) for command in found]
+        return [parse_command({**command, **moment}) for command in commands]
 
 
 class Expectation(Table):
@@ -94,20 +95,20 @@ class Expectation(Table):
         return self
 
     def holds(self, measured: float | None) -> bool:
-        """Say whether a measured value is as expected."""
+        """Return whether a measured value is as expected."""
         if measured is None:
             return False
         low, high = self.bounds()
         return (low is None or measured >= low) and (high is None or measured <= high)
 
     def bounds(self) -> tuple[float | None, float | None]:
-        """Return the smallest and the largest value that are as expected."""
+        """Return the smallest and the largest value that count as expected."""
         if self.value is None:
             return self.min, self.max
         return self.value - (self.tolerance or 0.0), self.value + (self.tolerance or 0.0)
 
     def text(self) -> str:
-        """Say what is expected."""
+        """Write the expectation as text."""
         if self.value is not None:
             return f"{format_short(self.value, '', 6)} ± {format_short(self.tolerance or 0.0, '', 6)}"
         parts = [f">= {format_short(self.min, '', 6)}"] if self.min is not None else []
@@ -142,13 +143,17 @@ class Scenario:
     Attributes
     ----------
     document : dict
-        What it was read from.
+        The document it was read from.
     head : Head
         Title, length, events, expectations.
     bench : dict
-        The part that describes the bench.
+        The part of the document that describes the bench.
+    spec : Spec
+        The checked bench; every board of the scenario is built from it.
+    twins : dict of Spec
+        The bench of every twin, checked.
     study : tuple, optional
-        The study to make of it instead of running it, and its parameters.
+        The study to make of the bench instead of a run, and its parameters.
     """
 
     def __init__(self, document: Document) -> None:
@@ -169,11 +174,7 @@ class Scenario:
         self.spec = parse(self.bench)
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
-        for name, twin in twin_documents(self.bench).items():
-            try:
-                parse(twin)
-            except InputError as error:
-                raise error.under(f"twins.{name}") from None
+        self.twins = twin_specs(self.bench)
         self.study = parse_study(self.head.study) if self.head.study is not None else None
         self.commands: list[Command] = []
         for position, event in enumerate(self.head.events):
@@ -200,7 +201,7 @@ class Scenario:
 
     @property
     def samples(self) -> int | None:
-        """Length in ticks, none when it has no end."""
+        """Length in ticks, or None if it has no end."""
         if self.head.duration_ms is not None:
             return max(1, round(self.head.duration_ms / self.spec.dt_ms))
         return self.head.samples

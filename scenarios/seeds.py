@@ -21,7 +21,7 @@ def parse_seeds(text: str) -> range:
     Raises
     ------
     InputError
-        When it is not two whole numbers in order.
+        If it is not two whole numbers in order.
     """
     whole = re.fullmatch(r"\s*([0-9]{1,16})\s*:\s*([0-9]{1,16})\s*", text)
     first, last = (int(part) for part in whole.groups()) if whole else (1, 0)
@@ -38,12 +38,11 @@ def run_seeds(scenario: Scenario, seeds: Sequence[int]) -> dict[str, Any]:
 def together(scenario: Scenario, summaries: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Join the summaries of several seeds: means, standard deviations of a sample, expectations of the means, warnings.
 
-    The digest is the SHA-256 over the digests of the runs. A figure that some runs do not have is the mean over
-    those that do.
+    The digest is the SHA-256 over the digests of the runs. A figure that some runs lack is the mean over the others.
     """
     names = sorted({name for summary in summaries for name in summary["metrics"]})
     values = {name: [s["metrics"][name] for s in summaries if name in s["metrics"]] for name in names}
-    means = {name: float(np.mean(found)) for name, found in values.items()}
+    means = {name: float(np.mean(over_seeds)) for name, over_seeds in values.items()}
     expectations = judge(scenario, means)
     digests = [summary["digest"] for summary in summaries]
     return {
@@ -56,7 +55,8 @@ def together(scenario: Scenario, summaries: Sequence[dict[str, Any]]) -> dict[st
         "warnings": list(dict.fromkeys(text for summary in summaries for text in summary["warnings"])),
         "metrics": means,
         "metrics_std": {
-            name: float(np.std(found, ddof=1)) if len(found) > 1 else 0.0 for name, found in values.items()
+            name: float(np.std(over_seeds, ddof=1)) if len(over_seeds) > 1 else 0.0
+            for name, over_seeds in values.items()
         },
         "expectations": expectations,
         "ok": all(entry["ok"] for entry in expectations),

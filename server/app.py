@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator
 
 from fastapi import FastAPI
 
-from server import errors, openapi
+from server import document, errors
 from server.api import (
     aliases,
     benches,
@@ -60,12 +60,12 @@ ROUTERS = (
 
 
 def create_app(settings: Settings) -> FastAPI:
-    """Build the application; nothing runs before its lifespan begins.
+    """Build the application; the service starts with its lifespan.
 
     Parameters
     ----------
     settings : Settings
-        What to serve and how much of it.
+        Limits and places of the service.
     """
     service = Service(settings)
     public = PublicOrigin.parse(settings.public_origin)
@@ -89,7 +89,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.service, app.state.identity = service, identity
     errors.install(app)
-    openapi.install(app)
+    document.install(app)
     for module in ROUTERS:
         app.include_router(module.router, prefix=API)
     for module in (health, metrics):
@@ -100,7 +100,7 @@ def create_app(settings: Settings) -> FastAPI:
         app.include_router(proxy.router)
     app.router.default = Page()
     open_paths = OPEN_PATHS | {"/metrics"} if settings.metrics_open else OPEN_PATHS
-    # The last one added is the first one met.
+    # A request passes the middleware that was added last first.
     app.add_middleware(BodyLimit, limit=settings.body_limit_bytes)
     app.add_middleware(
         Gate,

@@ -21,21 +21,21 @@ from core.errors import InputError, one_line
 from core.format import format_in, format_short, format_si
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
-from scenarios.keeping import keep
-from scenarios.library import get, library
+from scenarios.library import get, ids
+from scenarios.report.keeping import keep
 from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds
 
 UsageError: Any = typer.BadParameter.__base__
-"""Any slip in the use of options and arguments; of these Typer exports one kind only."""
+"""Every usage error of options and arguments; Typer exports only one kind of them."""
 
 
 class OneLine(TyperGroup):
-    """Commands whose slips of usage are told in one line, as all bad input is."""
+    """Commands that report usage errors in one line, like all bad input."""
 
     def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
-        """Invoke a command; a slip of usage is exit code 2."""
+        """Invoke a command; a usage error is exit code 2."""
         try:
             return super().invoke(ctx)
         except UsageError as error:
@@ -50,7 +50,7 @@ app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, prett
 
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
-"""How a write to what is open already can fail."""
+"""Errors of a write to an open file."""
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
 
 
@@ -158,7 +158,7 @@ def gallery(
     as_json: JsonOption = False,
 ) -> None:
     """Run every library scenario: published claim, expectation, measured, verdict."""
-    chosen = [entry for entry in library() if fnmatch.fnmatch(entry.id, only)]
+    chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
     if not chosen:
         raise InputError(f"no scenario matches {only!r}", "--only")
     summaries = [run_scenario(entry).summary() for entry in chosen]
@@ -192,7 +192,7 @@ def sweep(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = False,
 ) -> None:
     """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
-    from scenarios.campaign import Stopped
+    from scenarios.campaign.campaign import Stopped
     from server.settings import load_settings
     from server.sweeping import carry_out, read_sweep
 
@@ -206,7 +206,7 @@ def sweep(
     again = f"; go on with: combbench sweep {file} --out {folder} --resume"
     try:
         with ExitStack() as stack:
-            bars: list[Any] = []  # none before the first run: what is refused is told in one line
+            bars: list[Any] = []  # no progress bar before the first run: a refusal is one line
 
             def show(done: int, total: int) -> None:
                 if not bars:
@@ -265,19 +265,19 @@ def catalog_command(
 @plainly
 def bench(as_json: JsonOption = False) -> None:
     """Measure speed, each figure as a ratio to a peer in the same run."""
-    from scenarios.speed import speed
+    from scenarios.speed.ratios import speed
 
-    found = speed()
+    report = speed()
     if as_json:
-        say_json(found)
+        say_json(report)
         return
-    for figure in found["figures"]:
+    for figure in report["figures"]:
         mark = "ok  " if figure["ok"] else "MISS"
         say(f"{mark} {figure['name']:<60} {figure['value']:>10.4g} {figure['unit']:<3} {figure['target']}")
     say("cost of each block, ns per tick:")
-    say("  " + "  ".join(f"{name} {value:g}" for name, value in found["blocks_ns"].items()))
-    if found["missing"]:
-        say(found["missing"])
+    say("  " + "  ".join(f"{name} {value:g}" for name, value in report["blocks_ns"].items()))
+    if report["missing"]:
+        say(report["missing"])
 
 
 @app.command()
@@ -313,8 +313,8 @@ def doctor(as_json: JsonOption = False) -> None:
 
 
 def main() -> None:
-    """Run the command line; an answer that cannot be written, as on a full disk, is one line too."""
-    for number in (1, 2):  # what is closed would be the number of the next file opened
+    """Run the command line; one line also reports an answer that cannot be written, as on a full disk."""
+    for number in (1, 2):  # the next file opened would take the number of a closed one
         try:
             os.fstat(number)
         except OSError:
@@ -328,8 +328,9 @@ def main() -> None:
     except OSError as error:
         if error.errno not in NOT_WRITTEN or error.filename is not None:
             raise
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left would fail again at the end
-        if isinstance(error, BrokenPipeError):  # whoever read it has seen enough
+        # Python would try at its end to write the rest again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):  # the reader has closed the pipe
             sys.exit(1)
         sys.stderr.write(f"combbench: cannot write to standard output: {error.strerror}\n")
         sys.exit(2)

@@ -1,4 +1,4 @@
-"""A connection of HTTP that is not kept for a client that sends or reads nothing."""
+"""An HTTP connection that is closed when its client neither sends nor reads."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Any
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 HEAD_S = 10.0
-"""Time for the head of a request, from the connection or its first byte."""
+"""Time for the head of a request, from the opening of the connection or from its first byte."""
 BODY_S = 60.0
 """Time for its body: the largest at 20 kB/s."""
 STALL_S = 30.0
-"""Time for taking something of an answer that fills its buffers."""
+"""Time in which a client with full buffers must take something of an answer."""
 MOST_WAITING = 16
-"""Requests sent before the answer to the first; what a chunk of them makes us keep is a hundred times its size."""
+"""Most requests sent before the answer to the first; a chunk of requests takes a hundred times its size in memory."""
 
 
 class Connection(HttpToolsProtocol):
-    """Closes what waits for too long; when there is no room left, what has waited longest."""
+    """Closes connections that wait too long; when there is no room left, the one that has waited longest."""
 
     def __init__(self, *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)
@@ -28,28 +28,28 @@ class Connection(HttpToolsProtocol):
 
     @property
     def is_idle(self) -> bool:
-        """Whether there is no request to be answered."""
+        """Whether no request waits for an answer."""
         return self.cycle is None or self.cycle.response_complete
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Wait for a request; make room for it."""
+        """Wait for a request; close the longest idle connection if the server is full."""
         if self.limit_concurrency is not None and len(self.connections) >= self.limit_concurrency - 1:
-            idle = [one for one in self.connections if isinstance(one, Connection) and one.is_idle]
+            idle = [link for link in self.connections if isinstance(link, Connection) and link.is_idle]
             if idle:
-                longest = min(idle, key=lambda one: one._since)
+                longest = min(idle, key=lambda link: link._since)
                 self.connections.discard(longest)
                 longest.transport.abort()
         super().connection_made(transport)
         self._wait(HEAD_S)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Wait no more."""
+        """Stop the timer."""
         self._wait(None)
         self.resume_writing()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Read on; what is no request yet has to become one."""
+        """Read on; an incomplete request must become complete in time."""
         super().data_received(data)
         is_ours = not self.transport.is_closing() and self.transport.get_protocol() is self
         if is_ours and self.is_idle and self._deadline is None:
@@ -62,12 +62,12 @@ class Connection(HttpToolsProtocol):
             self._wait(HEAD_S)
 
     def on_headers_complete(self) -> None:
-        """Wait for the body; to ask on without waiting for answers is no way to ask.
+        """Wait for the body; refuse a client that sends many requests without waiting for answers.
 
         Raises
         ------
         ValueError
-            Which the parser takes for a malformed request.
+            The parser takes it for a malformed request.
         """
         if len(self.pipeline) >= MOST_WAITING:
             raise ValueError("too many requests at once")
@@ -75,12 +75,12 @@ class Connection(HttpToolsProtocol):
         super().on_headers_complete()
 
     def on_message_complete(self) -> None:
-        """Wait no more: it is for us to answer."""
+        """Stop the timer: the server answers now."""
         self._wait(None)
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Note since when it is idle."""
+        """Note the time from which the connection is idle."""
         self._since = self.loop.time()
         super().on_response_complete()
 
@@ -90,7 +90,7 @@ class Connection(HttpToolsProtocol):
         super().handle_websocket_upgrade()
 
     def pause_writing(self) -> None:
-        """Give a client that does not read a while."""
+        """Give a client that does not read some time."""
         self._stalled = self.loop.call_later(STALL_S, self.transport.abort)
         super().pause_writing()
 

@@ -1,4 +1,4 @@
-"""What `combbench doctor` tells: settings and their sources, versions, caches."""
+"""The report of `combbench doctor`: settings and their sources, versions, caches."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
 
-from scenarios.kernel_cache import core_hash, folder
+from scenarios.kernel_cache import folder
+from scenarios.key import code_version
 from server.page import DIST
 from server.security.identity import TOKEN_FILE
 from server.settings import describe_settings, load_settings
@@ -25,7 +26,7 @@ def examine() -> dict[str, dict[str, str]]:
     """
     settings = load_settings()
     kernels = folder()
-    compiled = sum(1 for _ in kernels.rglob("*.nbc")) if kernels else 0
+    compiled = sum(1 for _ in kernels.iterdir()) if kernels else 0
     token = "from the settings" if settings.token else str(settings.data / TOKEN_FILE)
     return {
         "settings": {row.name: f"{row.value}  ({row.source})" for row in describe_settings(settings)},
@@ -35,7 +36,7 @@ def examine() -> dict[str, dict[str, str]]:
             **{name: _version(name) for name in PACKAGES},
         },
         "state": {
-            "core": core_hash(),
+            "code": code_version(),
             "kernel cache": f"{kernels}, {compiled} kernels" if kernels else "no writable folder",
             "page": "built" if (DIST / "index.html").is_file() else "not built: make setup",
             "data folder": "can be written" if _can_write(settings.data) else "cannot be written",

@@ -29,7 +29,7 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 class ErrorBody(BaseModel):
-    """What went wrong, in one line; which field; what to do."""
+    """An error: one line, the field at fault, a hint."""
 
     code: str
     message: str
@@ -39,7 +39,7 @@ class ErrorBody(BaseModel):
     @field_validator("message", "field", "hint")
     @classmethod
     def _in_one_line(cls, text: str) -> str:
-        """Keep what a caller wrote from breaking the line, and a list of all that is allowed from filling the page."""
+        """Shorten the text, and keep it in one line: it may quote a caller, or list all allowed values."""
         text = one_line(text[: LONGEST + 1])
         return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
@@ -81,12 +81,12 @@ class ApiError(HTTPException):
 
 
 def not_found(noun: str, name: str, hint: str = "") -> ApiError:
-    """Refuse a name that stands for nothing."""
+    """Refuse an unknown name."""
     return ApiError(404, "not_found", f"there is no {noun} '{name}'", hint=hint)
 
 
 def body_of(error: Exception) -> ErrorBody:
-    """Put any refusal into the one shape."""
+    """Return a refusal of any kind as an error body."""
     if isinstance(error, ApiError):
         return error.body
     if isinstance(error, InputError):
@@ -100,7 +100,7 @@ def reply(status: int, body: ErrorBody, headers: Mapping[str, str] | None = None
 
 
 def clear_line(errors: Sequence[Any]) -> ErrorBody:
-    """Say in one line what the first of pydantic's complaints means.
+    """Put the first of pydantic's complaints into one line.
 
     Parameters
     ----------
@@ -121,13 +121,13 @@ def clear_line(errors: Sequence[Any]) -> ErrorBody:
     if not field and kind in ("missing", "model_attributes_type", "dict_type"):
         hint = "send JSON with the header Content-Type: application/json"
         return ErrorBody(code=code, message="the body must be a JSON object", hint=hint)
-    reasons = (_reason(one) for one in errors if field_of(one) == field_of(first))
+    reasons = (_reason(complaint) for complaint in errors if field_of(complaint) == field_of(first))
     reason = either(reasons, "should be") + _given(first)
     return ErrorBody(code=code, message=f"{field or 'body'}: {reason}", field=field)
 
 
 def _reason(error: Any) -> str:
-    """Word one pydantic complaint."""
+    """Put one pydantic complaint into words."""
     kind = str(error["type"])
     if kind == "extra_forbidden":
         return "unknown field"
@@ -142,7 +142,7 @@ def _reason(error: Any) -> str:
 
 
 def _given(error: Any) -> str:
-    """Show what was given, if it is short and not the name of a field."""
+    """Quote the given value, if it is short and not the name of a field."""
     kind, given = str(error["type"]), error.get("input")
     if kind in ("extra_forbidden", "missing") or kind.startswith("union_tag"):
         return ""
@@ -193,7 +193,7 @@ def install(app: FastAPI) -> None:
 
 
 def allowed(request: Request) -> list[str]:
-    """Return the methods with which the path of a request leads somewhere; the framework knows those of one route."""
+    """Return the methods that a path allows over all its routes; the framework knows those of one route only."""
     routes = request.app.routes
 
     def leads(method: str) -> bool:
@@ -204,19 +204,19 @@ def allowed(request: Request) -> list[str]:
 
 
 class CatchAll:
-    """Answers an error nobody expected in the one shape; the log says what it was.
+    """Answers an unexpected error in the one shape; the log has the error itself.
 
     Parameters
     ----------
     app : ASGIApp
-        What to wrap.
+        The application to wrap.
     """
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the call on; answer 500 if nothing has been answered yet."""
+        """Pass the call on; after an error, answer 500 if no answer has begun."""
         started = False
 
         async def watched(message: Message) -> None:

@@ -1,4 +1,4 @@
-"""How late things are: the event loop's timers, the engine's rounds."""
+"""Lateness of the event loop's timers and of the engine's rounds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FRESH_S = 1.0
 
 
 class Lateness:
-    """The last measurements of one kind; one thread adds, another asks.
+    """The last measurements of one kind; one thread adds them, another reads them.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Lateness:
 
 
 async def probe(lateness: Lateness) -> None:
-    """Measure by how much a timer of the event loop is late, until cancelled."""
+    """Measure the lateness of a timer of the event loop, until cancelled."""
     while True:
         due = time.perf_counter() + PERIOD_S
         await asyncio.sleep(PERIOD_S)

@@ -25,7 +25,7 @@ class JsonFormatter(logging.Formatter):
     """One JSON object per line."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Format a record with whatever was added to it."""
+        """Format a record with its extra fields."""
         line = {
             "at": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname,
@@ -42,7 +42,7 @@ class Handler(logging.StreamHandler[Any]):
     """Writes lines with no secret in them."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Format a record; what a token or a password was is not told."""
+        """Format a record with tokens and passwords left out."""
         return SECRET.sub(r"\1\2...", super().format(record))
 
 
@@ -59,7 +59,7 @@ class Brief(logging.Filter):
 
 
 def log_uncaught(kind: type[BaseException], error: BaseException | None, trace: TracebackType | None) -> None:
-    """Log what nobody has caught; Python would print it."""
+    """Log an uncaught error, which Python would print."""
     log.critical("unexpected error", exc_info=(kind, error or kind(), trace))
 
 
@@ -73,8 +73,8 @@ def configure(settings: Settings) -> None:
     logging.basicConfig(handlers=[handler], level=settings.log_level, force=True)
     for noisy in ("uvicorn.access", "uvicorn.error", "websockets", "alembic", "numba"):
         logging.getLogger(noisy).setLevel(max(logging.WARNING, logging.getLevelName(settings.log_level)))
-    # What Python itself would print goes the same way.
+    # Python's own warnings and uncaught errors go the same way.
     logging.captureWarnings(True)
     sys.excepthook = log_uncaught
-    threading.excepthook = lambda found: log_uncaught(found.exc_type, found.exc_value, found.exc_traceback)
-    sys.unraisablehook = lambda found: log_uncaught(found.exc_type, found.exc_value, found.exc_traceback)
+    threading.excepthook = lambda failure: log_uncaught(failure.exc_type, failure.exc_value, failure.exc_traceback)
+    sys.unraisablehook = lambda failure: log_uncaught(failure.exc_type, failure.exc_value, failure.exc_traceback)

@@ -12,7 +12,7 @@ FINE = (0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5,
 
 
 class Sent(Collector):
-    """Frames and bytes sent on all streams, as plain integers: 200 pages count twelve thousand times a second."""
+    """Frames and bytes sent on all streams, as plain integers: 200 pages add to them twelve thousand times a second."""
 
     def __init__(self) -> None:
         self.frames = self.frame_bytes = self.frames_dropped = 0

@@ -1,4 +1,4 @@
-"""Serves the built page; whatever is no route of the service leads to it."""
+"""Serves the built page; addresses that are no route of the service lead to it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from server.security.gate import page
 
 DIST = Path(__file__).resolve().parent.parent / "web" / "dist"
 OURS = ("/api/", "/health/", "/benches/", "/assets/")
-"""A path below these that is no route is an error, not a page."""
+"""An unknown path below these is an error, not a page."""
 
 NOT_BUILT = (
     "The service runs, but its page has not been built: stop it and start it with `make run`. "
@@ -23,12 +23,12 @@ NOT_BUILT = (
 
 
 class Page:
-    """The single-page application. All addresses in it are relative to its own, so there is one place to open it at.
+    """The single-page application. All addresses in it are relative, so it can be opened at one path only.
 
     Parameters
     ----------
     folder : Path
-        Where the build is.
+        The folder of the build.
     """
 
     def __init__(self, folder: Path = DIST) -> None:

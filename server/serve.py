@@ -1,4 +1,4 @@
-"""Serves the application: binds, prints the address to open, runs until told to stop."""
+"""Serves the application: binds, prints the address to open, runs until it is stopped."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ GRACE_S = 6
 
 
 class Server(uvicorn.Server):
-    """uvicorn that says goodbye: pages are told before their sockets close.
+    """A uvicorn server that tells pages that it stops before it closes their sockets.
 
     Parameters
     ----------
     config : uvicorn.Config
         As for uvicorn.
     service : Service
-        Whose streams to close.
+        The service whose streams are closed.
     address : str
         Printed once requests are answered.
     """
@@ -52,28 +52,28 @@ class Server(uvicorn.Server):
         self._service, self._address = service, address
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, then say where."""
+        """Start, then print the address."""
         await super().startup(sockets)
         if self.started and self._address:
-            # What is loaded by now stays: looked through for garbage again it would hold up all benches for 0.1 s.
+            # All objects loaded by now stay. A collection that went through them would stop all benches for 0.1 s.
             gc.collect()
             gc.freeze()
             try:
                 sys.stdout.write(f"CombBench is at {self._address}\n")
                 sys.stdout.flush()
-            except OSError as error:  # a full disk behind it is no reason not to serve
+            except OSError as error:  # the service runs even if a full disk takes no output
                 log.warning("the address to open cannot be printed: %s", error.strerror)
             if self._service.settings.open_page:
                 await asyncio.to_thread(webbrowser.open, self._address)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """Tell the pages, then close."""
-        await self._service.farewell()
+        """Tell the pages that the server stops, then close."""
+        await self._service.close_streams()
         await super().shutdown(sockets)
 
 
 def check_binding(settings: Settings) -> None:
-    """Refuse to be reachable from other machines without a token somebody chose.
+    """Refuse an address that other machines can reach without a token from the settings.
 
     Raises
     ------
@@ -100,12 +100,12 @@ def bind(settings: Settings) -> socket.socket:
     Raises
     ------
     InputError
-        If the address cannot be had.
+        If the address cannot be bound.
     """
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     listener = socket.socket(family, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    # Frames wait in our one slot, not in a kernel buffer where they grow old.
+    # A frame waits in the one slot of its client; in a buffer of the kernel it would grow old.
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 256 << 10)
     try:
         listener.bind((settings.host, settings.port))
@@ -153,7 +153,7 @@ def serve(settings: Settings) -> None:
     try:
         keep_private(settings.data)
         held = lock(settings.data, "data")
-        from server.app import create_app  # loads everything; a wrong setting is told before that
+        from server.app import create_app  # this import loads everything; wrong settings are reported before it
 
         app = create_app(settings)
         app.state.service.database.migrate()
@@ -170,7 +170,7 @@ def serve(settings: Settings) -> None:
     page = settings.public_origin or f"http://{shown}:{port}"
     address = f"{page}/?token={quote(app.state.identity.token, safe='')}"
     server = make_server(settings, app, address)
-    # Once all is stopped uvicorn raises the signal again; being told to stop is no failure.
+    # uvicorn raises the signal again at its end; a stop by signal is no failure.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: None)
     server.run(sockets=[listener])

@@ -1,4 +1,4 @@
-"""The running service: everything one application owns, from start to stop."""
+"""The running service: the parts of one application, from start to stop."""
 
 from __future__ import annotations
 
@@ -10,14 +10,12 @@ import secrets
 from collections.abc import AsyncIterator
 from typing import TYPE_CHECKING
 
-from core.board.history import History
-from scenarios.library import library
-from scenarios.run import build
 from server.bench.benches import Benches
 from server.bench.engine import Engine
 from server.bench.portrait import bench_of
 from server.bench.session import Session
 from server.bench.status import Bench
+from server.kernels import Kernels
 from server.lag import Lateness, probe
 from server.metrics import Metrics
 from server.runs.jobs import Jobs
@@ -30,7 +28,7 @@ from server.store.recordings import Recordings
 from server.stream.hub import Hub
 
 if TYPE_CHECKING:
-    from server.view3d.theatre import Theatre
+    from server.view3d.viewers import Viewers
 
 log = logging.getLogger(__name__)
 
@@ -58,9 +56,10 @@ class Service:
         self.keeping = Keeping(self.database, settings)
         self.sweeps = Sweeps(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
-        self.theatre = _theatre()
+        self.viewers = _viewers()
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
-        self.is_ready = self.has_kernels = False
+        self.kernels = Kernels()
+        self.is_ready = False
         self._loop: asyncio.AbstractEventLoop | None = None
 
     @contextlib.asynccontextmanager
@@ -70,8 +69,7 @@ class Service:
         await asyncio.to_thread(self.database.migrate)
         await self.recordings.recover()
         self.engine.start()
-        await asyncio.to_thread(warm_up)
-        self.has_kernels = True
+        await self.kernels.start()
         await self.jobs.recover()
         await self.sweeps.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
@@ -84,8 +82,9 @@ class Service:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
-            if self.theatre is not None:
-                await self.theatre.close()
+            await self.kernels.stop()
+            if self.viewers is not None:
+                await self.viewers.close()
             await self.sweeps.close()
             await self.jobs.close()
             await self.benches.close()
@@ -94,18 +93,18 @@ class Service:
 
     def view(self, session: Session) -> Bench:
         """Describe a bench in full."""
-        view3d = f"/benches/{session.id}/3d/" if self.theatre is not None else None
+        view3d = f"/benches/{session.id}/3d/" if self.viewers is not None else None
         return bench_of(session, self.hub.around(session), view3d)
 
     def views(self) -> list[Bench]:
         """Describe the benches, oldest first; one that cannot be described does not hide the others."""
-        found = []
+        descriptions = []
         for session in self.benches.all():
             try:
-                found.append(self.view(session))
+                descriptions.append(self.view(session))
             except Exception:
                 log.exception("bench %s cannot be described", session.id)
-        return found
+        return descriptions
 
     async def opened(self, session: Session) -> Bench:
         """Describe a bench just made; one that cannot be described is closed again."""
@@ -116,42 +115,33 @@ class Service:
             raise
 
     async def close_bench(self, session: Session) -> None:
-        """Close a bench and everything that shows it."""
+        """Close a bench, its streams and its 3D view."""
         await self.benches.close_bench(session)
         self.hub.close_bench(session.id)
-        if self.theatre is not None:
-            await self.theatre.drop(session.id)
+        if self.viewers is not None:
+            await self.viewers.drop(session.id)
 
-    async def farewell(self) -> None:
-        """Tell every page that the server goes, and close its stream."""
+    async def close_streams(self) -> None:
+        """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")
         await asyncio.sleep(0.1)
 
     def _lateness(self) -> dict[str, float]:
-        """Say how late the event loop and the engine are."""
+        """Return the lateness of the event loop and of the engine."""
         return {"loop_lag_ms": self.lag.p99_ms(), "wake_late_ms": self.engine.lateness.p99_ms()}
 
     def _after_round(self) -> None:
-        """Let the loop publish what the engine did; called on the engine thread."""
+        """Let the event loop publish the round of the engine; called on the engine thread."""
         loop = self._loop
         if loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop may be closing
                 loop.call_soon_threadsafe(self.hub.publish)
 
 
-def warm_up() -> None:
-    """Load the compiled kernels (or compile them) and compute one tick with them, before anyone waits."""
-    for scenario in library():
-        board = build(scenario)
-        history = History(board.signals.outputs, len(board.signals.taps), 1)
-        history.append(board.advance(1))
-        history.columns([0], 0, 1, 1)
-
-
-def _theatre() -> Theatre | None:
+def _viewers() -> Viewers | None:
     """Return the 3D views, if their folder is there."""
     if importlib.util.find_spec("server.view3d") is None:
         return None
-    from server.view3d.theatre import Theatre
+    from server.view3d.viewers import Viewers
 
-    return Theatre()
+    return Viewers()

@@ -1,4 +1,4 @@
-"""Settings of the service: one model, four sources, every value explained."""
+"""Settings of the service: one model with an explanation of every value, read from four sources."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PREFIX = "COMBBENCH_"
 
 
 class Settings(BaseSettings):
-    """Everything the service can be told; command line > environment > combbench.toml > default."""
+    """All settings of the service; command line > environment > combbench.toml > default."""
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", toml_file=CONFIG_FILE)
 
@@ -131,15 +131,15 @@ def load_settings(**given: Any) -> Settings:
     InputError
         One line naming the setting and its source.
     """
-    told = {name: value for name, value in given.items() if value is not None}
+    values = {name: value for name, value in given.items() if value is not None}
     try:
-        return Settings(**told)
+        return Settings(**values)
     except ValidationError as error:
         first = error.errors()[0]
         name = str(first["loc"][0]) if first["loc"] else ""
         if first["type"] == "extra_forbidden":
             raise InputError(f"unknown setting '{name}' in {CONFIG_FILE}", field=name) from None
-        source = _source(name, told, _file_values())
+        source = _source(name, values, _file_values())
         reason = first["msg"].removeprefix("Value error, ").lower()
         raise InputError(f"setting '{name}' from {source}: {reason}", field=name) from None
     except (ValueError, RecursionError) as error:  # also a whole number of more digits than Python reads
@@ -150,11 +150,11 @@ def load_settings(**given: Any) -> Settings:
 
 def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting]:
     """List every effective setting with its source, secrets hidden."""
-    told = {name: value for name, value in given.items() if value is not None}
+    values = {name: value for name, value in given.items() if value is not None}
     file_values = _file_values()
     rows = []
     for name, field in Settings.model_fields.items():
-        source, value = _source(name, told, file_values), str(getattr(settings, name))
+        source, value = _source(name, values, file_values), str(getattr(settings, name))
         shown = without_password(value) if name == "database_url" else value
         rows.append(EffectiveSetting(name, shown, source, field.description or ""))
     return rows
@@ -162,7 +162,7 @@ def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting
 
 def without_password(address: str) -> str:
     """Return the address of a database as it may be shown."""
-    from sqlalchemy import make_url  # takes a while, and only who asks for the settings needs it
+    from sqlalchemy import make_url  # a slow import that only this function needs
     from sqlalchemy.exc import ArgumentError
 
     try:
@@ -173,9 +173,9 @@ def without_password(address: str) -> str:
     return url.update_query_dict(hidden).render_as_string(hide_password=True)
 
 
-def _source(name: str, told: dict[str, Any], file_values: dict[str, Any]) -> str:
+def _source(name: str, values: dict[str, Any], file_values: dict[str, Any]) -> str:
     """Name the source that wins for one setting."""
-    if name in told:
+    if name in values:
         return "command line"
     variable = PREFIX + name.upper()
     if any(key.upper() == variable for key in os.environ):

@@ -13,14 +13,14 @@ from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
 from core.nesting import read_toml
-from scenarios.campaign import Campaign, Stopped
-from scenarios.cluster import check_address
-from scenarios.html import as_toml
-from scenarios.outcome import Outcome
-from scenarios.report import campaign_report, results_table
-from scenarios.sweep import Sweep
-from scenarios.tally import tally
-from scenarios.traces import write_json, write_text
+from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.cluster import check_address
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import tally
+from scenarios.report.campaign import campaign_report, results_table
+from scenarios.report.html import as_toml
+from scenarios.report.traces import write_json, write_text
 from server.store.database import Database, reason_of
 from server.store.lock import lock
 from server.store.results import Results
@@ -51,7 +51,7 @@ def read_sweep(path: Path) -> Sweep:
     Raises
     ------
     InputError
-        When a file cannot be read, or what it says is wrong.
+        When a file cannot be read or its content is wrong.
     """
     document = _toml(path, "sweep")
     source = document.get("scenario")
@@ -78,7 +78,7 @@ def carry_out(
     scheduler: str,
     on_progress: Callable[[int, int], None],
 ) -> Ended:
-    """Run what is missing of a campaign and write what is there.
+    """Run the missing runs of a campaign and write its results.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def carry_out(
         When the folder holds another campaign, or one that is not to be gone on with, or cannot be written; and when
         the address of the scheduler is none. Nothing is written then.
     Stopped
-        When nothing computes any more, or nothing can be written; what is done is in the table.
+        When no worker computes any more, or nothing can be written; the table has the runs that are done.
     """
     if scheduler:
         check_address(scheduler)
@@ -127,7 +127,7 @@ def carry_out(
 def write(sweep: Sweep, results: Results, folder: Path) -> int:
     """Write report and tables, each under a temporary name first; return how many runs could not be carried out."""
     keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
-    outcomes = {key: Outcome.model_validate(found) for key, found in results.outcomes(keys)}
+    outcomes = {key: Outcome.model_validate(outcome) for key, outcome in results.outcomes(keys)}
     points = tally(sweep, outcomes)
     table = results_table(sweep, outcomes)
     write_json(folder / POINTS, [point.model_dump() for point in points])

@@ -9,25 +9,29 @@ from typing import Any
 import numpy as np
 
 from core.block import BlockParams
-from core.board import changes, fold, program, score
+from core.board import changes, fold, program, words
 from core.board.commands import Command, LogEntry, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import Document
-from core.board.guard import REASONS
+from core.board.instances import scored
 from core.board.log import Log
 from core.board.observer import Observer
+from core.board.parse import parse
 from core.board.pending import Pending, Queue
 from core.board.rows import Rows
-from core.board.spec import Section, Spec, parse
-from core.board.wiring import Wiring, scored, wire
+from core.board.spec import Section, Spec
+from core.board.wiring import Wiring, wire
+from core.diagnose.hypothesis import hypotheses_of
 from core.errors import InputError
+from core.loop import score
+from core.loop.guard import REASONS
 from core.signals import SignalTable
 
 CHUNK = 512
 """Most ticks of one call of ``advance``."""
 
 
-COPIED = ("faults", "pending", "trip", "wiring", "folds", "used", "_observer")
+COPIED = ("pending", "trip", "wiring", "folds", "used", "_observer")
 SHARED = ("spec", "base", "compiled", "tick")
 """What of a board is its own in every copy, and what never changes in place."""
 
@@ -46,19 +50,19 @@ class Board:
 
     Parameters
     ----------
-    document : dict
-        What the bench is made of.
+    bench : dict or Spec
+        What the bench is made of: a document, or what was read from one. A board never changes a bench in place, so
+        that several may be built from one.
     compiled : bool
         Run compiled blocks; the uncompiled ones are their oracle and give the same bits.
     """
 
     chunk = CHUNK
 
-    def __init__(self, document: Document, *, compiled: bool = True) -> None:
-        self.spec: Spec = parse(document)
+    def __init__(self, bench: Document | Spec, *, compiled: bool = True) -> None:
+        self.spec: Spec = bench if isinstance(bench, Spec) else parse(bench)
         self.base: Document = copy.deepcopy(self.spec.document)
         self.compiled = compiled
-        self.faults: dict[str, BlockParams] = {}
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
         self.log = Log()
@@ -67,8 +71,11 @@ class Board:
         self.folds = fold.begin(self.wiring.signals.outputs)
         self.used: set[str] = set()
         self._observer = Observer(self.spec, self.wiring)
+        self._linked: Wiring | None = None
+        self._running: list[int] = []
+        self._table = self.wiring.table
         self._allocate()
-        self._link()
+        self.link()
 
     # -- what it is
 
@@ -76,6 +83,11 @@ class Board:
     def dt_ms(self) -> float:
         """Sample interval, ms."""
         return self.spec.dt_ms
+
+    @property
+    def faults(self) -> dict[str, BlockParams]:
+        """The faults that act, by name."""
+        return self.spec.faults
 
     @property
     def signals(self) -> SignalTable:
@@ -106,8 +118,8 @@ class Board:
         for name, section in self.spec.diagnosers.items():
             if not scored(section.block):
                 continue
-            names = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
-            found[name] = score.read(self.wiring.state_of(f"{name}.score"), names, int(self.value(f"{name}.winner")))
+            names = [item.name for item in hypotheses_of(section.params)]
+            found[name] = score.read(self.wiring.state(f"{name}.score"), names, int(self.value(f"{name}.winner")))
         return found
 
     # -- time
@@ -130,7 +142,7 @@ class Board:
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
             for finding in self._observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
-                self._note("board", **finding)
+                self.note("board", **finding)
             if ran:
                 self.used |= {self.spec.active, self.spec.measuring}
             done += ran
@@ -160,15 +172,21 @@ class Board:
         )
         return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
-    def _link(self) -> None:
+    def link(self) -> None:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
         wiring = self.wiring
         running = wiring.rest(self.spec)
-        self._steps = [wiring.instances[row].block.step for row in running]
+        if wiring is self._linked and running == self._running:
+            self._table[:, program.EVERY] = wiring.table[running, program.EVERY]
+            return
+        self._linked, self._running = wiring, running
         self._table = wiring.table[running]
         self._idle = wiring.idle(running)
         if self.compiled:
-            self._table[:, program.ADDRESS] = [program.compiled(step).address for step in self._steps]
+            blocks = [wiring.instances[row].block for row in running]
+            self._table[:, program.ADDRESS] = [program.address(block) for block in blocks]
+        else:
+            self._steps = [wiring.bound(row) for row in running]
 
     def _allocate(self) -> None:
         """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""
@@ -199,23 +217,23 @@ class Board:
     def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
         changes.check(self, command)
         self.pending.add(Pending(command, actor, tick, condition, self.tick))
-        return self._note(actor, "scheduled", f"waiting: {changes.describe(command)}", command=command)
+        return self.note(actor, "scheduled", f"waiting: {words.describe(command)}", command=command)
 
     def _apply_due(self) -> None:
         for entry in self.pending.take_due(self.tick):
             try:
                 self._do(entry.command, entry.actor)
             except InputError as error:
-                self._note("board", "refused", f"{changes.describe(entry.command)}: {error}", command=entry.command)
+                self.note("board", "refused", f"{words.describe(entry.command)}: {error}", command=entry.command)
 
     def _do(self, command: Command, actor: str) -> LogEntry:
         untimed = command.model_copy(update={"at_sample": None, "at_ms": None, "when": None})
         old, new = changes.carry_out(self, untimed)
-        return self._note(actor, untimed.kind, changes.describe(untimed), command=untimed, old=old, new=new)
+        return self.note(actor, untimed.kind, words.describe(untimed), command=untimed, old=old, new=new)
 
     # -- log
 
-    def _note(
+    def note(
         self,
         actor: str,
         kind: str,
@@ -226,6 +244,7 @@ class Board:
         old: Any = None,
         new: Any = None,
     ) -> LogEntry:
+        """Write an entry of the log, at this tick unless another is named."""
         at = self.tick if tick is None else tick
         return self.log.add(at, at * self.dt_ms, actor, kind, text, command=command, old=old, new=new)
 
@@ -247,7 +266,7 @@ class Board:
             value=value if np.isfinite(value) else None,
         )
         changes.disengage(self)
-        self._note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())
+        self.note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())
 
     # -- copies
 
@@ -269,8 +288,9 @@ class Board:
     def _revive(self) -> None:
         """Make what copies do not share."""
         self.log = self.log.copy()
+        self._linked = None
         self._allocate()
-        self._link()
+        self.link()
 
     def save(self) -> Document:
         """Return the bench as a scenario document: what it started from, and what was done to it.
@@ -278,7 +298,7 @@ class Board:
         Run headless it gives the same bits.
         """
         done = [
-            {**changes.event(entry.command), "at_sample": entry.tick}
+            {**words.event(entry.command), "at_sample": entry.tick}
             for entry in self.log
             if entry.command is not None and entry.kind not in ("scheduled", "refused")
         ]

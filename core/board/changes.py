@@ -2,71 +2,42 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from pydantic import ValidationError
 
 from core import registry
 from core.block import BlockParams
-from core.board import program
-from core.board.commands import Command, Heal, Inject, Set, Switch
-from core.board.document import as_written, with_values
-from core.board.spec import Section, Spec, parse
-from core.board.wiring import Instance, Wiring, engage, wire
-from core.errors import InputError, from_validation, short, unknown
+from core.board.commands import Command, Heal, Inject, LogEntry, Set, Switch, Trip
+from core.board.difference import change
+from core.board.document import as_written
+from core.board.parse import changed
+from core.board.spec import Section, Spec
+from core.board.wiring import Wiring, engage, wire
+from core.errors import InputError, from_validation, unknown
 from core.faults.fault import FaultParams
 from core.format import format_short
-
-if TYPE_CHECKING:
-    from core.board.board import Board
 
 LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "guard")
 
 
-def describe(command: Command) -> str:
-    """Say in words what a command does."""
-    if isinstance(command, Inject):
-        shape = "" if command.profile.kind == "step" else f", {command.profile.kind}"
-        chosen = "".join(f", {name} {short(value)}" for name, value in command.parameters.items())
-        return f"inject {command.fault} {command.severity:+g}{_unit_of(command.fault)}{shape}{chosen}"
-    if isinstance(command, Heal):
-        return "heal all" if command.faults == "all" else f"heal {', '.join(command.faults)}"
-    if isinstance(command, Set):
-        return "set " + ", ".join(f"{path} = {value}" for path, value in command.values.items())
-    if isinstance(command, Switch):
-        return f"switch to {command.controller}{' from a cold start' if command.cold else ''}"
-    return "reset after the trip"
+class Board(Protocol):
+    """The board as its commands see it."""
 
+    spec: Spec
+    wiring: Wiring
+    trip: Trip | None
+    tick: int
 
-def _unit_of(fault: str) -> str:
-    """Return the unit of a severity, with a space before it; nothing for a share."""
-    block = registry.blocks("faults").get(fault)
-    unit = block.outputs[0].unit if block is not None else "1"
-    return "" if unit == "1" else f" {unit}"
+    def value(self, signal: str) -> float:
+        """Return the value of a signal after the last tick."""
 
+    def link(self) -> None:
+        """Take over a wiring that has changed."""
 
-def event(command: dict[str, Any]) -> dict[str, Any]:
-    """Return a logged command as an event of a scenario."""
-    rest = {key: value for key, value in command.items() if key != "kind"}
-    kind = command["kind"]
-    if kind == "heal":
-        return {**{k: v for k, v in rest.items() if k != "faults"}, "heal": rest["faults"]}
-    if kind == "set":
-        return {**{k: v for k, v in rest.items() if k != "values"}, "set": rest["values"]}
-    if kind == "switch":
-        return {
-            **{k: v for k, v in rest.items() if k not in ("controller", "cold")},
-            "switch": rest["controller"],
-            **({"cold": True} if rest.get("cold") else {}),
-        }
-    if kind == "reset_trip":
-        return {**rest, "reset_trip": True}
-    if rest["profile"]["kind"] == "step":
-        del rest["profile"]  # what a fault does unless told otherwise
-    if not rest.get("parameters"):
-        rest.pop("parameters", None)
-    return rest
+    def note(self, actor: str, kind: str, text: str) -> LogEntry:
+        """Write an entry of the log."""
 
 
 def check(board: Board, command: Command) -> None:
@@ -97,7 +68,7 @@ def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
 def inject(board: Board, command: Inject) -> tuple[Any, Any]:
     """Put a fault on the device from this tick on."""
     params = _fault_params(command, board.tick)
-    current = board.faults.get(command.fault)
+    current = board.spec.faults.get(command.fault)
     if current is not None and _same_fault(current, params):
         raise InputError(
             f"{command.fault} is already there with severity {format_short(command.severity, '')}",
@@ -106,8 +77,7 @@ def inject(board: Board, command: Inject) -> tuple[Any, Any]:
             "conflict",
         )
     old = current.model_dump() if current is not None else None
-    board.faults[command.fault] = params
-    _repack(board, f"faults.{command.fault}", params)
+    _change(board, board.spec.with_faults({**board.spec.faults, command.fault: params}))
     return old, params.model_dump()
 
 
@@ -115,22 +85,20 @@ def heal(board: Board, command: Heal) -> tuple[Any, Any]:
     """Take faults away at this tick."""
     names = _names(command)
     if command.faults == "all":
-        names = [name for name in names if name in board.faults]
-    absent = [name for name in names if name not in board.faults]
+        names = [name for name in names if name in board.spec.faults]
+    absent = [name for name in names if name not in board.spec.faults]
     if absent:
-        present = ", ".join(board.faults) or "none"
+        present = ", ".join(board.spec.faults) or "none"
         raise InputError(f"{absent[0]} is not there to heal; present: {present}", "faults", code="conflict")
-    old = {name: board.faults[name].model_dump() for name in names}
-    for name in names:
-        del board.faults[name]
-        _repack(board, f"faults.{name}", registry.block("faults", name).Params())
+    old = {name: board.spec.faults[name].model_dump() for name in names}
+    _change(board, board.spec.with_faults({k: v for k, v in board.spec.faults.items() if k not in names}))
     return old, None
 
 
 def set_values(board: Board, values: dict[str, Any]) -> tuple[Any, Any]:
     """Change parameters by path, all in this tick."""
     spec, old, new = _changed(board.spec, values)
-    _rewire(board, spec)
+    _change(board, spec)
     return old, new
 
 
@@ -140,14 +108,14 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
     old = board.spec.active
     if name == old and not command.cold:
         raise InputError(f"{name} drives already", "controller", "choose another, or a cold start", "conflict")
-    spec = parse(with_values(board.spec.document, {"controller.kind": name}))
-    _rewire(board, spec)
+    spec = changed(board.spec, {"controller.kind": name})
+    _change(board, spec)
     ran_away = not np.all(np.isfinite(board.wiring.state_of(name)))
     if ran_away:  # nothing in shadow trips the board, and no number comes of what is none
-        board._note("board", "warning", f"{name} had run away in shadow, so it starts anew")
+        board.note("board", "warning", f"{name} had run away in shadow, so it starts anew")
     if command.cold or ran_away:
         instance = board.wiring.instances[board.wiring.row(name)]
-        board.wiring.state_of(name)[:] = instance.block.state(instance.params, spec.context(instance.every))
+        board.wiring.state_of(name)[:] = instance.block.initial(instance.params, spec.context(instance.every))
     return old, name
 
 
@@ -162,7 +130,7 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
     if board.trip is None:
         raise InputError("the board has not tripped", "kind", code="conflict")
     old = board.trip.model_dump()
-    fresh = wire(board.spec, board.faults)
+    fresh = wire(board.spec)
     keep = [instance.key for instance in fresh.instances if instance.key.endswith(".score")]
     for key in keep:
         fresh.state_of(key)[:] = board.wiring.state_of(key)
@@ -171,7 +139,7 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
         for port in ("correct_fraction", "false_switches", "delay", "truth", "winner"):
             fresh.w[index[f"{name}.{port}"]] = board.value(f"{name}.{port}")
     board.wiring = fresh
-    board._link()
+    board.link()
     board.trip = None
     return old, None
 
@@ -207,7 +175,7 @@ def _same_fault(first: BlockParams, second: BlockParams) -> bool:
 
 def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:
     """Return the new bench with old and new values, or refuse what is not tunable while running."""
-    new = parse(with_values(spec.document, values))
+    new = changed(spec, values)
     try:
         _check_live(spec, new)
     except InputError as error:
@@ -237,6 +205,8 @@ def _check_live(spec: Spec, new: Spec) -> None:
 
 
 def _check_section(path: str, old: Section, new: Section) -> None:
+    if old is new:
+        return
     if old.every != new.every:
         raise _not_live(f"{path}.every")
     if old.block is not new.block:
@@ -272,31 +242,21 @@ def _get(spec: Spec, path: str) -> Any:
     return section.block.name if leaf in ("kind", "model") else getattr(section.params, leaf, None)
 
 
-def _repack(board: Board, key: str, params: BlockParams) -> None:
-    """Replace the packed parameters of one instance."""
-    wiring = board.wiring
-    row = wiring.row(key)
-    old = wiring.instances[row]
-    wiring.instances = [*wiring.instances]
-    wiring.instances[row] = Instance(old.key, old.prefix, old.block, params, old.every)
-    packed = old.block.pack(params, board.spec.context(old.every))
-    start = wiring.table[row, program.P_OFFSET]
-    wiring.p[start : start + len(packed)] = packed
-    board._link()
-
-
-def _rewire(board: Board, spec: Spec) -> None:
+def _change(board: Board, spec: Spec) -> None:
     """Put another bench of the same signals on the board; what is alike keeps its state."""
-    old = board.wiring
-    new: Wiring = wire(spec, board.faults, (board.spec, old))
+    if not change(board.wiring, board.spec, spec):
+        board.wiring = _exchanged(board.wiring, spec)
+    board.spec = spec
+    board.link()
+
+
+def _exchanged(old: Wiring, spec: Spec) -> Wiring:
+    """Return the wiring of a bench in which a block has been exchanged; all others go on from where they are."""
+    new = wire(spec, old)
     assert new.signals.names == old.signals.names
     new.w[:] = old.w
     engage(spec, new.index, new.w)
     for before, after in zip(old.instances, new.instances, strict=True):
         if before.block is after.block:
-            kept, fresh = old.state_of(before.key), new.state_of(after.key)
-            if len(kept) == len(fresh):
-                fresh[:] = kept
-    board.spec = spec
-    board.wiring = new
-    board._link()
+            new.state_of(after.key)[:] = old.state_of(before.key)
+    return new

@@ -58,9 +58,12 @@ SECTIONS = (
 
 def normal_form(document: Document) -> Document:
     """Return a copy with defaults in place and the parameters of controller and sensor parked."""
-    doc = copy.deepcopy(document)
-    for key, value in DEFAULTS.items():
-        doc.setdefault(key, copy.deepcopy(value))
+    return completed(copy.deepcopy(document))
+
+
+def completed(document: Document) -> Document:
+    """Return the normal form of a document; it shares the tables that stay as they are."""
+    doc = {**document, **{key: copy.deepcopy(value) for key, value in DEFAULTS.items() if key not in document}}
     for key in SECTIONS:
         if key in doc and not isinstance(doc[key], dict):
             raise InputError(f"must be a table, got {short(doc[key])}", key)
@@ -79,47 +82,59 @@ def _park(doc: Document) -> None:
     for one, (all_of_them, _, usual) in PARKED.items():
         table = doc.get(one)
         if isinstance(table, dict):
-            kind = table.pop("kind", usual)
-            if table and isinstance(kind, str):
-                doc.setdefault(all_of_them, {}).setdefault(kind, {}).update(table)
+            kind = table.get("kind", usual)
+            rest = {name: value for name, value in table.items() if name != "kind"}
+            if rest and isinstance(kind, str):
+                group = doc.get(all_of_them, {})
+                doc[all_of_them] = {**group, kind: {**group.get(kind, {}), **rest}}
             doc[one] = {"kind": kind}
 
 
 def with_values(document: Document, values: dict[str, Any]) -> Document:
-    """Return the document with dotted paths written over; tables on the way are made."""
-    doc = copy.deepcopy(document)
+    """Return a copy of the document with dotted paths written over; tables on the way are made."""
+    return written_over(copy.deepcopy(document), values)
+
+
+def written_over(document: Document, values: dict[str, Any]) -> Document:
+    """Return the document with dotted paths written over; it shares the tables that stay as they are."""
+    doc = dict(document)
     _park(doc)
     for path, value in values.items():
-        parts = path.split(".")
-        if not all(parts):
-            raise InputError("is not a dotted path", path)
-        if len(parts) + depth(value) > DEEPEST:
-            shown = path if len(path) <= LONGEST_PATH else f"{path[:LONGEST_PATH]}…"
-            raise InputError(TOO_DEEP, shown, code="too_deep")
-        table: Any = doc
-        for part in parts[:-1]:
-            if isinstance(table, list):
-                table = table[_position(part, table, path)]
-            else:
-                table = table.setdefault(part, {})
-            if not isinstance(table, dict | list):
-                raise InputError(f"{part} is not a table", path)
-        if isinstance(table, list):
-            table[_position(parts[-1], table, path)] = copy.deepcopy(value)
-            continue
-        table[parts[-1]] = copy.deepcopy(value)
-        if path in ONE_AMPLITUDE:
-            table.pop(ONE_AMPLITUDE[path], None)
-        if path in ONE_DRIVE:
-            section, key = ONE_DRIVE[path]
-            if isinstance(doc.get(section), dict):
-                doc[section].pop(key, None)
-        if path in EXCHANGED:
-            # a new kind keeps what it shares with the old one
-            section, key, own = EXCHANGED[path]
-            fields = {key, *own, *registry.block(section, value, path).Params.model_fields}
-            doc[section] = {name: entry for name, entry in table.items() if name in fields}
+        _write(doc, path, value)
     return doc
+
+
+def _write(doc: Document, path: str, value: Any) -> None:
+    """Write one value, into copies of the tables on its way."""
+    parts = path.split(".")
+    if not all(parts):
+        raise InputError("is not a dotted path", path)
+    if len(parts) + depth(value) > DEEPEST:
+        shown = path if len(path) <= LONGEST_PATH else f"{path[:LONGEST_PATH]}…"
+        raise InputError(TOO_DEEP, shown, code="too_deep")
+    table: Any = doc
+    for part in parts[:-1]:
+        place: Any = _position(part, table, path) if isinstance(table, list) else part
+        inner = table[place] if isinstance(table, list) else table.get(part, {})
+        if not isinstance(inner, dict | list):
+            raise InputError(f"{part} is not a table", path)
+        table[place] = copy.copy(inner)
+        table = table[place]
+    if isinstance(table, list):
+        table[_position(parts[-1], table, path)] = copy.deepcopy(value)
+        return
+    table[parts[-1]] = copy.deepcopy(value)
+    if path in ONE_AMPLITUDE:
+        table.pop(ONE_AMPLITUDE[path], None)
+    if path in ONE_DRIVE:
+        section, key = ONE_DRIVE[path]
+        if isinstance(doc.get(section), dict):
+            doc[section] = {name: entry for name, entry in doc[section].items() if name != key}
+    if path in EXCHANGED:
+        # a new kind keeps what it shares with the old one
+        section, key, shared = EXCHANGED[path]
+        fields = {key, *shared, *registry.block(section, value, path).Params.model_fields}
+        doc[section] = {name: entry for name, entry in table.items() if name in fields}
 
 
 def _position(part: str, items: list[Any], path: str) -> int:

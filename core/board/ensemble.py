@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,10 +15,11 @@ from core.block import FloatArray
 from core.board.board import Board, Checkpoint
 from core.board.commands import LogEntry, parse_command
 from core.board.document import IDENTIFIER, Document, with_values
+from core.board.parse import parse
 from core.board.rows import Rows
-from core.board.score import Scores
-from core.board.spec import Section
+from core.board.spec import Section, Spec
 from core.errors import InputError, short, unknown
+from core.loop.score import Scores
 from core.signals import Signal, SignalTable
 
 MOST = 3
@@ -56,6 +59,23 @@ def twin_documents(document: Document) -> dict[str, Document]:
     return found
 
 
+def twin_specs(document: Document) -> dict[str, Spec]:
+    """Return the bench of every twin, checked.
+
+    Raises
+    ------
+    InputError
+        As `twin_documents`, and for the first thing that is not allowed in one, with its dotted path.
+    """
+    found = {}
+    for name, own in twin_documents(document).items():
+        try:
+            found[name] = parse(own)
+        except InputError as error:
+            raise error.under(f"twins.{name}") from None
+    return found
+
+
 def _leaves(table: Document, path: str = "") -> Iterator[tuple[str, Any]]:
     """Return the values of nested tables by dotted path."""
     for key, value in table.items():
@@ -77,18 +97,24 @@ class Ensemble(Board):
 
     Parameters
     ----------
-    document : dict
-        What the board is made of; ``twins`` holds what each twin has of its own.
+    bench : dict or Spec
+        What the board is made of; ``twins`` of its document holds what each twin has of its own.
+    twins : dict of Spec, optional
+        The bench of every twin, where it has been read from that document already.
     compiled : bool
         Run compiled blocks.
     """
 
-    def __init__(self, document: Document, *, compiled: bool = True) -> None:
-        super().__init__({key: value for key, value in document.items() if key != "twins"}, compiled=compiled)
-        values = document.get("twins", {})
+    def __init__(
+        self, bench: Document | Spec, twins: Mapping[str, Spec] | None = None, *, compiled: bool = True
+    ) -> None:
+        document = bench.document if isinstance(bench, Spec) else bench
+        alone = {key: value for key, value in document.items() if key != "twins"}
+        super().__init__(replace(bench, document=alone) if isinstance(bench, Spec) else alone, compiled=compiled)
+        values = copy.deepcopy(document.get("twins", {}))
         self.base["twins"] = values
         self.twins: dict[str, Board] = {}
-        for name, own in twin_documents(document).items():
+        for name, own in (twin_documents(document) if twins is None else twins).items():
             try:
                 self.twins[name] = Board(own, compiled=compiled)
             except InputError as error:
@@ -181,7 +207,7 @@ class Ensemble(Board):
             kind = NOTED.get(entry.kind)
             if kind is None or (kind == "warning" and any(entry.text == own.text for own in self.log)):
                 continue
-            self._note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
+            self.note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
         self._mirrored = self.log.last
 
     def checkpoint(self) -> Checkpoint:
@@ -220,6 +246,9 @@ def _filled(rows: FloatArray, count: int) -> FloatArray:
     return np.vstack([rows, np.full((count - len(rows), rows.shape[1]), np.nan)])
 
 
-def make(document: Document, *, compiled: bool = True) -> Board:
+def make(bench: Document | Spec, twins: Mapping[str, Spec] | None = None, *, compiled: bool = True) -> Board:
     """Return a board, with its twins if it has any."""
-    return (Ensemble if document.get("twins") else Board)(document, compiled=compiled)
+    document = bench.document if isinstance(bench, Spec) else bench
+    if document.get("twins"):
+        return Ensemble(bench, twins, compiled=compiled)
+    return Board(bench, compiled=compiled)

@@ -8,8 +8,10 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
+from core.board.instances import scored
 from core.board.spec import Section, Spec
-from core.board.wiring import scored
+from core.diagnose.bank import Bank
+from core.diagnose.hypothesis import hypotheses_of
 from core.errors import InputError
 
 SMALLEST = 1e-30
@@ -51,12 +53,12 @@ def signals_of(section: Section) -> list[str]:
         When its probabilities do not come from prior and likelihood.
     """
     block = section.block
-    if not scored(block) or not getattr(block, "sample_by_sample", False):
+    if not (scored(block) and issubclass(block, Bank) and block.sample_by_sample):
         raise InputError(f"{block.name} does not weigh sample by sample", "name", "look at its signals instead")
     ports = ["probability", "residual", "nis"]
     if any(port.name == "tone" for port in block.taps):
         ports.append("tone")
-    return [f"{port}.{item.name}" for port in ports for item in section.params.hypotheses]  # type: ignore[attr-defined]
+    return [f"{port}.{item.name}" for port in ports for item in hypotheses_of(section.params)]
 
 
 def explain(
@@ -97,7 +99,7 @@ def explain(
             else None
         )
         rows.append((residual, covariance, density))
-    floor = float(getattr(params, "probability_floor", 0.0))
+    floor = block.floor(params)
     posteriors = _posteriors(priors, [row[2] for row in rows], floor)
     return Account(
         kind=block.name,

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from types import FunctionType, ModuleType
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel
 
-from core.block import TICK, TIME_MS
+from core import elementary
+from core.block import Block, FloatArray
 from core.board import program
 from core.board.board import Board
+from core.diagnose.hypothesis import hypotheses_of
 from core.errors import InputError, unknown
+from core.plain import rebound
+from core.ports import TICK, TIME_MS
 
 SAMPLES = 4
 """Samples counted, after one that is not."""
@@ -68,55 +72,47 @@ class Counted(float):
     __rmul__ = __mul__
 
 
-class _Functions:
-    """The mathematical functions, counted."""
+COUNTED = (elementary.exp, elementary.log, elementary.sin, elementary.cos, elementary.atan2, math.sqrt)
+"""Functions that are counted; of others, as of rounding, it is not known what they cost."""
+
+
+class _Mathematics:
+    """Roots, counted, and the rest of ``math``."""
 
     def __init__(self, tally: Tally) -> None:
         self._tally = tally
 
     def __getattr__(self, name: str) -> Any:
-        function = getattr(math, name)
-        if name not in ("exp", "log", "sqrt", "sin", "cos", "atan2"):
-            return function
-
-        def counted(*args: float) -> Counted:
-            self._tally.functions += 1
-            return Counted(function(*args), self._tally)
-
-        return counted
+        return counted(getattr(math, name), self._tally)
 
 
-class _Module:
-    """A module of kernels, all of them plain."""
+def counted(function: Any, tally: Tally) -> Any:
+    """Return a function that counts its calls, or the value itself if it is none of those."""
+    if not any(function is one for one in COUNTED):
+        return function
 
-    def __init__(self, module: ModuleType, tally: Tally) -> None:
-        self._module, self._tally = module, tally
+    def call(*args: float) -> Counted:
+        tally.functions += 1
+        return Counted(function(*args), tally)
 
-    def __getattr__(self, name: str) -> Any:
-        return _plain(getattr(self._module, name), self._tally)
+    return call
 
 
-def _plain(value: Any, tally: Tally) -> Any:
-    """Return a kernel as a plain function whose own kernels are plain too, and counted mathematics."""
-    value = getattr(value, "py_func", value)
-    if value is math:
-        return _Functions(tally)
-    if isinstance(value, ModuleType) and value.__name__.startswith("core."):
-        return _Module(value, tally)
-    if not isinstance(value, FunctionType) or not value.__module__.startswith("core."):
-        return value
-    own: dict[str, Any] = dict(value.__globals__)
-    for name in value.__code__.co_names:
-        if name in own:
-            own[name] = value if own[name] is value else _plain(own[name], tally)
-    if value.__name__ == "settled":
-        return lambda number: number
-    if value.__name__ == "shrunk":  # an exponential, though it is left out where it would be nothing
-        return _Functions(tally).exp
-    if value.__name__ == "float":
-        return value
-    own["float"] = lambda number: number
-    return FunctionType(value.__code__, own, value.__name__, value.__defaults__, value.__closure__)
+def plain_step(block: type[Block], tally: Tally) -> Any:
+    """Return a step as plain Python with counted mathematics."""
+
+    def swap(value: Any) -> Any:
+        name = getattr(value, "__name__", "")
+        if value is math:
+            return _Mathematics(tally)
+        if name == "flush_tiny":
+            return lambda number: number
+        if name == "shrunk":  # an exponential, though it is left out where it would be nothing
+            return counted(elementary.exp, tally)
+        return counted(value, tally)
+
+    # a conversion to float would lose the count
+    return rebound(block.step, swap, {"float": lambda number: number})
 
 
 class Load(BaseModel):
@@ -159,21 +155,25 @@ def count(board: Board, name: str) -> tuple[float, float]:
         raise unknown("diagnoser", name, board.spec.diagnosers, "diagnoser")
     wiring = board.wiring
     row = wiring.row(name)
-    entry = wiring.table[row]
+    block, every = wiring.instances[row].block, wiring.instances[row].every
     tally = Tally()
-    p = [Counted(value, tally) for value in wiring.p[entry[program.P_OFFSET] :]]
-    s = [Counted(value, tally) for value in wiring.state_of(name)]
-    w = [Counted(value, tally) for value in wiring.w]
-    io = [int(value) for value in wiring.io[entry[program.IO_OFFSET] :]]
-    step = _plain(wiring.instances[row].block.step, tally)
-    every = wiring.instances[row].every
-    # what is done between two turns is the same at every tick
-    between = (every - 1) // int(entry[program.EVERY])
+
+    def counting(numbers: FloatArray) -> Any:
+        made = np.empty(len(numbers), dtype=object)
+        made[:] = [Counted(value, tally) for value in numbers]
+        return made
+
+    w = counting(wiring.w)
+    p, s = block.Packed(counting(wiring.packed(row))), block.State(counting(wiring.state_of(name)))
+    x = block.Ports(w, wiring.ports(row))
+    step = plain_step(block, tally)
+    # the ticks between two turns are all alike
+    between = (every - 1) // int(wiring.table[row][program.EVERY])
 
     def spent(tick: int) -> tuple[int, int]:
         w[TICK], w[TIME_MS] = Counted(tick, tally), Counted(tick * board.dt_ms, tally)
         tally.operations = tally.functions = 0
-        step(p, s, w, io)
+        step(p, s, x)
         return tally.operations, tally.functions
 
     operations = functions = 0
@@ -202,7 +202,7 @@ def budget(board: Board, board_flops: float, function_flops: float = 20.0) -> Bu
     for name, section in board.spec.diagnosers.items():
         operations, functions = count(board, name)
         cost = operations + function_flops * functions
-        models = max(1, len(getattr(section.params, "hypotheses", ())))
+        models = max(1, len(hypotheses_of(section.params)))
         rate = 1e3 / (board.dt_ms * board.spec.turns(section))
         left = max(board_flops - used, 0.0)
         used += cost * rate

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from core.block import kernel
+from core.kernel import kernel
 
 Words = NDArray[np.uint64]
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.block import FloatArray, IntArray, inlined, kernel
+from core.block import FloatArray, IntArray
 from core.board.rows import Rows
+from core.kernel import inlined, kernel
 
 Float32Array = NDArray[np.float32]
 FACTOR = 16

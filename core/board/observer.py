@@ -7,13 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray, IntArray, kernel
+from core.block import FloatArray, IntArray
+from core.board.instances import scored
 from core.board.spec import Spec
-from core.board.wiring import Wiring, scored
+from core.board.wiring import Wiring
 from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
+from core.diagnose.hypothesis import hypotheses_of
 from core.diagnose.regions import REGIONS
 from core.format import format_count, format_short, format_si
+from core.kernel import kernel
 
 Finding = dict[str, Any]
 
@@ -179,7 +182,7 @@ def _tones(spec: Spec) -> list[tuple[float, float]]:
 
 def _aliases(spec: Spec, name: str, label: str) -> str:
     """Name the changes that have the same response at the tones of the drive as a hypothesis."""
-    hypotheses: Any = getattr(spec.diagnosers[name].params, "hypotheses")  # noqa: B009
+    hypotheses = hypotheses_of(spec.diagnosers[name].params)
     found = [
         f"{part} x {format_short(factor, '')}"
         for part, factor in equivalents(hypotheses, label, spec.context().device, _tones(spec)).items()

@@ -11,7 +11,7 @@ from itertools import takewhile
 import numpy as np
 
 from core.block import FloatArray
-from core.board import changes
+from core.board import words
 from core.board.commands import Command
 from core.board.condition import Condition
 from core.board.document import Document
@@ -33,7 +33,7 @@ class Pending:
 
     def event(self) -> Document:
         """Return it as an event of a scenario."""
-        document = changes.event(self.command.model_dump(exclude_none=True, mode="json"))
+        document = words.event(self.command.model_dump(exclude_none=True, mode="json"))
         document.pop("at_ms", None)
         if self.condition is None:
             document.pop("when", None)  # met already, or never asked for

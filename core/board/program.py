@@ -7,43 +7,37 @@ about as much as inlining. The same steps run uncompiled are the oracle of the c
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
-import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
-from core.block import RESERVED, TICK, TIME_MS, FloatArray, IntArray, Step, kernel
+from core.block import Block, FloatArray, IntArray
 from core.board.fold import Words, fold, fold_uncompiled
+from core.kernel import compiled_step, kernel
+from core.ports import RESERVED, TICK, TIME_MS
 
-ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY, COLUMNS = range(6)
+ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY = 0, 1, 2, 3, 4
+COLUMNS = 5
 """Columns of the table, one row per block."""
 
-DONE, TRIPPED, WATCHED = range(3)
+DONE, TRIPPED, WATCHED = 0, 1, 2
 """Why the loop returned."""
 
-_DOUBLES, _INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)  # type: ignore[no-untyped-call]
-_SIGNATURE = types.void(_DOUBLES, _DOUBLES, _DOUBLES, _INTEGERS)
+
+_addresses: dict[type[Block], int] = {}
 
 
-class _Apart(Compiler):
-    """Compiles a step knowing that its parameters, state, signals and ports lie apart, so that it may use vectors."""
-
-    def __init__(self, typing: Any, target: Any, library: Any, args: Any, result: Any, flags: Any, local: Any) -> None:
-        flags.noalias = True
-        super().__init__(typing, target, library, args, result, flags, local)  # type: ignore[no-untyped-call]
-
-
-@cache
-def compiled(step: Step) -> Any:
-    """Compile a step to its C function."""
-    options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
-    return numba.cfunc(_SIGNATURE, cache=True, pipeline_class=_Apart, **options)(step)
+def address(block: type[Block]) -> int:
+    """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
+    found = _addresses.get(block)
+    if found is None:
+        found = compiled_step(block.step, block.Packed, block.State, block.Ports).address
+        _addresses[block] = found
+    return found
 
 
 def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:
@@ -114,8 +108,9 @@ def run(
     return n, DONE
 
 
+@np.errstate(all="ignore")  # numbers overflow as quietly as in compiled code
 def run_uncompiled(
-    steps: list[Step],
+    steps: list[Callable[[], None]],
     n: int,
     first_tick: int,
     dt_ms: float,
@@ -130,7 +125,10 @@ def run_uncompiled(
     trip: int,
     watches: FloatArray,
 ) -> tuple[int, int]:
-    """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled."""
+    """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled.
+
+    ``steps`` are those of the rows of the table, bound to their arrays.
+    """
     first_tap = RESERVED + outputs.shape[1]
     for i in range(n):
         tick = first_tick + i
@@ -138,7 +136,7 @@ def run_uncompiled(
         w[TIME_MS] = tick * dt_ms
         for step, row in zip(steps, table, strict=True):
             if tick % row[EVERY] == 0:
-                step(p[row[P_OFFSET] :], s[row[S_OFFSET] :], w, io[row[IO_OFFSET] :])
+                step()
         outputs[i] = w[RESERVED:first_tap]
         taps[i] = w[first_tap : first_tap + taps.shape[1]]
         fold_uncompiled(folds, w.view(np.uint64)[RESERVED:])

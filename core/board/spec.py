@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import Field
 
-from core import registry
 from core.block import Block, BlockParams, Context, Oscillator
-from core.board.document import IDENTIFIER, SECTIONS, Document, as_written, normal_form, written
-from core.board.drive import Drive
-from core.board.environment import Environment
-from core.board.guard import Guard
-from core.board.model import Model
-from core.board.wiring import OPEN_LOOP, instances
-from core.device.catalogue import device as build_device
+from core.board.document import (
+    SECTIONS,
+    Document,
+)
 from core.device.device import Device
-from core.device.transfer_function import slowest_pole
-from core.errors import InputError, from_validation, short
-from core.signals import CLOCK
+from core.loop.drive import Drive
+from core.loop.environment import Environment
+from core.loop.model import Model
 from core.table import Table
 
 
@@ -36,9 +32,6 @@ class Section:
 
 MOST_SEED = 2**53
 """Largest seed: whole in every floating-point number it passes through."""
-
-MOST_GROWTH = 100.0
-"""Exponent of what may grow within a sample: the cube of it is still a number."""
 
 
 class Frame(Table):
@@ -56,7 +49,7 @@ class Spec:
     """A bench, ready to be wired.
 
     ``document`` is what it was made from, in normal form: the parameters of the controller and the sensor in use
-    stand under ``controllers`` and ``sensors``.
+    stand under ``controllers`` and ``sensors``. ``faults`` are those that act.
     """
 
     document: Document
@@ -74,6 +67,7 @@ class Spec:
     controllers: dict[str, Section]
     identifiers: dict[str, Section]
     diagnosers: dict[str, Section]
+    faults: dict[str, BlockParams] = field(default_factory=dict)
 
     @property
     def dt_ms(self) -> float:
@@ -84,6 +78,22 @@ class Spec:
     def seed(self) -> int:
         """Seed of all noise."""
         return self.frame.seed
+
+    @property
+    def tone_hz(self) -> float:
+        """Frequency of the reference in Hz, 0 where it has no tone or more than one."""
+        reference: Any = self.reference.block
+        return float(reference.tone_hz(self.reference.params))
+
+    @property
+    def is_analogue(self) -> bool:
+        """Whether the drive moves between samples."""
+        return bool(cast(Drive.Params, self.drive.params).kind == "analogue")
+
+    @cached_property
+    def nominal(self) -> Oscillator:
+        """The nominal device."""
+        return self.device.oscillator()
 
     def turns(self, section: Section) -> int:
         """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
@@ -109,7 +119,7 @@ class Spec:
         return replace(self._known(every), sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:
-        nominal = self.device.oscillator()
+        nominal = self.nominal
         return Context(
             dt_ms=self.dt_ms * every,
             every=every,
@@ -117,162 +127,21 @@ class Spec:
             device=nominal,
             model=Model.oscillator(self.model.params, nominal),
             drawing=self.device.drawing,
-            temperature_k=float(getattr(self.environment.params, "temperature_k", 300.0)),
+            temperature_k=cast(Environment.Params, self.environment.params).temperature_k,
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
-            analogue=getattr(self.drive.params, "kind", "held") == "analogue",
-            limit_v=float(getattr(self.drive.params, "limit_v", 30.0)),
-            tone_hz=float(getattr(self.reference.params, "frequency_hz", 0.0)),
+            analogue=self.is_analogue,
+            limit_v=cast(Drive.Params, self.drive.params).limit_v,
+            tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
         )
 
-
-def parse(document: Document) -> Spec:
-    """Check a document and return the bench it describes.
-
-    Raises
-    ------
-    InputError
-        For the first thing that is not allowed, with the dotted path of its field.
-    """
-    doc = normal_form(document)
-    try:
-        return _parse(doc)
-    except InputError as error:
-        raise as_written(error, document, written(document)) from None
+    def with_faults(self, faults: dict[str, BlockParams]) -> Spec:
+        """Return this bench with other faults; it goes on with all that was worked out of this one."""
+        spec = object.__new__(Spec)
+        vars(spec).update(vars(self), faults=faults)
+        return spec
 
 
-def _parse(doc: Document) -> Spec:
-    frame = _frame({key: doc[key] for key in doc if key not in SECTIONS})
-    identifiers, diagnosers = doc.get("identifiers", {}), doc.get("diagnosers", {})
-    for name in identifiers:
-        if name in diagnosers:
-            raise InputError("is the name of a diagnoser as well", f"identifiers.{name}", "choose another")
-    plant = dict(doc["plant"])
-    drive = dict(doc.get("drive", {}))
-    if "drive" in plant:
-        here, there = plant.pop("drive"), drive.get("kind")
-        if drive.setdefault("kind", here) != here:
-            text = f"plant.drive says {short(here)} and drive.kind {short(there)}"
-            raise InputError(text, "drive.kind", "leave one of them out")
-    device = build_device(doc["device"])
-    usual = "transfer_function" if device.transfer_function is not None else "linear"
-    plant_kind = plant.pop("model", usual)
-    doc["plant"].setdefault("model", usual)
-    chosen = _section("plant", plant_kind, plant, "plant", "model")
-    gap = getattr(chosen.params, "gap_um", None)
-    if gap is not None:  # one comb, one gap: of the force, of what is sensed, of what is believed
-        device = device.model_copy(update={"finger_gap_um": gap})
-    spec = Spec(
-        document=doc,
-        frame=frame,
-        device=device,
-        environment=Section(Environment, _params(Environment, doc.get("environment", {}), "environment")),
-        plant=chosen,
-        reference=_chosen("reference", doc["reference"], "reference"),
-        model=Section(Model, _params(Model, doc.get("model", {}), "model")),
-        drive=Section(Drive, _params(Drive, drive, "drive")),
-        guard=Section(Guard, _params(Guard, doc.get("guard", {}), "guard")),
-        measuring=_measuring(doc["sensor"]["kind"]),
-        sensors=_shadowed("sense", "sensors", doc),
-        active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
-        controllers=_shadowed("control", "controllers", doc),
-        identifiers={name: _named("identify", "identifiers", name, table) for name, table in identifiers.items()},
-        diagnosers={name: _named("diagnose", "diagnosers", name, table) for name, table in diagnosers.items()},
-    )
-    _named_apart(spec)
-    return _suited(spec)
-
-
-def _named_apart(spec: Spec) -> None:
-    """Refuse identifiers and diagnosers by the name of another block: signals of both would have the same names."""
-    chosen = [(key, name) for key in ("identifiers", "diagnosers") for name in getattr(spec, key)]
-    others = instances(replace(spec, identifiers={}, diagnosers={}), {}) if chosen else []
-    taken = {*CLOCK, *(other.prefix.split(".")[0] for other in others)}
-    for key, name in chosen:
-        if name in taken:
-            text = f"is the name of a part of the bench; taken: {', '.join(sorted(taken))}"
-            raise InputError(text, f"{key}.{name}", "choose another name")
-
-
-def _suited(spec: Spec) -> Spec:
-    """Leave out controllers and sensors that are not for this device; refuse what was asked for and is not."""
-    nominal = spec.device.oscillator()
-    pair = nominal, Model.oscillator(spec.model.params, nominal)
-    for field, grows in zip(("device.transfer_function", "model.denominator"), pair, strict=True):
-        if slowest_pole(grows) * spec.dt_ms > MOST_GROWTH:
-            text = f"grows by more than e^{MOST_GROWTH:g} from one sample to the next"
-            raise InputError(text, field, "sample faster, or slow it down")
-    fields = {
-        "plant.model": spec.plant.block,
-        "controller.kind": spec.controllers[spec.active].block,
-        "sensor.kind": spec.sensors[spec.measuring].block,
-    }
-    if spec.active != OPEN_LOOP and getattr(spec.drive.params, "kind", "held") == "analogue":
-        text = f"analogue is for {OPEN_LOOP} only: what {spec.active} asks for is held over a sample"
-        raise InputError(text, "drive.kind", f"hold the drive, or let {OPEN_LOOP} drive")
-    for key in ("identifiers", "diagnosers"):
-        fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
-    for field, block in fields.items():
-        reason = block.unsuited(*pair)
-        if reason:
-            raise InputError(f"{block.name}: {reason}", field)
-    return replace(spec, controllers=_for(pair, spec.controllers), sensors=_for(pair, spec.sensors))
-
-
-def _for(pair: tuple[Oscillator, Oscillator], sections: dict[str, Section]) -> dict[str, Section]:
-    return {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
-
-
-def _frame(values: Document) -> Frame:
-    try:
-        return Frame.model_validate(values)
-    except ValidationError as error:
-        raise from_validation(error, {"": FIELDS}) from None
-
-
-def _chosen(family: str, table: Document, field: str) -> Section:
-    rest = dict(table)
-    kind = rest.pop("kind", None)
-    return _section(family, kind, rest, field)
-
-
-def _section(family: str, kind: object, table: Document, field: str, key: str = "kind") -> Section:
-    block = registry.block(family, kind, f"{field}.{key}")
-    rest = dict(table)
-    every = rest.pop("every", 1)
-    if not isinstance(every, int) or isinstance(every, bool) or not 1 <= every <= 10000:
-        raise InputError(f"must be a whole number from 1 to 10000, got {short(every)}", f"{field}.every")
-    return Section(block, _params(block, rest, field), every)
-
-
-def _shadowed(family: str, key: str, doc: Document) -> dict[str, Section]:
-    """Return every block of a family with its parameters: all of them run."""
-    tables = doc.get(key, {})
-    for name in tables:
-        registry.block(family, name, key)
-    return {name: _section(family, name, tables.get(name, {}), f"{key}.{name}") for name in registry.blocks(family)}
-
-
-def _measuring(kind: object) -> str:
-    block = registry.block("sense", kind, "sensor.kind")
-    if all(port.name != "displacement" for port in block.outputs):
-        raise InputError(f"{block.name} puts out no displacement; choose a unit that recovers one", "sensor.kind")
-    return block.name
-
-
-def _named(family: str, key: str, name: str, table: Document) -> Section:
-    if not IDENTIFIER.match(name):
-        raise InputError("must be a short name of small letters, digits and _", f"{key}.{name}")
-    return _chosen(family, table, f"{key}.{name}")
-
-
-def _params(block: type[Block], values: Document, field: str) -> BlockParams:
-    try:
-        return block.Params.model_validate(values, strict=False)
-    except ValidationError as error:
-        raise from_validation(error, _nested_fields(block.Params)).under(field) from None
-
-
-def _nested_fields(model: type[BaseModel]) -> dict[str, list[str]]:
-    return {"": list(model.model_fields)}
+OF_CONTEXT = ("frame", "device", "environment", "drive", "reference", "model", "measuring", "sensors")
+"""Parts of a bench that blocks may know of."""

@@ -2,39 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from core import registry
-from core.block import RESERVED, Block, BlockParams, BoolArray, FloatArray, IntArray, Port
+from core.block import BoolArray, FloatArray, IntArray
 from core.board import program
-from core.board.effects import Effects
-from core.board.measurement import Measurement
-from core.board.score import Score
-from core.faults.fault import Fault, FaultParams
+from core.board.instances import Instance, feeds_forward, instances
+from core.board.spec import Spec
+from core.faults.fault import Fault
+from core.loop.effects import Effects
+from core.plain import plain
+from core.ports import RESERVED, Port
 from core.sense.sensor import Sensor
 from core.signals import Signal, SignalTable
 
-if TYPE_CHECKING:
-    from core.board.spec import Spec
+N = TypeVar("N", np.float64, np.int64)
 
-OPEN_LOOP = "open_loop"
-"""The controller that passes the reference on, so that the drive may follow it between samples."""
 NOTHING = "@nothing"
 """A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
-
-
-@dataclass(frozen=True)
-class Instance:
-    """One block on the board: ``prefix`` is the first part of its signals' names."""
-
-    key: str
-    prefix: str
-    block: type[Block]
-    params: BlockParams
-    every: int = 1
 
 
 @dataclass
@@ -69,26 +59,48 @@ class Wiring:
         """Return the state of an instance, a view."""
         return self._part(self.s, self.rows[key], program.S_OFFSET)
 
-    def _part(self, whole: FloatArray, row: int, column: int) -> FloatArray:
+    def parameters(self, key: str) -> Any:
+        """Return what the step of an instance reads, a record."""
+        row = self.rows[key]
+        return self.instances[row].block.Packed(self.packed(row))
+
+    def state(self, key: str) -> Any:
+        """Return the state of an instance, a record."""
+        return self.instances[self.rows[key]].block.State(self.state_of(key))
+
+    def ports(self, row: int) -> IntArray:
+        """Return the places of the ports of a row, a view."""
+        return self._part(self.io, row, program.IO_OFFSET)
+
+    def bound(self, row: int) -> Callable[[], None]:
+        """Return the step of a row in plain Python, bound to its arrays."""
+        block = self.instances[row].block
+        p, s, io = self.packed(row), self._part(self.s, row, program.S_OFFSET), self.ports(row)
+        return partial(plain(block.step), block.Packed(p), block.State(s), block.Ports(self.w, io))
+
+    def _part(self, whole: NDArray[N], row: int, column: int) -> NDArray[N]:
         end = self.table[row + 1, column] if row + 1 < len(self.instances) else len(whole)
         return whole[self.table[row, column] : end]
 
     def rest(self, spec: Spec) -> list[int]:
         """Return the rows that run; make those that rest as new, and their signals 0."""
-        running = []
-        for row, instance in enumerate(self.instances):
-            if not (self.unread[row] or absent(instance)):
-                running.append(row)
-                self.resting.discard(row)
-                continue
-            if row in self.resting:
-                continue
-            self.resting.add(row)
-            self.state_of(instance.key)[:] = instance.block.state(instance.params, spec.context(instance.every))
+        running = [
+            row
+            for row, instance in enumerate(self.instances)
+            if not self.unread[row] and not instance.block.rests(instance.params)
+        ]
+        if len(running) + len(self.resting) != len(self.instances) or not self.resting.isdisjoint(running):
+            self._put_to_rest(spec, set(range(len(self.instances))) - {*running} - self.resting)
+            self.resting = set(range(len(self.instances))) - {*running}
+        return running
+
+    def _put_to_rest(self, spec: Spec, rows: set[int]) -> None:
+        for row in rows:
+            instance = self.instances[row]
+            self.state_of(instance.key)[:] = instance.block.initial(instance.params, spec.context(instance.every))
             for port in (*instance.block.outputs, *instance.block.taps):
                 start = self.index[signal_name(instance, port.name)]
                 self.w[start : start + len(port.names(instance.params))] = 0.0
-        return running
 
     def idle(self, running: list[int]) -> BoolArray:
         """Return which taps stay 0 while these rows run."""
@@ -97,95 +109,37 @@ class Wiring:
         return idle[self.tap_rows]
 
 
-def instances(spec: Spec, faults: dict[str, BlockParams]) -> list[Instance]:
-    """Return the blocks of a bench in the order of a tick.
-
-    The plant comes first: it integrates the sample that ends now, under the voltage and the effects that were held
-    over it. Then the environment and the faults of this moment, what is measured and concluded, and the voltage to hold
-    next.
-    """
-
-    def own(key: str, section: Any) -> Instance:
-        return Instance(key, key, section.block, section.params, section.every)
-
-    def waiting(key: str, section: Any) -> Instance:
-        return Instance(key, key, section.block, section.params, spec.turns(section))
-
-    order = [own("plant", spec.plant), own("environment", spec.environment)]
-    order.append(Instance("effects", "effects", Effects, Effects.Params()))
-    for name, block in registry.blocks("faults").items():
-        order.append(Instance(f"faults.{name}", f"faults.{name}", block, faults.get(name, block.Params())))
-    # first what only detects, then what recovers a displacement from it
-    for recovers in (False, True):
-        order += [own(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers]
-    order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
-    order += [waiting(name, section) for name, section in spec.identifiers.items()]
-    for name, section in spec.diagnosers.items():
-        order.append(waiting(name, section))
-        if scored(section.block):
-            order.append(Instance(f"{name}.score", name, Score, _scored(section.params), spec.turns(section)))
-    order += [own("reference", spec.reference), own("model", spec.model)]
-    order += [own(name, section) for name, section in spec.controllers.items()]
-    order += [own("drive", spec.drive), own("guard", spec.guard)]
-    return order
-
-
-def recovered(block: type[Block]) -> bool:
-    """Say whether a sensor puts out a displacement."""
-    return any(port.name == "displacement" for port in block.outputs)
-
-
-def scored(block: type[Block]) -> bool:
-    """Say whether a diagnoser chooses between hypotheses, so that it can be right or wrong."""
-    return any(port.name == "probability" and port.each == "hypotheses" for port in block.outputs)
-
-
-def _scored(params: BlockParams) -> BlockParams:
-    return Score.Params.model_construct(hypotheses=getattr(params, "hypotheses"))  # noqa: B009
-
-
-def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Spec, Wiring] | None = None) -> Wiring:
+def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
     """Lay out the arrays of a bench and connect its ports.
 
     Parameters
     ----------
     spec : Spec
-        The bench.
-    faults : dict
-        The faults that act, by name.
-    now : tuple, optional
-        A bench of the same signals and its wiring: what is alike is taken from there.
+        The bench, with the faults that act.
+    like : Wiring, optional
+        Of a bench with the same signals.
     """
-    order = instances(spec, faults or {})
-    before, like = now or (None, None)
-    if like is not None and [one.block for one in order] == [one.block for one in like.instances]:
+    order = instances(spec)
+    if like is not None and [entry.block for entry in order] == [entry.block for entry in like.instances]:
         signals, index, size = like.signals, like.index, len(like.w)
     else:
         signals, index, size = _laid_out(spec, order)
-        like = None
-    alike = like is not None and before is not None and spec.context() == before.context()
     table = np.zeros((len(order), program.COLUMNS), dtype=np.int64)
     p_parts, s_parts, io_parts = [], [], []
     p_size = s_size = io_size = 0
     for row, instance in enumerate(order):
-        if alike and like is not None and instance == like.instances[row]:
-            p, s = like.packed(row), like.state_of(instance.key)
-        else:
-            context = spec.context(instance.every)
-            p = np.ascontiguousarray(instance.block.pack(instance.params, context), dtype=np.float64)
-            s = np.ascontiguousarray(instance.block.state(instance.params, context), dtype=np.float64)
+        context = spec.context(instance.every)
+        p, s = instance.block.packed(instance.params, context), instance.block.initial(instance.params, context)
         io = ports_of(spec, instance, index)
-        every = 1 if instance.block.every_tick else instance.every
-        table[row, 1:] = (p_size, s_size, io_size, every)
+        table[row, 1:] = (p_size, s_size, io_size, every_of(instance))
         p_parts.append(p)
         s_parts.append(s)
         io_parts.append(io)
         p_size, s_size, io_size = p_size + len(p), s_size + len(s), io_size + len(io)
     w = np.zeros(size)
-    for port in Effects.outputs:
-        w[index[f"effects.{port.name}"]] = port.neutral
+    for name, value in Effects.neutral().items():
+        w[index[f"effects.{name}"]] = value
     engage(spec, index, w)
-    read = needed(spec)
     rows = {instance.key: row for row, instance in enumerate(order)}
     return Wiring(
         instances=order,
@@ -196,10 +150,21 @@ def wire(spec: Spec, faults: dict[str, BlockParams] | None = None, now: tuple[Sp
         s=np.concatenate(s_parts),
         w=w,
         io=np.concatenate(io_parts),
-        unread=[i.key in spec.sensors and issubclass(i.block, Sensor) and i.key not in read for i in order],
+        unread=unread(spec, order),
         rows=rows,
         tap_rows=np.array([rows[signal.block] for signal in signals.taps], dtype=np.int64),
     )
+
+
+def every_of(instance: Instance) -> int:
+    """Return the ticks between two calls of a step."""
+    return 1 if instance.block.every_tick else instance.every
+
+
+def unread(spec: Spec, order: list[Instance]) -> list[bool]:
+    """Return of every row whether it is a sensor that nobody reads."""
+    read = needed(spec)
+    return [entry.key in spec.sensors and issubclass(entry.block, Sensor) and entry.key not in read for entry in order]
 
 
 def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str, int], int]:
@@ -231,11 +196,6 @@ def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str,
     return SignalTable(shown), index, size + 1
 
 
-def absent(instance: Instance) -> bool:
-    """Say whether a block is a fault that is not there, so that it need not run."""
-    return isinstance(instance.params, FaultParams) and instance.params.severity == 0.0
-
-
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
     """Tell every controller whether it drives."""
     for name in spec.controllers:
@@ -245,7 +205,11 @@ def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
 def needed(spec: Spec) -> set[str]:
     """Return the sensor in use, those that always run or that a diagnoser reads, and all they read from."""
     found: set[str] = set()
-    always = [name for name, section in spec.sensors.items() if getattr(section.params, "always", False)]
+    always = [
+        name
+        for name, unit in spec.sensors.items()
+        if issubclass(unit.block, Sensor) and unit.block.runs_always(unit.params)
+    ]
     read = [port.source.split(".")[0] for section in spec.diagnosers.values() for port in section.block.inputs]
     waiting = [spec.measuring, *always, *read]
     while waiting:
@@ -279,7 +243,6 @@ def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -
     if port.source == "@active":
         return f"{spec.active}.voltage"
     if port.source in ("@active_middle", "@active_end"):
-        # only the generator itself knows what happens between samples
-        between = port.source.removeprefix("@active_")
-        return f"reference.{between}" if spec.active == OPEN_LOOP else f"{spec.active}.voltage"
+        between = port.source.removeprefix("@active") if feeds_forward(spec.controllers[spec.active].block) else ""
+        return f"{spec.active}.voltage{between}"
     return port.source or f"{instance.prefix}.{port.name}"

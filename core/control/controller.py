@@ -3,42 +3,88 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from core.block import Context, Oscillator, Port, kernel, settled
+from core.block import Context, Oscillator
 from core.device.oscillator import held, within
-from core.voltage import APPLIED_PORTS
+from core.kernel import flush_tiny, kernel
+from core.ports import BlockPorts, output, reads
+from core.record import Record
+from core.voltage import AppliedPorts, Tick
 
-REFERENCE, MODEL, MEASURED, APPLIED = range(4)
-ENGAGED, VOLTAGE = APPLIED + len(APPLIED_PORTS), APPLIED + len(APPLIED_PORTS) + 1
-"""Ports of every controller: its inputs, then its own would-be voltage; one with inputs of its own counts on.
-
-``APPLIED`` is what was applied until now, whoever asked for it.
-"""
-
-INPUTS = (
-    Port("reference", "V", "reference voltage", source="reference.voltage"),
-    Port("model", "um", "where the shuttle should be", source="model.displacement"),
-    Port("measured", "um", "measured displacement", source="sensor.displacement"),
-    *APPLIED_PORTS,
-    Port("engaged", "1", "1 while this controller drives", source="@engaged"),
-)
-OUTPUT = Port("voltage", "V", "voltage this controller asks for")
 FIRST_ORDER = "is for plants of second order, and this device is of first order"
 """Why many controllers cannot be on a bench with a plant that has no mass."""
 
-TRUTH = (
-    Port("mass_scale", "1", "true mass over nominal, for the ideal values", source="effects.mass_scale"),
-    Port("stiffness_scale", "1", "true stiffness over nominal", source="effects.stiffness_scale"),
-    Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
-    Port("drive_gain", "1", "voltage at the comb over the voltage applied", source="effects.drive_gain"),
-)
-"""What the bench knows and no controller may use: only ideal values for the taps are made of it."""
 
-VELOCITY_INPUTS = (
-    Port("velocity", "um/ms", "true velocity, for a source that measures it", source="plant.velocity"),
-    Port("model_velocity", "um/ms", "velocity of the model", source="model.velocity"),
-)
+class ReferencePorts(BlockPorts):
+    """Reference, model and measurement."""
+
+    reference: float = reads("reference.voltage", "V", "reference voltage")
+    model: float = reads("model.displacement", "um", "where the shuttle should be")
+    measured: float = reads("sensor.displacement", "um", "measured displacement")
+
+
+class EngagedPorts(BlockPorts):
+    """Whether the controller drives, and the voltage it would apply itself."""
+
+    engaged: float = reads("@engaged", "1", "1 while this controller drives")
+    voltage: float = output("V", "voltage this controller asks for")
+
+
+class ControllerPorts(ReferencePorts, AppliedPorts, EngagedPorts):
+    """Ports of every controller; ``applied`` is the voltage of the controller that drives."""
+
+
+class FeedForwardPorts(ControllerPorts):
+    """Ports of a law without feedback, which knows its voltage between samples too, so the drive may be analogue."""
+
+    reference_middle: float = reads("reference.middle", "V", "reference half a sample later")
+    reference_end: float = reads("reference.end", "V", "reference one sample later")
+    voltage_middle: float = output("V", "voltage this controller asks for half a sample later", hidden=True)
+    voltage_end: float = output("V", "voltage this controller asks for one sample later", hidden=True)
+
+
+class TruthPorts(BlockPorts):
+    """True scales of the device, from which the taps compute ideal values; no law may use them."""
+
+    mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal, for the ideal values")
+    stiffness_scale: float = reads("effects.stiffness_scale", "1", "true stiffness over nominal")
+    damping_scale: float = reads("effects.damping_scale", "1", "true damping over nominal")
+    drive_gain: float = reads("effects.drive_gain", "1", "voltage at the comb over the voltage applied")
+
+
+class VelocityPorts(BlockPorts):
+    """Velocities, for controllers that are given one."""
+
+    velocity: float = reads("plant.velocity", "um/ms", "true velocity, for a source that measures it")
+    model_velocity: float = reads("model.velocity", "um/ms", "velocity of the model")
+
+
+class Coefficients(Record):
+    """Coefficients of :math:`x''+a_1x'+a_2x=ku` with time in units of 1/w0; of a first order, :math:`x'+a_2x=ku`."""
+
+    a1: float
+    a2: float
+    gain: float
+
+
+class NormalisedPacked(Record):
+    """Sample interval in 1/w0, coefficients of plant and model."""
+
+    h: float
+    plant: Coefficients
+    model: Coefficients
+
+
+class Lag(Record):
+    r"""A lag :math:`\dot x=-\lambda x+u` over a sample: the share of x that stays, and the effects of the input.
+
+    The input is one volt held, then one volt more in the middle of a sample, and at its end, than at its start.
+    """
+
+    decay: float
+    push: float
+    middle: float
+    end: float
 
 
 def normalised(oscillator: Oscillator, frequency: float) -> tuple[float, float, float]:
@@ -72,73 +118,69 @@ def unsuited_order(device: Oscillator, model: Oscillator) -> str:
 
 
 def first_order(oscillator: Oscillator, frequency: float) -> tuple[float, float, float]:
-    r"""Return 0, a and k of :math:`x'+ax=ku` with time in units of 1/frequency; of a second order, its slow end."""
+    r"""Return 0, a and k of :math:`x'+ax=ku` with time in units of 1/frequency; of a second order, its slow mode."""
     inverse = 1.0 / (oscillator.damping * frequency)
     return 0.0, oscillator.stiffness * inverse, oscillator.force * inverse
 
 
 def coefficients(context: Context) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """Return the coefficients of device and model, both of the order of the device, with gains that are not 0."""
+    """Return the coefficients of device and model, both in the order of the device, with gains that are not 0."""
     rate = context.device.natural_frequency
     of = normalised if context.device.mass > 0.0 else first_order
     (a1, a2, gain), (m1, m2, model_gain) = of(context.device, rate), of(context.model, rate)
     return (a1, a2, gain or 1.0), (m1, m2, model_gain or 1.0)  # identical stators give no gain to match
 
 
-def model_filter(context: Context) -> list[float]:
-    """Pack a copy of the model without its zero: transition by rows, effect of a volt held over a sample, of one more.
+def fill_normalised(p: NormalisedPacked, context: Context) -> None:
+    """Pack the sample interval and the coefficients."""
+    p.h = context.dt_ms * context.device.natural_frequency
+    plant, model = coefficients(context)
+    p.plant.a1, p.plant.a2, p.plant.gain = plant
+    p.model.a1, p.model.a2, p.model.gain = model
 
-    That is, of a volt more in the middle of a sample and at its end than at its start.
+
+def model_filter(context: Context) -> Tick:
+    """Return a copy of the model without its zero: its transition over a sample and the effects of a voltage.
+
+    The voltage is one volt held, then one volt more in the middle of a sample, and at its end, than at its start.
     """
     m1, m2, gain = coefficients(context)[1]
     h = context.dt_ms * context.device.natural_frequency
     of = (1.0, m1, m2, h) if context.device.mass > 0.0 else (0.0, 1.0, m2, h)
-    *phi, first, second = held(*of)
-    more = within(*of, gain) if context.analogue else (0.0, 0.0, 0.0, 0.0)
-    return [*phi, gain * first, gain * second, *more]
+    tick = Tick.blank()
+    tick.phi11, tick.phi12, tick.phi21, tick.phi22, first, second = held(*of)
+    tick.push1, tick.push2 = gain * first, gain * second
+    effects = within(*of, gain) if context.analogue else (0.0, 0.0, 0.0, 0.0)
+    tick.middle1, tick.middle2, tick.end1, tick.end2 = effects
+    return tick
 
 
-MODEL_FILTER_MORE = 6
-MODEL_FILTER_SIZE = 10
-
-
-@kernel
-def advance_model(p: Any, packed: int, s: Any, at: int, voltage: float) -> None:
-    """Advance one copy of the model over an interval with a held input."""
-    x = s[at]
-    v = s[at + 1]
-    s[at] = settled(p[packed] * x + p[packed + 1] * v + p[packed + 4] * voltage)
-    s[at + 1] = settled(p[packed + 2] * x + p[packed + 3] * v + p[packed + 5] * voltage)
-
-
-def lag(pole: float, h: float, analogue: bool) -> list[float]:
-    r"""Pack :math:`\dot x=-\lambda x+u`: what stays of x over a sample, and the effects of a volt as of the model."""
-    decay = math.exp(-pole * h)
-    more = within(0.0, 1.0, pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
-    return [decay, (1.0 - decay) / pole, more[0], more[2]]
-
-
-LAG_SIZE = 4
+def lag(pole: float, h: float, analogue: bool) -> Lag:
+    """Pack a lag with its pole in 1/w0, for an interval in 1/w0."""
+    packed = Lag.blank()
+    packed.decay = math.exp(-pole * h)
+    packed.push = (1.0 - packed.decay) / pole
+    packed.middle, _, packed.end, _ = within(0.0, 1.0, pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
+    return packed
 
 
 @kernel
-def advance_lag(p: Any, packed: int, s: Any, at: int, u: float, middle: float, end: float) -> None:
-    """Advance a lag under a voltage: at the start, and how much more it was in the middle and at the end."""
-    more = p[packed + 2] * middle + p[packed + 3] * end
-    s[at] = settled(p[packed] * s[at] + p[packed + 1] * u + more)
+def advance_lag(p: Lag, x: float, u: float, middle: float, end: float) -> float:
+    """Return a lag one sample later; the voltage is ``u`` at the start and more by ``middle`` and ``end`` after it."""
+    moved = p.middle * middle + p.end * end
+    return flush_tiny(p.decay * x + p.push * u + moved)
 
 
 @kernel
-def true_plant(w: Any, io: Any, first: int, a1: float, a2: float, gain: float) -> tuple[float, float, float]:
-    """Return the true coefficients from the nominal ones and the inputs of ``TRUTH``, which begin at ``first``."""
-    inverse = 1.0 / w[io[first]]
-    return a1 * w[io[first + 2]] * inverse, a2 * w[io[first + 1]] * inverse, gain * w[io[first + 3]] * inverse
+def true_plant(x: TruthPorts, plant: Coefficients) -> tuple[float, float, float]:
+    """Scale the nominal coefficients of the plant to the true ones."""
+    inverse = 1.0 / x.mass_scale
+    a1 = plant.a1 * x.damping_scale * inverse
+    return a1, plant.a2 * x.stiffness_scale * inverse, plant.gain * x.drive_gain * inverse
 
 
 @kernel
-def matching(
-    a1: float, a2: float, gain: float, m1: float, m2: float, model_gain: float, pole: float
-) -> tuple[float, float, float, float]:
+def matching(a1: float, a2: float, gain: float, model: Coefficients, pole: float) -> tuple[float, float, float, float]:
     r"""Return the gains on r, w1, w2, y that make the loop equal the model.
 
     .. math:: k=\frac{k_m}{k_p},\quad \theta_1=a_{p1}-a_{m1},\quad
@@ -146,14 +188,14 @@ def matching(
         \theta_2=\frac{(\lambda-\theta_1)a_{p2}-\lambda a_{m2}}{k_p}-\lambda\theta_0
     """
     inverse = 1.0 / gain
-    first = a1 - m1
-    zero = (a2 + (pole - first) * a1 - m2 - pole * m1) * inverse
-    return model_gain * inverse, first, ((pole - first) * a2 - pole * m2) * inverse - pole * zero, zero
+    first = a1 - model.a1
+    zero = (a2 + (pole - first) * a1 - model.a2 - pole * model.a1) * inverse
+    return model.gain * inverse, first, ((pole - first) * a2 - pole * model.a2) * inverse - pole * zero, zero
 
 
 @kernel
 def saturated(value: float, layer: float) -> float:
-    """Return the sign of a value, or its share of a boundary layer inside of it."""
+    """Return the sign of a value; within the boundary layer, return its share of the layer."""
     if abs(value) >= layer:
         return 1.0 if value > 0.0 else -1.0 if value < 0.0 else 0.0
     return value / layer

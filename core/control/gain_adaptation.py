@@ -5,51 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
-from core.control.controller import INPUTS, MEASURED, MODEL, OUTPUT, REFERENCE
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.control.controller import ControllerPorts
+from core.kernel import flush_tiny
+from core.ports import reads, tap
+from core.record import Record
 from core.theory.gain_adaptation import LYAPUNOV, MIT, MONOPOLI, PARKS, PRICE, RULES
-
-RULE, H, RATE, ERROR_WEIGHT, PROPORTIONAL, FILTER_TIME, DECAY, IDEAL, ALGEBRAIC = range(9)
-INTEGRAL, LAST_ERROR, LAST_REFERENCE, FILTERED, STARTED = range(5)
-STIFFNESS_SCALE, DRIVE_GAIN, OWN_VOLTAGE, GAIN, GAIN_IDEAL, ERROR = range(len(INPUTS), len(INPUTS) + 6)
-
-
-def gain_adaptation_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Compare, adapt the gain, scale the reference."""
-    r, ym = w[io[REFERENCE]], w[io[MODEL]]
-    e = settled(ym - w[io[MEASURED]])
-    if s[STARTED] == 0.0:
-        s[STARTED] = 1.0
-        s[LAST_ERROR] = e
-    else:
-        # y' = (r - y)/q with the reference held
-        s[FILTERED] = settled(p[DECAY] * s[FILTERED] + (1.0 - p[DECAY]) * s[LAST_REFERENCE])
-    rule = p[RULE]
-    slope = p[RATE] * e * r
-    if rule == MIT:
-        slope = p[RATE] * e * ym
-    elif rule == MONOPOLI:
-        slope = p[RATE] * e * s[FILTERED]
-    elif rule == PARKS or rule == LYAPUNOV:
-        # the integral of e' r over a sample with r held needs no derivative
-        s[INTEGRAL] += p[RATE] * (e - s[LAST_ERROR]) * s[LAST_REFERENCE]
-        slope = p[RATE] * p[ERROR_WEIGHT] * e * r if rule == LYAPUNOV else 0.0
-    s[INTEGRAL] += p[H] * slope
-    gain = s[INTEGRAL]
-    if rule == PRICE:
-        gain += p[PROPORTIONAL] * slope
-    if p[ALGEBRAIC] != 0.0:
-        gain = slope
-    u = gain * r
-    if rule == MONOPOLI:
-        u += p[FILTER_TIME] * slope * s[FILTERED]
-    s[LAST_ERROR], s[LAST_REFERENCE] = e, r
-    w[io[OWN_VOLTAGE]] = u
-    w[io[GAIN]] = gain
-    w[io[GAIN_IDEAL]] = p[IDEAL] * w[io[STIFFNESS_SCALE]] / w[io[DRIVE_GAIN]]
-    w[io[ERROR]] = e
 
 
 class GainAdaptation(Block):
@@ -67,19 +28,6 @@ class GainAdaptation(Block):
     """
 
     title = "Gain adaptation (appendix B)"
-    inputs = (
-        *INPUTS,
-        Port(
-            "stiffness_scale", "1", "true stiffness over nominal, for the ideal gain", source="effects.stiffness_scale"
-        ),
-        Port("drive_gain", "1", "voltage at the plant over voltage applied", source="effects.drive_gain"),
-    )
-    outputs = (OUTPUT,)
-    taps = (
-        Port("gain", "1", "adapted gain kc"),
-        Port("gain_ideal", "1", "gain that would match the model"),
-        Port("error", "um", "model minus measured displacement"),
-    )
     equations = (
         Equation(
             "MIT rule",
@@ -122,38 +70,100 @@ class GainAdaptation(Block):
         filter_time: float = parameter(1.5, "time constant q of Monopoli's filter", equation="B.5.1", gt=0.001, le=1e3)
         initial_gain: float = parameter(0.0, "gain at the start", ge=-1e3, le=1e3, live=False)
 
+    class Packed(Record):
+        """The rule, sample interval in 1/w0, gains, Monopoli's filter, and the gain that matches the nominal plant."""
+
+        rule: float
+        h: float
+        adaptation_gain: float
+        error_weight: float
+        proportional: float
+        filter_time: float
+        decay: float
+        ideal: float
+        algebraic: float
+
+    class State(Record):
+        """Integral, error and reference of the last sample, Monopoli's filter, whether it has run."""
+
+        integral: float
+        last_error: float
+        last_reference: float
+        filtered: float
+        started: float
+
+    class Ports(ControllerPorts):
+        """Ports of a controller, the truth about the gain, and the adaptation."""
+
+        stiffness_scale: float = reads(
+            "effects.stiffness_scale", "1", "true stiffness over nominal, for the ideal gain"
+        )
+        drive_gain: float = reads("effects.drive_gain", "1", "voltage at the plant over voltage applied")
+        gain: float = tap("1", "adapted gain kc")
+        gain_ideal: float = tap("1", "gain that would match the model")
+        error: float = tap("um", "model minus measured displacement")
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what has no static gain to match, and resonators, whose gain is known."""
+        """Refuse plants without a static gain to match, and resonators, whose gain is known."""
         if device.time_unit_ms == 0.0:
             return "is for the plants of appendix B; choose first-order-gain or second-order-gain"
         whole = min(device.stiffness, model.stiffness) > 0.0 and device.force != 0.0
         return "" if whole else "needs a plant and a model that come to rest"
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        h = context.dt_ms * context.device.natural_frequency
         rule = params.rule
         if rule == "lyapunov" and params.form != "corrected":
             rule = {"derived": "parks", "printed": "dressler"}[params.form]
-        return np.array(
-            [
-                RULES[rule],
-                h,
-                params.adaptation_gain,
-                params.error_weight,
-                params.proportional,
-                params.filter_time,
-                math.exp(-h / params.filter_time),
-                context.model.static_gain / context.device.static_gain,
-                float(params.rule == "mit" and params.form == "printed"),
-            ]
-        )
+        p = cls.Packed.blank()
+        p.rule = RULES[rule]
+        p.h = context.dt_ms * context.device.natural_frequency
+        p.decay = math.exp(-p.h / params.filter_time)
+        p.ideal = context.model.static_gain / context.device.static_gain
+        p.algebraic = params.rule == "mit" and params.form == "printed"
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Start with the gain given, and nothing seen."""
-        return np.array([params.initial_gain, 0.0, 0.0, 0.0, 0.0])
+    def state(cls, params: Any, context: Context) -> State:
+        """Start with the given gain, before the first sample."""
+        s = cls.State.zeros()
+        s.integral = params.initial_gain
+        return s
 
-    step = gain_adaptation_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Compare, adapt the gain, scale the reference."""
+        r, ym = x.reference, x.model
+        e = flush_tiny(ym - x.measured)
+        if s.started == 0.0:
+            s.started = 1.0
+            s.last_error = e
+        else:
+            # y' = (r - y)/q with the reference held
+            s.filtered = flush_tiny(p.decay * s.filtered + (1.0 - p.decay) * s.last_reference)
+        rule = p.rule
+        slope = p.adaptation_gain * e * r
+        if rule == MIT:
+            slope = p.adaptation_gain * e * ym
+        elif rule == MONOPOLI:
+            slope = p.adaptation_gain * e * s.filtered
+        elif rule == PARKS or rule == LYAPUNOV:
+            # the integral of e' r over a sample with r held needs no derivative
+            s.integral += p.adaptation_gain * (e - s.last_error) * s.last_reference
+            slope = p.adaptation_gain * p.error_weight * e * r if rule == LYAPUNOV else 0.0
+        s.integral += p.h * slope
+        gain = s.integral
+        if rule == PRICE:
+            gain += p.proportional * slope
+        if p.algebraic != 0.0:
+            gain = slope
+        u = gain * r
+        if rule == MONOPOLI:
+            u += p.filter_time * slope * s.filtered
+        s.last_error, s.last_reference = e, r
+        x.voltage = u
+        x.gain = gain
+        x.gain_ideal = p.ideal * x.stiffness_scale / x.drive_gain
+        x.error = e

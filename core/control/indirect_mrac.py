@@ -5,94 +5,40 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.control.adaptation import REGRESSORS
 from core.control.controller import (
-    APPLIED,
-    INPUTS,
-    LAG_SIZE,
-    MEASURED,
-    MODEL,
-    OUTPUT,
-    REFERENCE,
-    TRUTH,
+    ControllerPorts,
+    Lag,
+    NormalisedPacked,
+    TruthPorts,
     advance_lag,
     coefficients,
+    fill_normalised,
     lag,
     matching,
     true_plant,
     unsuited_second_order,
 )
 from core.estimation import (
-    DRIVEN_SIZE,
-    advance_filter,
+    DrivenFilter,
     diagonal,
-    drive_filter,
-    driven_filter,
-    least_squares,
-    project,
-    second_derivative,
-    trace,
+    driven_filter_of,
+    estimate,
+    filter_input,
+    filter_voltage,
+    filtered_second_derivative,
+    project_onto,
+    trace_of,
     triangle,
 )
-from core.voltage import moved
+from core.kernel import flush_tiny
+from core.ports import tap
+from core.record import Record, Vector, vector
+from core.voltage import Motion, moves
 
-N = 3
-FORGETTING, NOISE, NORMALISER, TRACE_LIMIT, LOW, HIGH, POLE, LAG = range(DRIVEN_SIZE, DRIVEN_SIZE + 8)
-PRINTED, MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN = range(LAG + LAG_SIZE, LAG + LAG_SIZE + 7)
-THETA, COVARIANCE, PHI = 0, N, N + triangle(N)
-PRODUCT, INPUT_FILTER, OUTPUT_FILTER, W1, W2, LAST, STARTED, SIZE = (PHI + N + n for n in (0, 3, 5, 7, 8, 9, 10, 11))
-FIRST_TRUTH = len(INPUTS)
-OWN_VOLTAGE = FIRST_TRUTH + len(TRUTH)
-TAPS = OWN_VOLTAGE + 1
 PARAMETERS = ("gain", "a1", "a2")
-GAINS = ("r", "w1", "w2", "y")
-
-
-def indirect_mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Identify from what was applied, compute the gains, then the voltage."""
-    y = w[io[MEASURED]]
-    r = w[io[REFERENCE]]
-    u, middle, end = moved(w, io, APPLIED)
-    last = s[LAST] if s[STARTED] != 0.0 else y
-    drive_filter(p, 0, s, INPUT_FILTER, u, middle, end)
-    advance_filter(p, 0, s, OUTPUT_FILTER, last, y)
-    advance_lag(p, LAG, s, W1, u, middle, end)
-    advance_lag(p, LAG, s, W2, last, 0.0, 0.0)
-    s[LAST] = y
-    s[STARTED] = 1.0
-
-    s[PHI], s[PHI + 1], s[PHI + 2] = s[INPUT_FILTER], -s[OUTPUT_FILTER + 1], -s[OUTPUT_FILTER]
-    error = second_derivative(p, 0, s, OUTPUT_FILTER, y)
-    size = 1.0
-    for i in range(N):
-        error -= s[THETA + i] * s[PHI + i]
-        size += p[NORMALISER] * s[PHI + i] * s[PHI + i]
-    error = settled(error)
-    information = least_squares(
-        s, THETA, COVARIANCE, PHI, PRODUCT, N, error, size * p[NOISE], p[FORGETTING], p[TRACE_LIMIT]
-    )
-    project(s, THETA, COVARIANCE, N, 0, p[LOW], p[HIGH])
-    gain, a1, a2 = s[THETA], s[THETA + 1], s[THETA + 2]
-    on_r, on_w1, on_w2, on_y = matching(a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE])
-    if p[PRINTED] != 0.0:
-        on_r = gain / p[MODEL_GAIN]
-    w[io[OWN_VOLTAGE]] = on_r * r + on_w1 * s[W1] + on_w2 * s[W2] + on_y * y
-
-    a1, a2, gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
-    estimate, truth, own, ideal = io[TAPS], io[TAPS + 1], io[TAPS + 2], io[TAPS + 3]
-    for i in range(N):
-        w[estimate + i] = s[THETA + i]
-    w[truth], w[truth + 1], w[truth + 2] = gain, a1, a2
-    w[own], w[own + 1], w[own + 2], w[own + 3] = on_r, on_w1, on_w2, on_y
-    w[ideal], w[ideal + 1], w[ideal + 2], w[ideal + 3] = matching(
-        a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE]
-    )
-    w[io[TAPS + 4]] = y - w[io[MODEL]]
-    w[io[TAPS + 5]] = error
-    w[io[TAPS + 6]] = trace(s, COVARIANCE, N)
-    w[io[TAPS + 7]] = information / (size * p[NOISE])
+N = len(PARAMETERS)
 
 
 class IndirectMrac(Block):
@@ -108,18 +54,6 @@ class IndirectMrac(Block):
     """
 
     title = "Indirect MRAC"
-    inputs = (*INPUTS, *TRUTH)
-    outputs = (OUTPUT,)
-    taps = (
-        Port("parameter", "mixed", "estimates of kp, a1 and a2, time in 1/w0", labels=PARAMETERS),
-        Port("parameter_true", "mixed", "what they should be", labels=PARAMETERS),
-        Port("gain", "mixed", "gains on r, w1, w2 and y computed from the estimates", labels=GAINS),
-        Port("gain_ideal", "mixed", "gains that would match the model exactly", labels=GAINS),
-        Port("error", "um", "measured minus model displacement"),
-        Port("prediction_error", "um", "what the estimate missed, in um w0^2"),
-        Port("trace", "mixed", "trace of the covariance"),
-        Port("excitation", "1", "what the regressor of this sample tells beside what is known"),
-    )
     equations = (
         Equation("parametric form", r"z=\frac{s^2}{(s+\lambda)^2}y=\theta^T\phi", "3.3.2.5-7"),
         Equation(
@@ -159,48 +93,112 @@ class IndirectMrac(Block):
             "working", "gain on the reference: K_m/K_p, or as printed K_p/K_m", equation="3.3.2.16"
         )
 
+    class Packed(NormalisedPacked):
+        """Filters and their pole, forgetting and noise of a sample, limits of the estimate, whether K is as printed."""
+
+        filter: DrivenFilter
+        lag: Lag
+        filter_pole: float
+        forgetting: float
+        noise: float
+        normaliser: float
+        trace_limit: float
+        low: float
+        high: float
+        printed: float
+
+    class State(Record):
+        """Estimate, covariance, the regressor, scratch numbers, filters, the last measurement, whether it has run."""
+
+        theta: Vector = vector(N)
+        covariance: Vector = vector(triangle(N))
+        regressor: Vector = vector(N)
+        product: Vector = vector(N)
+        input: Motion
+        output: Motion
+        w1: float
+        w2: float
+        last: float
+        started: float
+
+    class Ports(ControllerPorts, TruthPorts):
+        """Ports of a controller, the truth, and the identification."""
+
+        parameter: Vector = tap("mixed", "estimates of kp, a1 and a2, time in 1/w0", labels=PARAMETERS)
+        parameter_true: Vector = tap("mixed", "what they should be", labels=PARAMETERS)
+        gain: Vector = tap("mixed", "gains on r, w1, w2 and y computed from the estimates", labels=REGRESSORS)
+        gain_ideal: Vector = tap("mixed", "gains that would match the model exactly", labels=REGRESSORS)
+        error: float = tap("um", "measured minus model displacement")
+        prediction_error: float = tap("um", "what the estimate missed, in um w0^2")
+        trace: float = tap("mixed", "trace of the covariance")
+        excitation: float = tap("1", "what the regressor of this sample tells beside what is known")
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse plants and models that are not of second order."""
         return unsuited_second_order(device, model)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        h = context.dt_ms * context.device.natural_frequency
-        (a1, a2, gain), (m1, m2, model_gain) = coefficients(context)
-        forgetting = math.exp(-1e-3 * params.forgetting_rate * context.dt_ms)
-        floor = params.gain_floor * gain
-        low, high = (floor, math.inf) if gain > 0.0 else (-math.inf, floor)
-        pole = params.filter_pole
-        return np.array(
-            [
-                *driven_filter(pole, h, context.analogue),
-                forgetting,
-                forgetting / h,
-                params.normaliser,
-                params.trace_limit,
-                low,
-                high,
-                pole,
-                *lag(pole, h, context.analogue),
-                float(params.gain_map == "printed"),
-                m1,
-                m2,
-                model_gain,
-                a1,
-                a2,
-                gain,
-            ]
-        )
+        p = cls.Packed.blank()
+        fill_normalised(p, context)
+        p.forgetting = math.exp(-1e-3 * params.forgetting_rate * context.dt_ms)
+        p.noise = p.forgetting / p.h
+        floor = params.gain_floor * p.plant.gain
+        p.low, p.high = (floor, math.inf) if p.plant.gain > 0.0 else (-math.inf, floor)
+        p.filter = driven_filter_of(params.filter_pole, p.h, context.analogue)
+        p.lag = lag(params.filter_pole, p.h, context.analogue)
+        p.printed = params.gain_map == "printed"
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Parameters of the nominal device, the covariance, everything else at rest."""
         a1, a2, gain = coefficients(context)[0]
-        start = np.zeros(SIZE)
-        start[THETA : THETA + N] = gain, a1, a2
-        start[COVARIANCE : COVARIANCE + triangle(N)] = diagonal(N, params.covariance)
-        return start
+        s = cls.State.zeros()
+        s.theta[:] = gain, a1, a2
+        s.covariance[:] = diagonal(N, params.covariance)
+        return s
 
-    step = indirect_mrac_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Identify from the voltage applied, compute the gains, then the voltage."""
+        y = x.measured
+        u, middle, end = moves(x)
+        last = s.last if s.started != 0.0 else y
+        filter_voltage(p.filter, s.input, u, middle, end)
+        filter_input(p.filter, s.output, last, y)
+        s.w1 = advance_lag(p.lag, s.w1, u, middle, end)
+        s.w2 = advance_lag(p.lag, s.w2, last, 0.0, 0.0)
+        s.last = y
+        s.started = 1.0
+
+        s.regressor[0], s.regressor[1], s.regressor[2] = s.input.x, -s.output.v, -s.output.x
+        error = filtered_second_derivative(p.filter, s.output, y)
+        size = 1.0
+        for i in range(N):
+            error -= s.theta[i] * s.regressor[i]
+            size += p.normaliser * s.regressor[i] * s.regressor[i]
+        error = flush_tiny(error)
+        noise = size * p.noise
+        information = estimate(
+            s.theta, s.covariance, s.regressor, s.product, N, error, noise, p.forgetting, p.trace_limit
+        )
+        project_onto(s.theta, s.covariance, N, 0, p.low, p.high)
+        gain, a1, a2 = s.theta[0], s.theta[1], s.theta[2]
+        on_r, on_w1, on_w2, on_y = matching(a1, a2, gain, p.model, p.filter_pole)
+        if p.printed != 0.0:
+            on_r = gain / p.model.gain
+        x.voltage = on_r * x.reference + on_w1 * s.w1 + on_w2 * s.w2 + on_y * y
+
+        x.parameter[0], x.parameter[1], x.parameter[2] = gain, a1, a2
+        x.gain[0], x.gain[1], x.gain[2], x.gain[3] = on_r, on_w1, on_w2, on_y
+        a1, a2, gain = true_plant(x, p.plant)
+        x.parameter_true[0], x.parameter_true[1], x.parameter_true[2] = gain, a1, a2
+        ideal = x.gain_ideal
+        ideal[0], ideal[1], ideal[2], ideal[3] = matching(a1, a2, gain, p.model, p.filter_pole)
+        x.error = y - x.model
+        x.prediction_error = error
+        x.trace = trace_of(s.covariance, N)
+        x.excitation = information / noise

@@ -5,124 +5,29 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, kernel, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.control.adaptation import REGRESSORS, AdaptationPacked, Y, bounded, distance, leak, weight_of
 from core.control.controller import (
-    APPLIED,
-    INPUTS,
-    LAG_SIZE,
-    MEASURED,
-    MODEL,
-    MODEL_FILTER_MORE,
-    OUTPUT,
-    REFERENCE,
-    TRUTH,
+    ControllerPorts,
+    Lag,
+    TruthPorts,
     advance_lag,
-    advance_model,
     coefficients,
+    fill_normalised,
     lag,
     matching,
     model_filter,
     true_plant,
     unsuited_second_order,
 )
-from core.voltage import add_moved, moved
+from core.kernel import flush_tiny
+from core.ports import reads, tap
+from core.record import Record, Records, Vector, several, vector
+from core.voltage import Motion, Tick, add_moves, advance_motion, moves
 
-H, GAIN, WEIGHT_INPUT, WEIGHT_OUTPUT, POLE, LEAKAGE, BOUND, NORMALISE, AUGMENT, ADAPT_ALPHA = range(10)
-MODEL_GAIN, MODEL_A1, MODEL_A2, PLANT_A1, PLANT_A2, PLANT_GAIN, SIGN, LAG = range(10, 18)
-BIAS, ASKED_FOR, MODEL_FILTER = range(LAG + LAG_SIZE, LAG + LAG_SIZE + 3)
-R, FILTERED_INPUT, FILTERED_OUTPUT, Y, CONSTANT, N = range(6)
-"""The regressors; the constant takes part only if it is not 0."""
-THETA, ALPHA, W1, W2, LAST = 0, N, N + 1, N + 2, N + 3  # LAST: the regressor of the sample before
-FILTERED, APPLIED_FILTER = LAST + N, LAST + 3 * N
-START, OWN, STATES = APPLIED_FILTER + 2, APPLIED_FILTER + 3, APPLIED_FILTER + 4
-FIRST_TRUTH = len(INPUTS)
-DRIVE_OFFSET = FIRST_TRUTH + len(TRUTH)
-OWN_VOLTAGE = DRIVE_OFFSET + 1
-TAPS = OWN_VOLTAGE + 1
-
-
-@kernel
-def weight(p: Any, i: int) -> float:
-    """Return the adaptation weight of a regressor: w2 and y are micrometres, the others volts."""
-    return float(p[WEIGHT_OUTPUT] if i == FILTERED_OUTPUT or i == Y else p[WEIGHT_INPUT])
-
-
-def mrac_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Measure, advance the filters, adapt, compute the voltage."""
-    y = w[io[MEASURED]]
-    r = w[io[REFERENCE]]
-    u, middle, end = moved(w, io, APPLIED)
-    n = CONSTANT if p[BIAS] == 0.0 else N
-    if s[START] != 0.0:
-        for i in range(n):
-            advance_model(p, MODEL_FILTER, s, FILTERED + 2 * i, s[LAST + i])  # w~ = G_m[w]
-        if p[ASKED_FOR] == 0.0:
-            advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u)  # G_m[u]
-            add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, APPLIED_FILTER, middle, end)
-        else:
-            advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, s[OWN])
-        advance_lag(p, LAG, s, W1, u, middle, end)  # w1' = -lam w1 + u
-        advance_lag(p, LAG, s, W2, s[LAST + Y], 0.0, 0.0)  # w2' = -lam w2 + y
-    s[START] = 1.0
-    s[LAST], s[LAST + 1], s[LAST + 2], s[LAST + 3], s[LAST + 4] = r, s[W1], s[W2], y, p[BIAS]
-
-    e = settled(y - w[io[MODEL]])
-    eta = -s[APPLIED_FILTER]
-    den = 1.0
-    for i in range(n):
-        filtered = s[FILTERED + 2 * i]
-        eta += s[THETA + i] * filtered
-        den += weight(p, i) * filtered * filtered
-    eta = settled(eta)
-    den += eta * eta
-    if p[NORMALISE] == 0.0:
-        den = 1.0
-    eps = settled(e + s[ALPHA] * eta) if p[AUGMENT] != 0.0 else e
-    rate = p[H] * p[GAIN] / den
-    voltage = 0.0
-    for i in range(n):
-        g = weight(p, i)
-        theta = s[THETA + i]
-        theta += -p[SIGN] * rate * g * eps * s[FILTERED + 2 * i] - p[H] * p[LEAKAGE] * p[GAIN] * theta
-        if p[BOUND] > 0.0:
-            # a projection onto a box scaled like the adaptation weights
-            bound = p[BOUND] * math.sqrt(g)
-            theta = min(max(theta, -bound), bound)
-        s[THETA + i] = theta
-        voltage += theta * s[LAST + i]
-    if p[ADAPT_ALPHA] != 0.0:
-        s[ALPHA] -= rate * eps * eta
-    s[OWN] = voltage
-    w[io[OWN_VOLTAGE]] = voltage
-
-    a1, a2, gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
-    t = io[TAPS]
-    ideal = io[TAPS + 1]
-    w[ideal], w[ideal + 1], w[ideal + 2], w[ideal + 3] = matching(
-        a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE]
-    )
-    # what takes a constant voltage at the comb out again
-    offset = w[io[DRIVE_OFFSET]] / w[io[FIRST_TRUTH + 3]]
-    w[ideal + CONSTANT] = -(1.0 - w[ideal + 1] / p[POLE]) * offset / p[BIAS] if n == N else 0.0
-    w[t + CONSTANT] = s[THETA + CONSTANT]
-    lyapunov = 0.0
-    for i in range(n):
-        w[t + i] = s[THETA + i]
-        phi = s[THETA + i] - w[ideal + i]
-        lyapunov += phi * phi / weight(p, i)
-    inverse = 1.0 / w[ideal]
-    lyapunov = 0.5 * (abs(inverse) * lyapunov + (s[ALPHA] - inverse) * (s[ALPHA] - inverse)) / p[GAIN]
-    w[io[TAPS + 2]] = s[ALPHA]
-    w[io[TAPS + 3]] = e
-    w[io[TAPS + 4]] = eta
-    w[io[TAPS + 5]] = eps
-    w[io[TAPS + 6]] = lyapunov
-    w[io[TAPS + 7]] = -eps * eps / den
-
-
-LABELS = ("r", "w1", "w2", "y", "bias")
+LABELS = (*REGRESSORS, "bias")
+CONSTANT, N = LABELS.index("bias"), len(LABELS)
+"""The constant takes part only if it is not 0."""
 
 
 class Mrac(Block):
@@ -141,22 +46,6 @@ class Mrac(Block):
     """
 
     title = "Direct MRAC"
-    inputs = (
-        *INPUTS,
-        *TRUTH,
-        Port("drive_offset", "V", "voltage at the comb that nobody applied", source="effects.drive_offset"),
-    )
-    outputs = (OUTPUT,)
-    taps = (
-        Port("gain", "mixed", "adapted gains on r, w1, w2, y and a constant", labels=LABELS),
-        Port("gain_ideal", "mixed", "gains that would match the model exactly", labels=LABELS),
-        Port("alpha", "1", "adapted gain of the auxiliary error"),
-        Port("error", "um", "measured minus model displacement"),
-        Port("auxiliary_error", "um", "auxiliary error eta"),
-        Port("augmented_error", "um", "augmented error epsilon"),
-        Port("lyapunov", "um^2", "Lyapunov function V"),
-        Port("lyapunov_rate", "um^2", "its derivative by theory, per 1/w0"),
-    )
     equations = (
         Equation("law", r"u=\theta^Tw,\quad w=[r,w_1,w_2,y]^T", "3.1.2.5-8"),
         Equation(
@@ -206,51 +95,132 @@ class Mrac(Block):
         adapt_alpha: bool = parameter(True, "adapt alpha as well")
         bias_v: float = parameter(0.0, "constant regressor against a constant load, 0 for none", "V", ge=0, le=100)
 
+    class Packed(AdaptationPacked):
+        """The weight of w2 and y, filters and their pole, choices, the constant regressor."""
+
+        weight: float
+        filter_pole: float
+        lag: Lag
+        copy: Tick
+        normalise: float
+        augment: float
+        adapt_alpha: float
+        asked_for: float
+        bias_v: float
+
+    class State(Record):
+        """Gains and alpha, filters, the last regressor and the last voltage of this law, whether it has run.
+
+        A copy of the model filters the regressor and the voltage applied.
+        """
+
+        theta: Vector = vector(N)
+        alpha: float
+        w1: float
+        w2: float
+        last: Vector = vector(N)
+        filtered: Records[Motion] = several(N)
+        filtered_voltage: Motion
+        voltage: float
+        started: float
+
+    class Ports(ControllerPorts, TruthPorts):
+        """Ports of a controller, the truth, and the adaptation."""
+
+        drive_offset: float = reads("effects.drive_offset", "V", "voltage at the comb that nobody applied")
+        gain: Vector = tap("mixed", "adapted gains on r, w1, w2, y and a constant", labels=LABELS)
+        gain_ideal: Vector = tap("mixed", "gains that would match the model exactly", labels=LABELS)
+        alpha: float = tap("1", "adapted gain of the auxiliary error")
+        error: float = tap("um", "measured minus model displacement")
+        auxiliary_error: float = tap("um", "auxiliary error eta")
+        augmented_error: float = tap("um", "augmented error epsilon")
+        lyapunov: float = tap("um^2", "Lyapunov function V")
+        lyapunov_rate: float = tap("um^2", "its derivative by theory, per 1/w0")
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse plants and models that are not of second order."""
         return unsuited_second_order(device, model)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        h = context.dt_ms * context.device.natural_frequency
-        (a1, a2, gain), (m1, m2, model_gain) = coefficients(context)
-        weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
-        pole = params.filter_pole
-        return np.array(
-            [
-                h,
-                params.adaptation_gain,
-                1.0,
-                weight,
-                pole,
-                params.leakage,
-                params.gain_bound,
-                float(params.normalise),
-                float(params.augment),
-                float(params.adapt_alpha),
-                model_gain,
-                m1,
-                m2,
-                a1,
-                a2,
-                gain,
-                math.copysign(1.0, gain * model_gain),
-                *lag(pole, h, context.analogue),
-                params.bias_v,
-                float(params.auxiliary == "printed"),
-                *model_filter(context),
-            ]
-        )
+        p = cls.Packed.blank()
+        fill_normalised(p, context)
+        (_, _, gain), (_, _, model_gain) = coefficients(context)
+        p.sign = math.copysign(1.0, gain * model_gain)
+        p.weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
+        p.lag = lag(params.filter_pole, p.h, context.analogue)
+        p.copy = model_filter(context)
+        p.asked_for = params.auxiliary == "printed"
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Gains that match the nominal device, everything else at rest."""
-        plant, model = coefficients(context)
-        start = np.zeros(STATES)
-        start[THETA : THETA + CONSTANT] = matching(*plant, *model, params.filter_pole)
-        start[ALPHA] = 1.0 / start[THETA]
-        return start
+        p, s = cls.pack(params, context), cls.State.zeros()
+        s.theta[:CONSTANT] = matching(*coefficients(context)[0], p.model, params.filter_pole)
+        s.alpha = 1.0 / s.theta[0]
+        return s
 
-    step = mrac_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Measure, advance the filters, adapt, compute the voltage."""
+        y = x.measured
+        u, middle, end = moves(x)
+        n = CONSTANT if p.bias_v == 0.0 else N
+        if s.started != 0.0:
+            for i in range(n):
+                advance_motion(p.copy, s.filtered[i], s.last[i])  # w~ = G_m[w]
+            if p.asked_for == 0.0:
+                advance_motion(p.copy, s.filtered_voltage, u)  # G_m[u]
+                add_moves(p.copy, s.filtered_voltage, middle, end)
+            else:
+                advance_motion(p.copy, s.filtered_voltage, s.voltage)
+            s.w1 = advance_lag(p.lag, s.w1, u, middle, end)  # w1' = -lam w1 + u
+            s.w2 = advance_lag(p.lag, s.w2, s.last[Y], 0.0, 0.0)  # w2' = -lam w2 + y
+        s.started = 1.0
+        s.last[0], s.last[1], s.last[2], s.last[3], s.last[4] = x.reference, s.w1, s.w2, y, p.bias_v
+
+        e = flush_tiny(y - x.model)
+        eta = -s.filtered_voltage.x
+        den = 1.0
+        for i in range(n):
+            filtered = s.filtered[i].x
+            eta += s.theta[i] * filtered
+            den += weight_of(i, p.weight) * filtered * filtered
+        eta = flush_tiny(eta)
+        den += eta * eta
+        if p.normalise == 0.0:
+            den = 1.0
+        eps = flush_tiny(e + s.alpha * eta) if p.augment != 0.0 else e
+        rate = p.h * p.adaptation_gain / den
+        voltage = 0.0
+        for i in range(n):
+            weight = weight_of(i, p.weight)
+            theta = s.theta[i]
+            theta += -p.sign * rate * weight * eps * s.filtered[i].x - leak(p, theta)
+            theta = bounded(p, theta, weight)
+            s.theta[i] = theta
+            voltage += theta * s.last[i]
+        if p.adapt_alpha != 0.0:
+            s.alpha -= rate * eps * eta
+        s.voltage = voltage
+        x.voltage = voltage
+
+        ideal = x.gain_ideal
+        a1, a2, gain = true_plant(x, p.plant)
+        ideal[0], ideal[1], ideal[2], ideal[3] = matching(a1, a2, gain, p.model, p.filter_pole)
+        # this gain cancels a constant voltage at the comb
+        offset = x.drive_offset / x.drive_gain
+        ideal[CONSTANT] = -(1.0 - ideal[1] / p.filter_pole) * offset / p.bias_v if n == N else 0.0
+        for i in range(N):
+            x.gain[i] = s.theta[i]
+        inverse = 1.0 / ideal[0]
+        squares = abs(inverse) * distance(s.theta, ideal, n, p.weight) + (s.alpha - inverse) * (s.alpha - inverse)
+        x.alpha = s.alpha
+        x.error = e
+        x.auxiliary_error = eta
+        x.augmented_error = eps
+        x.lyapunov = 0.5 * squares / p.adaptation_gain
+        x.lyapunov_rate = -eps * eps / den

@@ -5,58 +5,33 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, kernel, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.control.adaptation import REGRESSORS, AdaptationPacked, Y, bounded, distance, leak, weight_of
 from core.control.controller import (
-    APPLIED,
-    INPUTS,
-    LAG_SIZE,
-    MEASURED,
-    MODEL,
-    MODEL_FILTER_MORE,
-    MODEL_FILTER_SIZE,
-    OUTPUT,
-    REFERENCE,
-    TRUTH,
-    VELOCITY_INPUTS,
+    Coefficients,
+    ControllerPorts,
+    Lag,
+    TruthPorts,
+    VelocityPorts,
     advance_lag,
-    advance_model,
     coefficients,
+    fill_normalised,
     lag,
     matching,
     model_filter,
     true_plant,
     unsuited_order,
 )
-from core.control.velocity import STATES, Source, pack_velocity, velocity, velocity_source
-from core.voltage import add_moved, moved
-
-H, RATE, SIGN, GAIN, WEIGHT_OUTPUT, LEAKAGE, BOUND, REACH, FILTERS, POLE = range(10)
-LEAD, LAG, RATIO, FIRST_ORDER = 10, 11, 11 + LAG_SIZE, 12 + LAG_SIZE
-MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(13 + LAG_SIZE, 20 + LAG_SIZE)
-MOVING = MODEL_FILTER + MODEL_FILTER_SIZE
-THETA, W1, W2, LAST, OWN, AUXILIARY, MOTION, SIZE = 0, 4, 5, 6, 10, 11, 13, 13 + STATES
-"""LAST: the regressor of the sample before, y last."""
-LAST_Y = LAST + 3
-VELOCITY, MODEL_VELOCITY = len(INPUTS), len(INPUTS) + 1
-FIRST_TRUTH = len(INPUTS) + len(VELOCITY_INPUTS)
-OWN_VOLTAGE = FIRST_TRUTH + len(TRUTH)
-TAPS = OWN_VOLTAGE + 1
-LABELS = ("r", "w1", "w2", "y")
+from core.control.velocity import PackedVelocity, Source, VelocityState, velocity, velocity_of, velocity_source
+from core.kernel import flush_tiny, kernel
+from core.ports import tap
+from core.record import Record, Vector, vector
+from core.voltage import Motion, Tick, add_moves, advance_motion, moves
 
 
 @kernel
 def matching_lead(
-    a1: float,
-    a2: float,
-    gain: float,
-    m1: float,
-    m2: float,
-    model_gain: float,
-    pole: float,
-    lead: float,
-    first_order: bool,
+    a1: float, a2: float, gain: float, model: Coefficients, pole: float, lead: float, first_order: bool
 ) -> tuple[float, float, float, float]:
     r"""Return the gains on r, w1, w2 and :math:`y_c=y+\dot y/c` that make the loop equal the model.
 
@@ -67,69 +42,14 @@ def matching_lead(
     A plant of first order needs neither lead nor filters.
     """
     if first_order:
-        return model_gain / gain, 0.0, 0.0, (a2 - m2) / gain
+        return model.gain / gain, 0.0, 0.0, (a2 - model.a2) / gain
     if lead == 0.0:
-        return matching(a1, a2, gain, m1, m2, model_gain, pole)
+        return matching(a1, a2, gain, model, pole)
     c = 1.0 / lead
-    first = (c - pole) * ((a1 - m1) - (a2 - m2) * lead) / (c - a1 + a2 * lead)
-    through = (a1 - m1 - first) / (gain * lead)
-    rest = ((pole - first) * a2 - pole * m2) / gain
-    return model_gain / gain, first, rest - pole * through, through
-
-
-def mrac_velocity_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Measure, advance the filters, adapt, compute the voltage."""
-    r = w[io[REFERENCE]]
-    u, middle, end = moved(w, io, APPLIED)
-    y = w[io[MEASURED]]
-    y += p[LEAD] * velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
-    # what the plant would have done under the voltage asked for here
-    advance_model(p, MODEL_FILTER, s, AUXILIARY, s[OWN] - u)
-    add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, AUXILIARY, -middle, -end)
-    if p[FILTERS] != 0.0:
-        advance_lag(p, LAG, s, W1, u, middle, end)
-        advance_lag(p, LAG, s, W2, s[LAST_Y], 0.0, 0.0)
-    e = y - (w[io[MODEL]] + p[LEAD] * w[io[MODEL_VELOCITY]] / p[RATE])
-    own = settled(e + p[RATIO] * (s[AUXILIARY] + p[LEAD] * s[AUXILIARY + 1]))
-
-    a1, a2, gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
-    if p[FIRST_ORDER] != 0.0:  # damping is what moves there
-        a1, a2, gain = 0.0, a2 * w[io[FIRST_TRUTH]], gain * w[io[FIRST_TRUTH]]
-        a2 /= w[io[FIRST_TRUTH + 2]]
-        gain /= w[io[FIRST_TRUTH + 2]]
-    t, ideal = io[TAPS], io[TAPS + 1]
-    w[ideal], w[ideal + 1], w[ideal + 2], w[ideal + 3] = matching_lead(
-        a1, a2, gain, p[MODEL_A1], p[MODEL_A2], p[MODEL_GAIN], p[POLE], p[LEAD], p[FIRST_ORDER] != 0.0
-    )
-    weight = p[WEIGHT_OUTPUT]
-    # the step of an implicit method: a sample changes the error by REACH times the change of voltage
-    # along the regressor of the sample before, which is the one in the error: with that of now a voltage that turns
-    # at every sample, as in chatter, would turn the sign of the law
-    size = s[LAST] * s[LAST] + s[LAST + 1] * s[LAST + 1]
-    size += weight * (s[LAST + 2] * s[LAST + 2] + s[LAST_Y] * s[LAST_Y])
-    rate = p[H] * p[GAIN] * own / (1.0 + p[H] * p[GAIN] * p[REACH] * size)
-    lyapunov = 0.0
-    voltage = 0.0
-    for i in range(4):
-        regressor = r if i == 0 else s[W1] if i == 1 else s[W2] if i == 2 else y
-        g = 1.0 if i < 2 else weight
-        theta = s[THETA + i]
-        theta += -p[SIGN] * rate * g * s[LAST + i] - p[H] * p[LEAKAGE] * p[GAIN] * theta
-        if p[BOUND] > 0.0:
-            bound = p[BOUND] * math.sqrt(g)
-            theta = min(max(theta, -bound), bound)
-        s[THETA + i] = theta
-        s[LAST + i] = regressor
-        voltage += theta * regressor
-        w[t + i] = theta
-        missing = theta - w[ideal + i]
-        lyapunov += missing * missing / g
-    s[OWN] = voltage
-    w[io[OWN_VOLTAGE]] = voltage
-    w[io[TAPS + 2]] = e
-    w[io[TAPS + 3]] = own
-    w[io[TAPS + 4]] = 0.5 * own * own + 0.5 * abs(gain) * lyapunov / p[GAIN]
-    w[io[TAPS + 5]] = -p[MODEL_A2] * own * own if p[FIRST_ORDER] != 0.0 else 0.0
+    first = (c - pole) * ((a1 - model.a1) - (a2 - model.a2) * lead) / (c - a1 + a2 * lead)
+    through = (a1 - model.a1 - first) / (gain * lead)
+    rest = ((pole - first) * a2 - pole * model.a2) / gain
+    return model.gain / gain, first, rest - pole * through, through
 
 
 class MracVelocity(Block):
@@ -138,21 +58,11 @@ class MracVelocity(Block):
     .. math:: u=\theta^Tw,\quad w=[r,w_1,w_2,y_c],\;y_c=y+\dot y/c,\quad \dot\theta=-\mathrm{sgn}(k_p)\,g\,\Gamma e_cw
 
     With :math:`c<a_{m1}` the model from r to :math:`y_{c}` is strictly positive real, which the plain law needs; on y
-    alone it is not. A plant of first order is so by itself. The error is that of its own voltage: what another
-    controller applied instead is taken out through a copy of the model, so it learns in shadow and in saturation.
+    alone it is not. A plant of first order is so by itself. The error is the one under this law's own voltage: a copy
+    of the model takes out the effect of another controller's voltage, so the law learns in shadow and in saturation.
     """
 
     title = "Direct MRAC with velocity"
-    inputs = (*INPUTS, *VELOCITY_INPUTS, *TRUTH)
-    outputs = (OUTPUT,)
-    taps = (
-        Port("gain", "mixed", "adapted gains on r, w1, w2 and y", labels=LABELS),
-        Port("gain_ideal", "mixed", "gains that would match the model exactly", labels=LABELS),
-        Port("error", "um", "measured minus model output, velocity included"),
-        Port("own_error", "um", "the same, had its own voltage been applied"),
-        Port("lyapunov", "um^2", "Lyapunov function V of a plant of first order"),
-        Port("lyapunov_rate", "um^2", "its derivative by theory, first order only, per 1/w0"),
-    )
     equations = (
         Equation("law", r"u=\theta^Tw,\quad w=[r,w_1,w_2,y_c]^T,\quad y_c=y+\dot y/c,\;c=0.9\,a_{m1}", "3.1.2.5-8"),
         Equation(
@@ -196,40 +106,61 @@ class MracVelocity(Block):
         gain_bound: float = parameter(30.0, "bound of the gains (projection), 0 for none", ge=0)
         velocity: Source = velocity_source()
 
+    class Packed(AdaptationPacked):
+        """Weight of w2 and y, effect of a volt on the error, filters, share of the velocity, order of the plant."""
+
+        weight: float
+        reach: float
+        filtering: float
+        filter_pole: float
+        lead: float
+        ratio: float
+        first_order: float
+        lag: Lag
+        copy: Tick
+        velocity: PackedVelocity
+
+    class State(Record):
+        """Gains, filters, last regressor, last voltage of this law, its effect beyond the one applied, the velocity."""
+
+        theta: Vector = vector(4)
+        w1: float
+        w2: float
+        last: Vector = vector(4)
+        voltage: float
+        missed: Motion
+        velocity: VelocityState
+
+    class Ports(ControllerPorts, VelocityPorts, TruthPorts):
+        """Ports of a controller, velocities, the truth, and the adaptation."""
+
+        gain: Vector = tap("mixed", "adapted gains on r, w1, w2 and y", labels=REGRESSORS)
+        gain_ideal: Vector = tap("mixed", "gains that would match the model exactly", labels=REGRESSORS)
+        error: float = tap("um", "measured minus model output, velocity included")
+        own_error: float = tap("um", "the same, had its own voltage been applied")
+        lyapunov: float = tap("um^2", "Lyapunov function V of a plant of first order")
+        lyapunov_rate: float = tap("um^2", "its derivative by theory, first order only, per 1/w0")
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse a model of another kind than the plant."""
         return unsuited_order(device, model)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         plant, model, lead = cls.shape(params, context)
-        rate, pole, first_order = context.device.natural_frequency, params.filter_pole, context.device.mass == 0.0
-        h = context.dt_ms * rate
-        copy = model_filter(context)
-        return np.array(
-            [
-                h,
-                rate,
-                math.copysign(1.0, plant[2]),
-                params.adaptation_gain,
-                1.0 / plant[2] ** 2 if params.output_weight is None else params.output_weight,
-                params.leakage,
-                params.gain_bound,
-                abs(plant[2] / model[2] * (copy[4] + lead * copy[5])),
-                float(not first_order if params.filters is None else params.filters),
-                pole,
-                lead,
-                *lag(pole, h, context.analogue),
-                plant[2] / model[2],
-                float(first_order),
-                *model,
-                *plant,
-                *copy,
-                *pack_velocity(params.velocity, context, rate),
-            ]
-        )
+        p = cls.Packed.blank()
+        fill_normalised(p, context)
+        p.sign = math.copysign(1.0, plant[2])
+        p.weight = 1.0 / plant[2] ** 2 if params.output_weight is None else params.output_weight
+        p.lead, p.ratio, p.first_order = lead, plant[2] / model[2], context.device.mass == 0.0
+        p.filtering = not p.first_order if params.filters is None else params.filters
+        p.lag = lag(params.filter_pole, p.h, context.analogue)
+        p.copy = model_filter(context)
+        p.reach = abs(p.ratio * (p.copy.push1 + lead * p.copy.push2))
+        p.velocity = velocity_of(params.velocity, context)
+        return p
 
     @classmethod
     def shape(
@@ -241,13 +172,60 @@ class MracVelocity(Block):
         return plant, model, 1.0 / (params.zero * (model[0] or 1.0)) if needs_lead else 0.0
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Gains that match the nominal device, everything else at rest."""
-        plant, model, lead = cls.shape(params, context)
-        start = np.zeros(SIZE)
-        first_order = context.device.mass == 0.0
+        p, s = cls.pack(params, context), cls.State.zeros()
         if params.start == "nominal":
-            start[THETA : THETA + 4] = matching_lead(*plant, *model, params.filter_pole, lead, first_order)
-        return start
+            plant, first_order = coefficients(context)[0], context.device.mass == 0.0
+            s.theta[:] = matching_lead(*plant, p.model, params.filter_pole, p.lead, first_order)
+        return s
 
-    step = mrac_velocity_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Measure, advance the filters, adapt, compute the voltage."""
+        u, middle, end = moves(x)
+        y = x.measured
+        y += p.lead * velocity(p.velocity, s.velocity, x.velocity, y, u, middle, end) / p.velocity.rate
+        # the motion of the plant, had the voltage of this law been applied
+        advance_motion(p.copy, s.missed, s.voltage - u)
+        add_moves(p.copy, s.missed, -middle, -end)
+        if p.filtering != 0.0:
+            s.w1 = advance_lag(p.lag, s.w1, u, middle, end)
+            s.w2 = advance_lag(p.lag, s.w2, s.last[Y], 0.0, 0.0)
+        e = y - (x.model + p.lead * x.model_velocity / p.velocity.rate)
+        own_error = flush_tiny(e + p.ratio * (s.missed.x + p.lead * s.missed.v))
+
+        first_order = p.first_order != 0.0
+        a1, a2, gain = true_plant(x, p.plant)
+        if first_order:  # without mass, faults of damping act on these coefficients
+            a1, a2, gain = 0.0, a2 * x.mass_scale, gain * x.mass_scale
+            a2 /= x.damping_scale
+            gain /= x.damping_scale
+        ideal = x.gain_ideal
+        ideal[0], ideal[1], ideal[2], ideal[3] = matching_lead(
+            a1, a2, gain, p.model, p.filter_pole, p.lead, first_order
+        )
+        # The step of an implicit method: a sample changes the error by ``reach`` times the change of the voltage. The
+        # law adapts along the last regressor, which is the one in the error. Along the present one, a voltage that
+        # turns at every sample, as in chatter, would turn the sign of the law.
+        size = s.last[0] * s.last[0] + s.last[1] * s.last[1]
+        size += p.weight * (s.last[2] * s.last[2] + s.last[3] * s.last[3])
+        rate = p.h * p.adaptation_gain * own_error / (1.0 + p.h * p.adaptation_gain * p.reach * size)
+        for i in range(4):
+            weight = weight_of(i, p.weight)
+            theta = s.theta[i]
+            theta += -p.sign * rate * weight * s.last[i] - leak(p, theta)
+            theta = bounded(p, theta, weight)
+            s.theta[i] = theta
+            x.gain[i] = theta
+        s.last[0], s.last[1], s.last[2], s.last[3] = x.reference, s.w1, s.w2, y
+        voltage = 0.0
+        for i in range(4):
+            voltage += s.theta[i] * s.last[i]
+        s.voltage = voltage
+        x.voltage = voltage
+        missing = distance(s.theta, ideal, 4, p.weight)
+        x.error = e
+        x.own_error = own_error
+        x.lyapunov = 0.5 * own_error * own_error + 0.5 * abs(gain) * missing / p.adaptation_gain
+        x.lyapunov_rate = -p.model.a2 * own_error * own_error if first_order else 0.0

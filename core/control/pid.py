@@ -5,47 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
-from core.control.controller import (
-    APPLIED,
-    ENGAGED,
-    FIRST_ORDER,
-    INPUTS,
-    MEASURED,
-    MODEL,
-    OUTPUT,
-    REFERENCE,
-    VOLTAGE,
-    normalised,
-)
-
-DT, KP, KI, KD, DECAY, FEED, LIMIT = range(7)
-INTEGRAL, DERIVATIVE, LAST_ERROR, STARTED = range(4)
-ERROR_TAP, INTEGRAL_TAP = VOLTAGE + 1, VOLTAGE + 2
-
-
-def pid_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Compute one sample of the law; a PID that does not drive keeps its integral ready to take over."""
-    e = w[io[MODEL]] - w[io[MEASURED]]
-    if s[STARTED] == 0.0:
-        s[STARTED] = 1.0
-        s[LAST_ERROR] = e
-    s[DERIVATIVE] = settled(p[DECAY] * s[DERIVATIVE] + (1.0 - p[DECAY]) * (e - s[LAST_ERROR]) / p[DT])
-    s[LAST_ERROR] = e
-    rest = p[FEED] * w[io[REFERENCE]] + p[KP] * e + p[KD] * s[DERIVATIVE]
-    if w[io[ENGAGED]] == 0.0:
-        s[INTEGRAL] = w[io[APPLIED]] - rest
-    else:
-        more = p[KI] * e * p[DT]
-        u = rest + s[INTEGRAL] + more
-        # integrate only where that does not push further into the limit
-        if abs(u) <= p[LIMIT] or u * more < 0.0:
-            s[INTEGRAL] += more
-    w[io[VOLTAGE]] = rest + s[INTEGRAL]
-    w[io[ERROR_TAP]] = e
-    w[io[INTEGRAL_TAP]] = s[INTEGRAL]
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.control.controller import FIRST_ORDER, ControllerPorts, normalised
+from core.kernel import flush_tiny
+from core.ports import tap
+from core.record import Record
 
 
 class Pid(Block):
@@ -57,12 +21,6 @@ class Pid(Block):
     """
 
     title = "PID"
-    inputs = INPUTS
-    outputs = (OUTPUT,)
-    taps = (
-        Port("error", "um", "model minus measured displacement"),
-        Port("integral", "V", "integral part"),
-    )
     equations = (
         Equation("law", r"u=k_fr+K_pe+K_i\int e\,dt+K_d\dot e_f,\quad e=y_d-y"),
         Equation("pole placement", r"K_p=\frac{3p^2-a_2}{k_p},\;K_i=\frac{p^3}{k_p},\;K_d=\frac{3p-a_1}{k_p}"),
@@ -78,13 +36,38 @@ class Pid(Block):
         derivative_filter: float = parameter(0.2, "time constant of the derivative filter over 1/w0", gt=0, le=10)
         feedforward: float = parameter(0.0, "share of the reference voltage added", ge=-2, le=2)
 
+    class Packed(Record):
+        """Sample interval, gains, share of the derivative kept from sample to sample, limit of the drive."""
+
+        dt_ms: float
+        kp: float
+        ki: float
+        kd: float
+        decay: float
+        feedforward: float
+        limit_v: float
+
+    class State(Record):
+        """Integral, filtered derivative, last error, whether it has run."""
+
+        integral: float
+        derivative: float
+        last_error: float
+        started: float
+
+    class Ports(ControllerPorts):
+        """Ports of a controller, its error and its integral."""
+
+        error: float = tap("um", "model minus measured displacement")
+        integral: float = tap("V", "integral part")
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse plants of first order."""
         return FIRST_ORDER if device.mass == 0.0 else ""
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         w0 = context.device.natural_frequency
         a1, a2, gain = normalised(context.device, w0)
@@ -93,13 +76,32 @@ class Pid(Block):
         pole = params.pole
         placed = ((3 * pole**2 - a2) / size, pole**3 / size * w0, (3 * pole - a1) / size / w0)
         given = (params.proportional_v_um, params.integral_v_um_ms, params.derivative_v_ms_um)
-        gains = [sign * (auto if own is None else own) for own, auto in zip(given, placed, strict=True)]
-        decay = math.exp(-context.dt_ms * w0 / params.derivative_filter)
-        return np.array([context.dt_ms, *gains, decay, params.feedforward, context.limit_v])
+        gains = [sign * (auto if gain is None else gain) for gain, auto in zip(given, placed, strict=True)]
+        p = cls.Packed.blank()
+        p.kp, p.ki, p.kd = gains
+        p.dt_ms = context.dt_ms
+        p.decay = math.exp(-context.dt_ms * w0 / params.derivative_filter)
+        p.limit_v = context.limit_v
+        return p
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Integral, filtered derivative, last error, whether it has run."""
-        return np.zeros(4)
-
-    step = pid_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Compute one sample of the law; a PID that does not drive keeps its integral ready to take over."""
+        e = x.model - x.measured
+        if s.started == 0.0:
+            s.started = 1.0
+            s.last_error = e
+        s.derivative = flush_tiny(p.decay * s.derivative + (1.0 - p.decay) * (e - s.last_error) / p.dt_ms)
+        s.last_error = e
+        rest = p.feedforward * x.reference + p.kp * e + p.kd * s.derivative
+        if x.engaged == 0.0:
+            s.integral = x.applied - rest
+        else:
+            increment = p.ki * e * p.dt_ms
+            u = rest + s.integral + increment
+            # integrate only if that does not push the voltage further into its limit
+            if abs(u) <= p.limit_v or u * increment < 0.0:
+                s.integral += increment
+        x.voltage = rest + s.integral
+        x.error = e
+        x.integral = s.integral

@@ -5,109 +5,26 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.control.adaptation import AdaptationPacked, bounded, distance, leak
 from core.control.controller import (
-    APPLIED,
-    INPUTS,
-    MEASURED,
-    MODEL,
-    MODEL_FILTER_MORE,
-    MODEL_FILTER_SIZE,
-    OUTPUT,
-    REFERENCE,
-    TRUTH,
-    VELOCITY_INPUTS,
-    advance_model,
+    ControllerPorts,
+    TruthPorts,
+    VelocityPorts,
     coefficients,
+    fill_normalised,
     model_filter,
     saturated,
     true_plant,
     unsuited_order,
 )
-from core.control.velocity import STATES, Source, pack_velocity, velocity, velocity_source
-from core.voltage import add_moved, moved
+from core.control.velocity import PackedVelocity, Source, VelocityState, velocity, velocity_of, velocity_source
+from core.kernel import flush_tiny
+from core.ports import tap
+from core.record import Record, Records, Vector, several, vector
+from core.voltage import Motion, Tick, add_moves, advance_motion, moves
 
-H, RATE, SIGN, GAIN, WEIGHT_GAIN, LAYER, LEAKAGE, BOUND, FORM, ORIENTATION, SLOPE, RATIO, SECOND_ORDER = range(13)
-MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN, MODEL_FILTER = range(13, 20)
-MOVING = MODEL_FILTER + MODEL_FILTER_SIZE
-FORMS = ("augmented", "relative_degree_one", "velocity", "printed")
-AUGMENTED, RELATIVE_DEGREE_ONE, WITH_VELOCITY, PRINTED = range(4)
-N = 4
-THETA, ALPHA, LAST, FILTERED, APPLIED_FILTER, OWN, MOTION, SIZE = 0, 4, 5, 9, 17, 19, 20, 20 + STATES
-VELOCITY, MODEL_VELOCITY = len(INPUTS), len(INPUTS) + 1
-FIRST_TRUTH = len(INPUTS) + len(VELOCITY_INPUTS)
-OWN_VOLTAGE = FIRST_TRUTH + len(TRUTH)
-TAPS = OWN_VOLTAGE + 1
 LABELS = ("r", "y", "e", "rate")
-
-
-def self_sliding_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Measure, find the side of the surface, adapt, compute the voltage."""
-    r = w[io[REFERENCE]]
-    u, middle, end = moved(w, io, APPLIED)
-    y = w[io[MEASURED]]
-    form = p[FORM]
-    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
-    e = p[ORIENTATION] * (y - w[io[MODEL]])
-    eta = 0.0
-    augmenting = form == AUGMENTED or form == PRINTED
-    if augmenting:
-        for i in range(3):
-            advance_model(p, MODEL_FILTER, s, FILTERED + 2 * i, s[LAST + i])
-        advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, u)
-        add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, APPLIED_FILTER, middle, end)
-        eta = -s[APPLIED_FILTER]
-        size = 1.0
-        for i in range(3):
-            eta += s[THETA + i] * s[FILTERED + 2 * i]
-            size += s[LAST + i] * s[LAST + i]
-        eta = settled(p[ORIENTATION] * eta)
-        surface = settled(e + s[ALPHA] * eta)
-        s[ALPHA] -= p[H] * p[WEIGHT_GAIN] * surface * eta / size
-    else:
-        # the error had its own voltage been applied: nothing to take out while it drives
-        advance_model(p, MODEL_FILTER, s, APPLIED_FILTER, s[OWN] - u)
-        add_moved(p, MODEL_FILTER + MODEL_FILTER_MORE, s, APPLIED_FILTER, -middle, -end)
-        missing = p[ORIENTATION] * p[RATIO]
-        surface = settled(e + missing * s[APPLIED_FILTER])
-        if form == WITH_VELOCITY:
-            slope = p[ORIENTATION] * (v - w[io[MODEL_VELOCITY]] / p[RATE]) + missing * s[APPLIED_FILTER + 1]
-            surface = settled(p[SLOPE] * surface + slope)
-    s[LAST], s[LAST + 1], s[LAST + 2], s[LAST + 3] = r, y, e, 0.0
-    if form == WITH_VELOCITY:
-        s[LAST + 2], s[LAST + 3] = surface, v
-
-    a1, a2, gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
-    if p[SECOND_ORDER] == 0.0:  # there damping is what moves
-        scale = w[io[FIRST_TRUTH]] / w[io[FIRST_TRUTH + 2]]
-        a1, a2, gain = 0.0, a2 * scale, gain * scale
-    t, ideal = io[TAPS], io[TAPS + 1]
-    inverse = 1.0 / gain
-    w[ideal], w[ideal + 1], w[ideal + 2] = p[MODEL_GAIN] * inverse, (a2 - p[MODEL_A2]) * inverse, 0.0
-    w[ideal + 3] = (a1 - p[MODEL_A1]) * inverse if form == WITH_VELOCITY else 0.0
-    rate = p[H] * p[GAIN] * p[SIGN] * saturated(surface, p[LAYER])
-    voltage = 0.0
-    distance = 0.0
-    for i in range(N):
-        regressor = s[FILTERED + 2 * i] if form == AUGMENTED and i < 3 else s[LAST + i]
-        theta = s[THETA + i]
-        theta -= rate * regressor + p[H] * p[LEAKAGE] * p[GAIN] * theta
-        if p[BOUND] > 0.0:
-            theta = min(max(theta, -p[BOUND]), p[BOUND])
-        s[THETA + i] = theta
-        voltage += theta * s[LAST + i]
-        w[t + i] = theta
-        distance += (theta - w[ideal + i]) * (theta - w[ideal + i])
-    s[OWN] = voltage
-    w[io[OWN_VOLTAGE]] = voltage
-    w[io[TAPS + 2]] = e
-    w[io[TAPS + 3]] = surface
-    w[io[TAPS + 4]] = eta
-    w[io[TAPS + 5]] = s[ALPHA]
-    w[io[TAPS + 6]] = abs(surface) + 0.5 * abs(gain) * distance / p[GAIN]
-    w[io[TAPS + 7]] = -p[MODEL_A2] * abs(surface)
 
 
 class SelfSliding(Block):
@@ -122,18 +39,6 @@ class SelfSliding(Block):
     """
 
     title = "Self-sliding control"
-    inputs = (*INPUTS, *VELOCITY_INPUTS, *TRUTH)
-    outputs = (OUTPUT,)
-    taps = (
-        Port("gain", "mixed", "adapted gains on r, y, e (or s) and the velocity", labels=LABELS),
-        Port("gain_ideal", "mixed", "gains that would match, as far as static ones can", labels=LABELS),
-        Port("error", "um", "measured minus model displacement, or the other way round with the printed signs"),
-        Port("surface", "um", "s, whose sign drives the adaptation"),
-        Port("auxiliary_error", "um", "auxiliary error eta"),
-        Port("alpha", "1", "adapted gain of the auxiliary error"),
-        Port("lyapunov", "um", "Lyapunov function V of a plant of first order"),
-        Port("lyapunov_rate", "um", "its derivative by theory, per 1/w0"),
-    )
     equations = (
         Equation(
             "law",
@@ -184,48 +89,140 @@ class SelfSliding(Block):
         gain_bound: float = parameter(0.0, "bound of the gains, 0 for none", ge=0)
         velocity: Source = velocity_source()
 
+    class Packed(AdaptationPacked):
+        """Gain of alpha, boundary layer, the form (error, regressor, surface), its sign, ratio of gains, order."""
+
+        alpha_gain: float
+        layer_um: float
+        augmented: float
+        filtered_regressor: float
+        with_velocity: float
+        orientation: float
+        surface_slope: float
+        ratio: float
+        second_order: float
+        copy: Tick
+        velocity: PackedVelocity
+
+    class State(Record):
+        """Gains and alpha, the last regressor and the filtered one, the last voltage of this law, the velocity source.
+
+        With an augmented error the filtered voltage is the one applied; without it, the law's own voltage less the
+        applied one.
+        """
+
+        theta: Vector = vector(4)
+        alpha: float
+        last: Vector = vector(4)
+        filtered: Records[Motion] = several(3)
+        filtered_voltage: Motion
+        voltage: float
+        velocity: VelocityState
+
+    class Ports(ControllerPorts, VelocityPorts, TruthPorts):
+        """Ports of a controller, velocities, the truth, and the adaptation."""
+
+        gain: Vector = tap("mixed", "adapted gains on r, y, e (or s) and the velocity", labels=LABELS)
+        gain_ideal: Vector = tap("mixed", "gains that would match, as far as static ones can", labels=LABELS)
+        error: float = tap("um", "measured minus model displacement, or the other way round with the printed signs")
+        surface: float = tap("um", "s, whose sign drives the adaptation")
+        auxiliary_error: float = tap("um", "auxiliary error eta")
+        alpha: float = tap("1", "adapted gain of the auxiliary error")
+        lyapunov: float = tap("um", "Lyapunov function V of a plant of first order")
+        lyapunov_rate: float = tap("um", "its derivative by theory, per 1/w0")
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse a model of another kind than the plant."""
         return unsuited_order(device, model)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
+        p = cls.Packed.blank()
+        fill_normalised(p, context)
         plant, model = coefficients(context)
-        rate = context.device.natural_frequency
-        return np.array(
-            [
-                context.dt_ms * rate,
-                rate,
-                # along the filtered regressor the sign of the model is in it
-                math.copysign(1.0, plant[2] * (model[2] if params.form == "augmented" else 1.0)),
-                params.adaptation_gain,
-                params.alpha_gain,
-                params.layer_um,
-                params.leakage,
-                params.gain_bound,
-                float(FORMS.index(params.form)),
-                1.0 if params.signs == "working" else -1.0,
-                params.surface_slope,
-                plant[2] / model[2],
-                float(context.device.mass > 0.0),
-                *model,
-                *plant,
-                *model_filter(context),
-                *pack_velocity(params.velocity, context, rate),
-            ]
-        )
+        # the filtered regressor includes the sign of the model's gain
+        p.sign = math.copysign(1.0, plant[2] * (model[2] if params.form == "augmented" else 1.0))
+        p.augmented = params.form in ("augmented", "printed")
+        p.filtered_regressor = params.form == "augmented"
+        p.with_velocity = params.form == "velocity"
+        p.orientation = 1.0 if params.signs == "working" else -1.0
+        p.ratio = plant[2] / model[2]
+        p.second_order = context.device.mass > 0.0
+        p.copy = model_filter(context)
+        p.velocity = velocity_of(params.velocity, context)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Gains at the start, everything else at rest."""
         plant, model = coefficients(context)
-        start = np.zeros(SIZE)
-        start[ALPHA] = plant[2] / model[2]
+        s = cls.State.zeros()
+        s.alpha = plant[2] / model[2]
         if params.start == "nominal":
-            start[THETA] = model[2] / plant[2]
-            start[THETA + 1] = (plant[1] - model[1]) / plant[2]
-        return start
+            s.theta[:2] = model[2] / plant[2], (plant[1] - model[1]) / plant[2]
+        return s
 
-    step = self_sliding_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Measure, find the side of the surface, adapt, compute the voltage."""
+        u, middle, end = moves(x)
+        y = x.measured
+        v = velocity(p.velocity, s.velocity, x.velocity, y, u, middle, end) / p.velocity.rate
+        e = p.orientation * (y - x.model)
+        eta = 0.0
+        if p.augmented != 0.0:
+            for i in range(3):
+                advance_motion(p.copy, s.filtered[i], s.last[i])
+            advance_motion(p.copy, s.filtered_voltage, u)
+            add_moves(p.copy, s.filtered_voltage, middle, end)
+            eta = -s.filtered_voltage.x
+            size = 1.0
+            for i in range(3):
+                eta += s.theta[i] * s.filtered[i].x
+                size += s.last[i] * s.last[i]
+            eta = flush_tiny(p.orientation * eta)
+            surface = flush_tiny(e + s.alpha * eta)
+            s.alpha -= p.h * p.alpha_gain * surface * eta / size
+        else:
+            # The error is the one under this law's own voltage; while the law drives, there is no difference to take
+            # out.
+            advance_motion(p.copy, s.filtered_voltage, s.voltage - u)
+            add_moves(p.copy, s.filtered_voltage, -middle, -end)
+            missing = p.orientation * p.ratio
+            surface = flush_tiny(e + missing * s.filtered_voltage.x)
+            if p.with_velocity != 0.0:
+                slope = p.orientation * (v - x.model_velocity / p.velocity.rate) + missing * s.filtered_voltage.v
+                surface = flush_tiny(p.surface_slope * surface + slope)
+        s.last[0], s.last[1], s.last[2], s.last[3] = x.reference, y, e, 0.0
+        if p.with_velocity != 0.0:
+            s.last[2], s.last[3] = surface, v
+
+        a1, a2, gain = true_plant(x, p.plant)
+        if p.second_order == 0.0:  # without mass, faults of damping act on these coefficients
+            scale = x.mass_scale / x.damping_scale
+            a1, a2, gain = 0.0, a2 * scale, gain * scale
+        ideal = x.gain_ideal
+        inverse = 1.0 / gain
+        ideal[0], ideal[1], ideal[2] = p.model.gain * inverse, (a2 - p.model.a2) * inverse, 0.0
+        ideal[3] = (a1 - p.model.a1) * inverse if p.with_velocity != 0.0 else 0.0
+        rate = p.h * p.adaptation_gain * p.sign * saturated(surface, p.layer_um)
+        voltage = 0.0
+        for i in range(4):
+            regressor = s.filtered[i].x if p.filtered_regressor != 0.0 and i < 3 else s.last[i]
+            theta = s.theta[i]
+            theta -= rate * regressor + leak(p, theta)
+            theta = bounded(p, theta, 1.0)
+            s.theta[i] = theta
+            voltage += theta * s.last[i]
+            x.gain[i] = theta
+        s.voltage = voltage
+        x.voltage = voltage
+        missing = distance(s.theta, ideal, 4, 1.0)
+        x.error = e
+        x.surface = surface
+        x.auxiliary_error = eta
+        x.alpha = s.alpha
+        x.lyapunov = abs(surface) + 0.5 * abs(gain) * missing / p.adaptation_gain
+        x.lyapunov_rate = -p.model.a2 * abs(surface)

@@ -1,33 +1,20 @@
-"""What the variable structure controllers share: switching surface, gains, boundary layer."""
+"""Switching surface, gains and boundary layer of the variable structure controllers."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Literal
 
-from core.block import BlockParams, Context, Equation, Port, kernel, parameter, settled
-from core.control.controller import ENGAGED, INPUTS, VELOCITY_INPUTS, coefficients, saturated
-from core.control.velocity import Source, velocity_source
+from core.block import BlockParams, Context, Equation, parameter
+from core.control.controller import ControllerPorts, NormalisedPacked, VelocityPorts, fill_normalised, saturated
+from core.control.velocity import PackedVelocity, Source, VelocityState, velocity_of, velocity_source
+from core.kernel import flush_tiny, kernel
+from core.ports import tap
+from core.record import Record
 
-TIME_STEP, RATE, SIGN, MODEL_A1, MODEL_A2, MODEL_GAIN, PLANT_A1, PLANT_A2, PLANT_GAIN = range(9)
-SURFACE_GAIN, LAYER, FADE, SWITCHING_SIZE = range(9, 13)
-"""Packed parameters of every switching law; its own follow."""
-SHARE, EQUIVALENT, PRINTED_GAINS, SLIDING_SIZE = range(SWITCHING_SIZE, SWITCHING_SIZE + 4)
-"""Those of the laws that compute their gains from coefficients."""
 FADING = 1000.0
-"""Time over which the peak of the layer needed is forgotten, in 1/w0."""
-
-VELOCITY, MODEL_VELOCITY = len(INPUTS), len(INPUTS) + 1
-SLIDING_INPUTS = (*INPUTS, *VELOCITY_INPUTS)
+"""Time over which the peak of the needed layer fades, in 1/w0."""
 LAYER_TOO_THIN = "the boundary layer is thinner than one sample of switching: the law chatters"
-SLIDING_TAPS = (
-    Port("error", "um", "model minus measured displacement"),
-    Port("surface", "um", "distance s from the switching surface, velocity in um per 1/w0"),
-    Port("equivalent", "V", "equivalent control"),
-    Port("switching", "V", "amplitude of the switching part"),
-    Port("layer_needed", "um", "thinnest boundary layer without chatter, its peak of late"),
-    Port("layer_exceeded", "1", "1 while it drives with a boundary layer thinner than that", warning=LAYER_TOO_THIN),
-)
 LAYER_EQUATION = Equation(
     "boundary layer",
     r"\Phi\ge\rho M|k_p|h",
@@ -53,7 +40,7 @@ GAINS_EQUATION = Equation(
 
 
 class SwitchingParams(BlockParams):
-    """Surface, boundary layer and where the velocity is from."""
+    """Surface, boundary layer and source of the velocity."""
 
     surface_weight: float = parameter(
         1.0, "Q over R of the Riccati equation, in w0^2", equation="3.2.4.2.7", gt=0, le=100
@@ -76,34 +63,67 @@ class SlidingParams(SwitchingParams):
     )
 
 
-def pack_sliding(params: SlidingParams, context: Context) -> list[float]:
-    """Pack what the laws need that compute their gains from coefficients of second order."""
+class SwitchingPacked(NormalisedPacked):
+    """Every switching law: sign of the gain, surface, boundary layer, share of its peak that is kept, velocity."""
+
+    sign: float
+    surface_gain: float
+    layer_um: float
+    fade: float
+    velocity: PackedVelocity
+
+
+class SlidingPacked(SwitchingPacked):
+    """In addition, for the laws that compute their gains from coefficients of second order."""
+
+    share: float
+    equivalent: float
+    printed: float
+
+
+class SwitchingState(Record):
+    """Peak of the needed layer, and the velocity source."""
+
+    peak: float
+    velocity: VelocityState
+
+
+class SwitchingPorts(ControllerPorts, VelocityPorts):
+    """Ports of a controller with velocity, and the surface and switching of the law."""
+
+    error: float = tap("um", "model minus measured displacement")
+    surface: float = tap("um", "distance s from the switching surface, velocity in um per 1/w0")
+    equivalent: float = tap("V", "equivalent control")
+    switching: float = tap("V", "amplitude of the switching part")
+    layer_needed: float = tap("um", "thinnest boundary layer without chatter, its peak of late")
+    layer_exceeded: float = tap(
+        "1", "1 while it drives with a boundary layer thinner than that", warning=LAYER_TOO_THIN
+    )
+
+
+def fill_sliding(p: SlidingPacked, params: SlidingParams, context: Context) -> None:
+    """Pack the numbers of a law that computes its gains from coefficients of second order."""
+    fill_switching(p, params, context)
     usual = 0.3 if params.law == "equivalent" else 1.0
-    return [
-        *pack_switching(params, context),
-        usual if params.switching_share is None else params.switching_share,
-        float(params.law == "equivalent"),
-        float(params.gains == "printed"),
-    ]
+    p.share = usual if params.switching_share is None else params.switching_share
+    p.equivalent = params.law == "equivalent"
+    p.printed = params.gains == "printed"
 
 
-def pack_switching(params: SwitchingParams, context: Context) -> list[float]:
-    """Pack what every switching law needs, the coefficients in units of the rate of the device."""
-    rate = context.device.natural_frequency
-    h = context.dt_ms * rate
-    plant, model = coefficients(context)
-    sign, fade = math.copysign(1.0, plant[2]), math.exp(-h / FADING)
-    return [h, rate, sign, *model, *plant, math.sqrt(params.surface_weight), params.layer_um, fade]
+def fill_switching(p: SwitchingPacked, params: SwitchingParams, context: Context) -> None:
+    """Pack the numbers of every switching law, with coefficients in units of the rate of the device."""
+    fill_normalised(p, context)
+    p.sign = math.copysign(1.0, p.plant.gain)
+    p.surface_gain = math.sqrt(params.surface_weight)
+    p.fade = math.exp(-p.h / FADING)
+    p.velocity = velocity_of(params.velocity, context)
 
 
 @kernel
 def slide(
-    p: Any,
-    s: Any,
-    peak: int,
-    w: Any,
-    io: Any,
-    first: int,
+    p: SlidingPacked,
+    s: SwitchingState,
+    x: SwitchingPorts,
     y: float,
     v: float,
     a1: float,
@@ -112,34 +132,31 @@ def slide(
     instead: float,
     use_instead: bool,
 ) -> float:
-    """Return the voltage of the law for these plant coefficients, and write its taps, which begin at ``first``.
+    """Return the voltage of the law for these plant coefficients, and write its taps.
 
-    The velocity is in um per 1/w0; ``instead`` takes the place of the surface where it is used.
+    The velocity is in um per 1/w0; ``instead`` replaces the surface if ``use_instead`` is true.
     """
-    e = w[io[1]] - y
-    de = w[io[MODEL_VELOCITY]] / p[RATE] - v
-    g1 = p[SURFACE_GAIN]
+    e = x.model - y
+    de = x.model_velocity / p.velocity.rate - v
+    g1 = p.surface_gain
     surface = instead if use_instead else g1 * e + de
-    on_e, on_de = -p[MODEL_A2], g1 - p[MODEL_A1]
-    on_y, on_v = a2 - p[MODEL_A2], a1 - p[MODEL_A1]
-    if p[PRINTED_GAINS] != 0.0:
+    on_e, on_de = -p.model.a2, g1 - p.model.a1
+    on_y, on_v = a2 - p.model.a2, a1 - p.model.a1
+    if p.printed != 0.0:
         on_e, on_de, on_y, on_v = on_y, on_v, -a2, g1 - a1
     inverse = 1.0 / gain
-    terms = (on_e * e, on_de * de, on_y * y, on_v * v, p[MODEL_GAIN] * w[io[0]])
-    equivalent = (terms[0] + terms[1] + terms[2] + terms[3] + terms[4]) * inverse * p[EQUIVALENT]
+    terms = (on_e * e, on_de * de, on_y * y, on_v * v, p.model.gain * x.reference)
+    equivalent = (terms[0] + terms[1] + terms[2] + terms[3] + terms[4]) * inverse * p.equivalent
     size = abs(terms[0]) + abs(terms[1]) + abs(terms[2]) + abs(terms[3]) + abs(terms[4])
-    amplitude = p[SHARE] * size * abs(inverse)
-    return float(equivalent + switch(p, s, peak, w, io, first, e, surface, equivalent, amplitude, gain))
+    amplitude = p.share * size * abs(inverse)
+    return equivalent + switch(p, s, x, e, surface, equivalent, amplitude, gain)
 
 
 @kernel
 def switch(
-    p: Any,
-    s: Any,
-    peak: int,
-    w: Any,
-    io: Any,
-    first: int,
+    p: SwitchingPacked,
+    s: SwitchingState,
+    x: SwitchingPorts,
     e: float,
     surface: float,
     equivalent: float,
@@ -147,12 +164,12 @@ def switch(
     gain: float,
 ) -> float:
     """Return the switching part, and write the taps."""
-    needed = amplitude * abs(gain) * p[TIME_STEP]
-    s[peak] = settled(max(needed, s[peak] * p[FADE]))
-    w[io[first]] = e
-    w[io[first + 1]] = surface
-    w[io[first + 2]] = equivalent
-    w[io[first + 3]] = amplitude
-    w[io[first + 4]] = s[peak]
-    w[io[first + 5]] = 1.0 if s[peak] > p[LAYER] and w[io[ENGAGED]] != 0.0 else 0.0
-    return float(amplitude * saturated(surface, p[LAYER]) * p[SIGN])
+    needed = amplitude * abs(gain) * p.h
+    s.peak = flush_tiny(max(needed, s.peak * p.fade))
+    x.error = e
+    x.surface = surface
+    x.equivalent = equivalent
+    x.switching = amplitude
+    x.layer_needed = s.peak
+    x.layer_exceeded = 1.0 if s.peak > p.layer_um and x.engaged != 0.0 else 0.0
+    return amplitude * saturated(surface, p.layer_um) * p.sign

@@ -4,121 +4,39 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Block, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
-from core.control.controller import APPLIED, MEASURED, OUTPUT, TRUTH, true_plant, unsuited_second_order
+from core.block import Block, Context, Equation, Oscillator, parameter
+from core.control.controller import TruthPorts, coefficients, true_plant, unsuited_second_order
 from core.control.sliding import (
     GAINS_EQUATION,
     LAYER_EQUATION,
-    PLANT_A1,
-    PLANT_A2,
-    PLANT_GAIN,
-    RATE,
-    SIGN,
-    SLIDING_INPUTS,
-    SLIDING_SIZE,
-    SLIDING_TAPS,
     SURFACE_EQUATION,
-    TIME_STEP,
-    VELOCITY,
+    SlidingPacked,
     SlidingParams,
-    pack_sliding,
+    SwitchingPorts,
+    SwitchingState,
+    fill_sliding,
     slide,
 )
-from core.control.velocity import STATES, VELOCITY_SIZE, pack_velocity, velocity
-from core.estimation import DRIVEN_SIZE, advance_filter, drive_filter, driven_filter
-from core.voltage import moved
+from core.control.velocity import velocity
+from core.estimation import DrivenFilter, driven_filter_of, filter_input, filter_voltage
+from core.kernel import flush_tiny
+from core.ports import tap
+from core.record import Vector, vector
+from core.voltage import Motion, moves
 
-MOVING, FILTER = SLIDING_SIZE, SLIDING_SIZE + VELOCITY_SIZE
-ESTIMATOR_GAIN, OUTPUT_WEIGHT, POLE, FLOOR, ON_ESTIMATE, NORMALISE = range(
-    FILTER + DRIVEN_SIZE, FILTER + DRIVEN_SIZE + 6
-)
-PEAK, MOTION, THETA, INPUT_FILTER, OUTPUT_FILTER, LAST, SIZE = (
-    0,
-    1,
-    1 + STATES,
-    4 + STATES,
-    6 + STATES,
-    8 + STATES,
-    9 + STATES,
-)
-FIRST_TRUTH = len(SLIDING_INPUTS)
-OWN_VOLTAGE = FIRST_TRUTH + len(TRUTH)
-TAPS = OWN_VOLTAGE + 1
-ESTIMATES = TAPS + len(SLIDING_TAPS)
 LABELS = ("gain", "a2", "a1")
 HUGE = 1e9
-"""What an estimate that runs away without its normaliser is kept below, so that it stays a number."""
-
-
-def stvsc_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Estimate with what was applied, then slide with the estimate."""
-    y = w[io[MEASURED]]
-    u, middle, end = moved(w, io, APPLIED)
-    drive_filter(p, FILTER, s, INPUT_FILTER, u, middle, end)
-    advance_filter(p, FILTER, s, OUTPUT_FILTER, s[LAST], y)
-    s[LAST] = y
-    pole = p[POLE]
-    # y = kp u* + (lam^2 - a2) y* + (2 lam - a1) py*, with * for 1/(s + lam)^2
-    u_filtered, y_filtered, rate_filtered = s[INPUT_FILTER], s[OUTPUT_FILTER], s[OUTPUT_FILTER + 1]
-    error = settled(
-        s[THETA] * u_filtered
-        + (pole * pole - s[THETA + 1]) * y_filtered
-        + (2.0 * pole - s[THETA + 2]) * rate_filtered
-        - y
-    )
-    weight = p[OUTPUT_WEIGHT]
-    den = 1.0
-    if p[NORMALISE] != 0.0:
-        den += u_filtered * u_filtered + weight * (y_filtered * y_filtered + rate_filtered * rate_filtered)
-    gradient = p[ESTIMATOR_GAIN] * error / den
-    gain = s[THETA] - p[TIME_STEP] * gradient * u_filtered
-    floor = p[FLOOR] * abs(p[PLANT_GAIN])
-    s[THETA] = p[SIGN] * min(max(p[SIGN] * gain, floor), HUGE)
-    spring = s[THETA + 1] + p[TIME_STEP] * gradient * weight * y_filtered
-    damping = s[THETA + 2] + p[TIME_STEP] * gradient * weight * rate_filtered
-    s[THETA + 1] = min(max(spring, -HUGE), HUGE)
-    s[THETA + 2] = min(max(damping, -HUGE), HUGE)
-
-    v = velocity(p, MOVING, s, MOTION, w[io[VELOCITY]], y, u, middle, end) / p[RATE]
-    w[io[OWN_VOLTAGE]] = slide(
-        p, s, PEAK, w, io, TAPS, y, v, s[THETA + 2], s[THETA + 1], s[THETA], error, p[ON_ESTIMATE] != 0.0
-    )
-
-    a1, a2, true_gain = true_plant(w, io, FIRST_TRUTH, p[PLANT_A1], p[PLANT_A2], p[PLANT_GAIN])
-    estimate, truth = io[ESTIMATES], io[ESTIMATES + 1]
-    w[truth], w[truth + 1], w[truth + 2] = true_gain, a2, a1
-    missing = s[THETA] - true_gain
-    lyapunov = missing * missing
-    for i in range(3):
-        w[estimate + i] = s[THETA + i]
-        if i > 0:
-            missing = s[THETA + i] - w[truth + i]
-            lyapunov += missing * missing / weight
-    w[io[ESTIMATES + 2]] = error
-    w[io[ESTIMATES + 3]] = lyapunov / p[ESTIMATOR_GAIN]
-    w[io[ESTIMATES + 4]] = -2.0 * error * error / den
+"""Bound of an estimate that runs away without its normaliser, so that it stays a finite number."""
 
 
 class Stvsc(Block):
     r"""Self-tuning variable structure control, :math:`u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
 
-    A normalised gradient estimator follows mass, damping and spring; the sliding law is computed from what it knows.
-    It estimates all the time on the voltage applied, so a switch finds it tuned.
+    A normalised gradient estimator follows mass, damping and spring; the sliding law is computed from its estimate.
+    It estimates all the time from the voltage applied, so it is tuned when the loop switches to it.
     """
 
     title = "Self-tuning VSC"
-    inputs = (*SLIDING_INPUTS, *TRUTH)
-    outputs = (OUTPUT,)
-    taps = (
-        *SLIDING_TAPS,
-        Port("parameter", "mixed", "estimates of kp, a2 and a1, time in 1/w0", labels=LABELS),
-        Port("parameter_true", "mixed", "what they should be", labels=LABELS),
-        Port("prediction_error", "um", "estimated minus measured displacement"),
-        Port("lyapunov", "1", "Lyapunov function V of the estimator"),
-        Port("lyapunov_rate", "1", "its derivative by theory, per 1/w0"),
-    )
     equations = (
         Equation(
             "law",
@@ -167,36 +85,97 @@ class Stvsc(Block):
             equation="3.2.4.1.1",
         )
 
+    class Packed(SlidingPacked):
+        """The sliding law, filters and their pole, estimator, whether the surface uses the error of the estimate."""
+
+        filter: DrivenFilter
+        filter_pole: float
+        estimator_gain: float
+        weight: float
+        gain_floor: float
+        normalise: float
+        on_estimate: float
+
+    class State(SwitchingState):
+        """State of the sliding law, estimate of kp, a2 and a1, filters, the last measurement."""
+
+        theta: Vector = vector(3)
+        input: Motion
+        output: Motion
+        last: float
+
+    class Ports(SwitchingPorts, TruthPorts):
+        """Ports of the sliding law, the truth, and the estimate."""
+
+        parameter: Vector = tap("mixed", "estimates of kp, a2 and a1, time in 1/w0", labels=LABELS)
+        parameter_true: Vector = tap("mixed", "what they should be", labels=LABELS)
+        prediction_error: float = tap("um", "estimated minus measured displacement")
+        lyapunov: float = tap("1", "Lyapunov function V of the estimator")
+        lyapunov_rate: float = tap("1", "its derivative by theory, per 1/w0")
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse plants and models that are not of second order."""
         return unsuited_second_order(device, model)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        shared = pack_sliding(params, context)
-        weight = 1.0 / shared[PLANT_GAIN] ** 2 if params.output_weight is None else params.output_weight
-        return np.array(
-            [
-                *shared,
-                *pack_velocity(params.velocity, context, shared[RATE]),
-                *driven_filter(params.filter_pole, shared[TIME_STEP], context.analogue),
-                params.estimator_gain,
-                weight,
-                params.filter_pole,
-                params.gain_floor,
-                float(params.surface == "estimation"),
-                float(params.normalise),
-            ]
-        )
+        p = cls.Packed.blank()
+        fill_sliding(p, params, context)
+        gain = coefficients(context)[0][2]
+        p.filter = driven_filter_of(params.filter_pole, p.h, context.analogue)
+        p.weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
+        p.on_estimate = params.surface == "estimation"
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Estimates of the nominal device, everything else at rest."""
-        shared = pack_sliding(params, context)
-        start = np.zeros(SIZE)
-        start[THETA : THETA + 3] = shared[PLANT_GAIN], shared[PLANT_A2], shared[PLANT_A1]
-        return start
+        a1, a2, gain = coefficients(context)[0]
+        s = cls.State.zeros()
+        s.theta[:] = gain, a2, a1
+        return s
 
-    step = stvsc_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Estimate from the voltage applied, then slide with the estimate."""
+        y = x.measured
+        u, middle, end = moves(x)
+        filter_voltage(p.filter, s.input, u, middle, end)
+        filter_input(p.filter, s.output, s.last, y)
+        s.last = y
+        pole = p.filter_pole
+        gain, spring, damping = s.theta[0], s.theta[1], s.theta[2]
+        # y = kp u* + (lam^2 - a2) y* + (2 lam - a1) py*, with * for 1/(s + lam)^2
+        u_filtered, y_filtered, rate_filtered = s.input.x, s.output.x, s.output.v
+        error = flush_tiny(
+            gain * u_filtered + (pole * pole - spring) * y_filtered + (2.0 * pole - damping) * rate_filtered - y
+        )
+        weight = p.weight
+        den = 1.0
+        if p.normalise != 0.0:
+            den += u_filtered * u_filtered + weight * (y_filtered * y_filtered + rate_filtered * rate_filtered)
+        gradient = p.estimator_gain * error / den
+        gain -= p.h * gradient * u_filtered
+        floor = p.gain_floor * abs(p.plant.gain)
+        gain = p.sign * min(max(p.sign * gain, floor), HUGE)
+        spring = min(max(spring + p.h * gradient * weight * y_filtered, -HUGE), HUGE)
+        damping = min(max(damping + p.h * gradient * weight * rate_filtered, -HUGE), HUGE)
+        s.theta[0], s.theta[1], s.theta[2] = gain, spring, damping
+
+        v = velocity(p.velocity, s.velocity, x.velocity, y, u, middle, end) / p.velocity.rate
+        x.voltage = slide(p, s, x, y, v, damping, spring, gain, error, p.on_estimate != 0.0)
+
+        a1, a2, true_gain = true_plant(x, p.plant)
+        x.parameter[0], x.parameter[1], x.parameter[2] = gain, spring, damping
+        x.parameter_true[0], x.parameter_true[1], x.parameter_true[2] = true_gain, a2, a1
+        missing = gain - true_gain
+        lyapunov = missing * missing
+        missing = spring - a2
+        lyapunov += missing * missing / weight
+        missing = damping - a1
+        lyapunov += missing * missing / weight
+        x.prediction_error = error
+        x.lyapunov = lyapunov / p.estimator_gain
+        x.lyapunov_rate = -2.0 * error * error / den

@@ -1,4 +1,4 @@
-"""Where a controller that feeds back velocity has it from."""
+"""Sources of the velocity that a controller feeds back."""
 
 from __future__ import annotations
 
@@ -7,77 +7,98 @@ from typing import Any, Literal
 
 import numpy as np
 
-from core.block import Context, kernel, parameter, settled
+from core.block import Context, parameter
 from core.device.oscillator import held, within
-from core.voltage import add_moved
+from core.kernel import flush_tiny, kernel
+from core.record import Record, Vector, vector
+from core.voltage import Motion, Tick, add_moves
 
-KIND, DT, PHI11, PHI12, PHI21, PHI22, INPUT1, INPUT2, PUSH1, PUSH2, MOVED, CORRECT1, CORRECT2, CORRECT3 = (
-    *range(11),
-    *range(14, 17),
-)
-VELOCITY_SIZE = 17
-"""Packed numbers of a velocity source."""
 SOURCES = ("true", "difference", "observer")
 Source = Literal["true", "difference", "observer"]
-STATES = 5
-"""Last measurement, whether there is one, and the observer's displacement, velocity and unmodelled acceleration."""
+TRUE, DIFFERENCE = SOURCES.index("true"), SOURCES.index("difference")
 OBSERVER_POLE = 6.0
-"""Triple pole of the observer over the rate of the device."""
+"""Triple pole of the observer, as a multiple of the rate of the device."""
+
+
+class PackedVelocity(Tick):
+    """The source, sample interval, rate of the device, and the observer.
+
+    The observer holds the device over a sample, the effect on it of one unit of unmodelled acceleration, and the shares
+    of the observer's error that it adds to displacement, velocity and that acceleration.
+    """
+
+    source: float
+    dt_ms: float
+    rate: float
+    by_acceleration1: float
+    by_acceleration2: float
+    correct: Vector = vector(3)
+
+
+class VelocityState(Record):
+    """Last measurement, whether there is one, and the observer's displacement, velocity and unmodelled acceleration."""
+
+    last: float
+    known: float
+    observed: Motion
+    acceleration: float
 
 
 def velocity_source() -> Any:
-    """Declare the parameter."""
+    """Declare the parameter that chooses the source."""
     return parameter("true", "velocity from the plant itself, from the difference of two samples, or from an observer")
 
 
-def pack_velocity(source: Source, context: Context, rate: float) -> list[float]:
+def velocity_of(source: Source, context: Context) -> PackedVelocity:
     r"""Pack the source; the observer's error has a triple pole at :math:`e^{-6\omega_0h}`, by Ackermann's formula.
 
-    Its third state is an acceleration nobody told it of: a device that is not the nominal one does not mislead it.
+    Its third state is the acceleration that the nominal device does not explain, so a device that differs from the
+    nominal one does not mislead it.
     """
-    h = context.dt_ms
-    device = context.device
-    phi11, phi12, phi21, phi22, first, second = held(device.mass, device.damping, device.stiffness, h)
-    effect = (first * device.force, second * device.force)
-    push = (first * device.mass, second * device.mass)
-    moved = (0.0, 0.0, 0.0, 0.0)
+    h, device = context.dt_ms, context.device
+    p = PackedVelocity.zeros()
+    p.source, p.dt_ms, p.rate = SOURCES.index(source), h, device.natural_frequency
+    p.phi11, p.phi12, p.phi21, p.phi22, first, second = held(device.mass, device.damping, device.stiffness, h)
+    p.push1, p.push2 = first * device.force, second * device.force
+    p.by_acceleration1, p.by_acceleration2 = first * device.mass, second * device.mass
     if context.analogue:
-        moved = within(device.mass, device.damping, device.stiffness, h, device.force)
-    own = [float(SOURCES.index(source)), h, phi11, phi12, phi21, phi22, *effect, *push, *moved]
+        effects = within(device.mass, device.damping, device.stiffness, h, device.force)
+        p.middle1, p.middle2, p.end1, p.end2 = effects
     if device.mass == 0.0:
-        return [0.0, *own[1:], 0.0, 0.0, 0.0]  # nothing here feeds back a velocity
-    phi = np.array([[phi11, phi12, push[0]], [phi21, phi22, push[1]], [0.0, 0.0, 1.0]])
-    shifted = phi - math.exp(-OBSERVER_POLE * rate * h) * np.eye(3)
+        p.source = TRUE  # a law for a plant without mass feeds back no velocity
+        return p
+    phi = np.array([[p.phi11, p.phi12, p.by_acceleration1], [p.phi21, p.phi22, p.by_acceleration2], [0.0, 0.0, 1.0]])
+    shifted = phi - math.exp(-OBSERVER_POLE * p.rate * h) * np.eye(3)
     seen = np.array([phi[0], (phi @ phi)[0], (phi @ phi @ phi)[0]])
     try:
-        correct = shifted @ shifted @ shifted @ np.linalg.solve(seen, np.array([0.0, 0.0, 1.0]))
+        p.correct[:] = shifted @ shifted @ shifted @ np.linalg.solve(seen, np.array([0.0, 0.0, 1.0]))
     except np.linalg.LinAlgError:
-        return [*own, 1.0, 0.0, 0.0]  # all motion dies within a sample, so that samples tell of the displacement alone
-    return [*own, *correct.tolist()]
+        p.correct[0] = 1.0  # all motion dies within a sample: samples show only the displacement
+    return p
 
 
 @kernel
-def velocity(p: Any, packed: int, s: Any, at: int, true: float, y: float, u: float, middle: float, end: float) -> float:
+def velocity(p: PackedVelocity, s: VelocityState, true: float, y: float, u: float, middle: float, end: float) -> float:
     """Return the velocity now, um/ms; ``u`` was applied at the start of the interval that ends now.
 
-    In its middle and at its end it was by ``middle`` and ``end`` more.
+    In the middle of the interval the voltage was larger by ``middle``, and at its end by ``end``.
     """
-    last = s[at]
-    known = s[at + 1] != 0.0
-    s[at] = y
-    s[at + 1] = 1.0
-    if p[packed + KIND] == 0.0:
-        return float(true)
-    if p[packed + KIND] == 1.0:
-        return float((y - last) / p[packed + DT]) if known else 0.0
-    x = s[at + 2]
-    v = s[at + 3]
-    more = s[at + 4]
-    s[at + 2] = p[packed + PHI11] * x + p[packed + PHI12] * v + p[packed + INPUT1] * u + p[packed + PUSH1] * more
-    s[at + 3] = p[packed + PHI21] * x + p[packed + PHI22] * v + p[packed + INPUT2] * u + p[packed + PUSH2] * more
-    add_moved(p, packed + MOVED, s, at + 2, middle, end)
-    missing = y - s[at + 2] if known else 0.0
-    s[at + 2] = settled(s[at + 2] + p[packed + CORRECT1] * missing)
-    s[at + 3] = settled(s[at + 3] + p[packed + CORRECT2] * missing)
-    s[at + 4] = settled(more + p[packed + CORRECT3] * missing)
-    return float(s[at + 3])
+    last = s.last
+    known = s.known != 0.0
+    s.last = y
+    s.known = 1.0
+    if p.source == TRUE:
+        return true
+    if p.source == DIFFERENCE:
+        return (y - last) / p.dt_ms if known else 0.0
+    x = s.observed.x
+    v = s.observed.v
+    acceleration = s.acceleration
+    s.observed.x = p.phi11 * x + p.phi12 * v + p.push1 * u + p.by_acceleration1 * acceleration
+    s.observed.v = p.phi21 * x + p.phi22 * v + p.push2 * u + p.by_acceleration2 * acceleration
+    add_moves(p, s.observed, middle, end)
+    missing = y - s.observed.x if known else 0.0
+    s.observed.x = flush_tiny(s.observed.x + p.correct[0] * missing)
+    s.observed.v = flush_tiny(s.observed.v + p.correct[1] * missing)
+    s.acceleration = flush_tiny(acceleration + p.correct[2] * missing)
+    return s.observed.v

@@ -21,8 +21,8 @@ def devices() -> tuple[Device, ...]:
     """Return every device of the catalogue, by id."""
     folder = files("core.device") / "data"
     texts = [entry.read_text("utf-8") for entry in folder.iterdir() if entry.name.endswith(".toml")]
-    found = [Device.model_validate(tomllib.loads(text)) for text in texts]
-    return tuple(sorted(found, key=lambda device: device.id))
+    parsed = [Device.model_validate(tomllib.loads(text)) for text in texts]
+    return tuple(sorted(parsed, key=lambda device: device.id))
 
 
 def device(overrides: dict[str, Any]) -> Device:

@@ -1,4 +1,4 @@
-r"""A device: what the bench simulates and what the controllers believe."""
+r"""A device: the bench simulates it, and the controllers take it for true."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, m
 
 
 class Printed(BlockParams):
-    """Figures as the dissertation prints them, where they differ from those the device is made of."""
+    """Figures that the dissertation prints and that differ from those of the device's parameters."""
 
     mass_kg: float | None = parameter(None, "mass", "kg", gt=0, live=False)
     one_side_stiffness_n_m: float | None = parameter(None, "spring constant of one side", "N/m", gt=0, live=False)
     f0_hz: float | None = parameter(None, "resonant frequency", "Hz", gt=0, live=False)
 
     def metrics(self) -> dict[str, float]:
-        """Return them under names that say so."""
+        """Return the printed figures under names that mark them as printed."""
         names = {
             "mass_kg": "mass_printed_kg",
             "one_side_stiffness_n_m": "one_side_stiffness_printed_n_m",
@@ -121,15 +121,15 @@ class Device(BlockParams):
     def drawing(self) -> Geometry:
         """Drawing with the device's own thickness and gap; that of LCR-350 when the device has none.
 
-        Fingers given beside it count for the force alone: mass and damping are those of a comb that is not told.
+        Fingers given beside the drawing change the force alone: mass and damping are those of the drawn comb.
         """
         drawn = self.geometry or Geometry()
-        own: dict[str, float] = {}
+        stated: dict[str, float] = {}
         if self.thickness_um is not None:
-            own["thickness_um"] = self.thickness_um
+            stated["thickness_um"] = self.thickness_um
         if self.finger_gap_um is not None:
-            own["finger_gap_um"] = self.finger_gap_um - 2.0 * drawn.comb_bias_um
-        return drawn.model_copy(update=own)
+            stated["finger_gap_um"] = self.finger_gap_um - 2.0 * drawn.comb_bias_um
+        return drawn.model_copy(update=stated)
 
     @property
     def stators_v(self) -> tuple[float, float]:
@@ -168,12 +168,12 @@ class Device(BlockParams):
     def metrics(
         self, stiffness_scale: float = 1.0, damping_scale: float = 1.0, temperature_k: float = ROOM_K
     ) -> dict[str, float]:
-        r"""Return the figures people quote; :math:`f_0=\sqrt{k/m}/2\pi` with k of the whole suspension (1.3.5).
+        r"""Return the usual figures; :math:`f_0=\sqrt{k/m}/2\pi` with k of the whole suspension (1.3.5).
 
         Parameters
         ----------
         stiffness_scale, damping_scale : float
-            What the environment makes of stiffness and damping.
+            Stiffness and damping in the environment, over nominal.
         temperature_k : float
             Temperature of the thermomechanical noise, :math:`x_{rms}=\sqrt{k_BT/k}`.
         """
@@ -182,7 +182,7 @@ class Device(BlockParams):
         si = self.resolved
         mass, force = si["mass_kg"], self.signed_force_n_per_v
         stiffness, damping = si["stiffness_n_m"] * stiffness_scale, si["damping_ns_m"] * damping_scale
-        found = {
+        quoted = {
             "mass_kg": mass,
             "stiffness_n_m": stiffness,
             "damping_ns_m": damping,
@@ -192,5 +192,5 @@ class Device(BlockParams):
             **figures(mass, damping, stiffness),
         }
         if self.printed is not None:
-            found |= self.printed.metrics()
-        return found
+            quoted |= self.printed.metrics()
+        return quoted

@@ -1,7 +1,7 @@
-r"""What air, temperature, humidity and age do to a resonator.
+r"""Effects of air, temperature, humidity and age on a resonator.
 
 Numbers marked *recalled* are standard literature values quoted from memory, not from the dissertation, which gives
-no law of its own: it says that "operating conditions" change damping (3.1.3.1), that humidity increases stiction
+no law for them: it says that "operating conditions" change damping (3.1.3.1), that humidity increases stiction
 (1.4.4, 1.5) and that four weeks took 42.8 % of the displacement (3.1.3.2).
 """
 
@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import math
 
-from core.block import kernel
+from core.kernel import kernel
 
 GAS_CONSTANT_AIR = 287.05
 """Specific gas constant of dry air, J/(kg K)."""
 ATMOSPHERE_PA = 101325.0
 ROOM_K = 300.0
 ROOM_PCT = 40.0
-"""The state of the air for which the figures of every device hold."""
+"""The state of the air in which the figures of every device are given."""
 MODULUS_PER_K = 63e-6
 """Relative fall of Young's modulus of silicon per kelvin (recalled)."""
 STRUCTURAL_QUALITY = 2e4
@@ -24,7 +24,7 @@ STRUCTURAL_QUALITY = 2e4
 DRY_J_M2, WET_J_M2 = 0.03e-3, 50e-3
 """Adhesion energy of rough polysilicon in dry and in saturated air (recalled: 0.01 to 0.05, 10 to 100 mJ/m^2)."""
 CONDENSES_PCT, CONDENSES_OVER_PCT = 60.0, 8.0
-"""Humidity at which capillary bridges form, and over which range (assumed)."""
+"""Humidity at which capillary bridges form, and the range over which they do (assumed)."""
 AGED_SHARE = 0.428
 """Share of the displacement lost after four weeks (3.1.3.2, figure 3.1.3.2.3)."""
 AGED_WEEKS = 4.0
@@ -118,8 +118,8 @@ def damping_scale(
 
     .. math:: \beta/\beta_0=(1-\sigma)\,\frac{b(p,T)}{b(p_0,T_0)}+\sigma,\quad \sigma=Q_0/Q_i
 
-    with :math:`b` of ``gas_damping`` and the structural share :math:`\sigma`, so that the nominal damping of a
-    device is kept whatever its film.
+    with :math:`b` of ``gas_damping`` and the structural share :math:`\sigma`. The nominal damping of a device is
+    therefore kept for any film.
     """
     if pressure_pa == ATMOSPHERE_PA and temperature_k == ROOM_K:
         return 1.0
@@ -134,8 +134,8 @@ def squeezed_share(pressure_pa: float, temperature_k: float, gap_um: float) -> f
 
     .. math:: \frac{\mu}{\mu_0}\,\frac1{1+9.638\,K_n^{1.159}},\quad K_n=\lambda/g
 
-    (Veijola et al. 1995, recalled.) 0.85 between fingers in the open: there a gap of 2.1 um is 31 mean free paths. The
-    gap is that at rest; one that closes is rarefied a little more.
+    (Veijola et al. 1995, recalled.) It is 0.85 between fingers in open air: there a gap of 2.1 um is 31 mean free
+    paths. The gap is taken at rest; the gas in a gap that closes is rarefied a little more.
     """
     knudsen = mean_free_path_um(pressure_pa, temperature_k) / gap_um
     rarefied = 1.0 + 9.638 * math.exp(1.159 * math.log(knudsen))
@@ -143,7 +143,7 @@ def squeezed_share(pressure_pa: float, temperature_k: float, gap_um: float) -> f
 
 
 def structural_share(quality_factor: float) -> float:
-    r"""Share of the nominal damping that is not the gas, :math:`\sigma=Q_0/Q_i`, at most all of it."""
+    r"""Share of the nominal damping that the gas does not cause, :math:`\sigma=Q_0/Q_i`, at most 1."""
     return min(1.0, quality_factor / STRUCTURAL_QUALITY)
 
 
@@ -167,8 +167,8 @@ def adhesion_j_m2(humidity_pct: float) -> float:
 def friction_scale(humidity_pct: float) -> float:
     r"""Friction of touching surfaces over that at 40 %, :math:`F_s(H)/F_s(40)=W(H)/W(40)`.
 
-    What presses them together is their adhesion, so friction goes with its energy. An assumption: the text says only
-    that humidity increases stiction (1.4.4, 1.5).
+    Adhesion presses the surfaces together, so friction is proportional to its energy. This is an assumption: the text
+    says only that humidity increases stiction (1.4.4, 1.5).
     """
     return adhesion_j_m2(humidity_pct) / adhesion_j_m2(ROOM_PCT)
 
@@ -197,7 +197,7 @@ def ageing_ratio(weeks: float) -> float:
 
     .. math:: r(t)=1-0.428\,\frac{1-e^{-t/\tau}}{1-e^{-t_4/\tau}},\quad t_4=4\ \text{weeks},\ \tau=2\ \text{weeks}
 
-    The 42.8 % after four weeks are the text's (3.1.3.2); the exponential and its time constant are assumed. As the
-    displacement at rest is F/k, it is taken as a stiffness k/r.
+    The text gives the 42.8 % after four weeks (3.1.3.2); the exponential and its time constant are assumed. As the
+    displacement at rest is F/k, ageing is modelled as a stiffness k/r.
     """
     return 1.0 - AGED_SHARE * (1.0 - math.exp(-weeks / AGEING_WEEKS)) / (1.0 - math.exp(-AGED_WEEKS / AGEING_WEEKS))

@@ -1,8 +1,9 @@
 r"""Stiffness of the folded suspension as a frame of beams, whole or damaged.
 
 Every beam is one exact Euler-Bernoulli element (nothing loads it between its ends), the trusses are elements too and
-the shuttle is rigid. What is not the shuttle is condensed out, which leaves the 3 x 3 stiffness in (x, y, theta) about
-the centre of the grating. Small displacements: stretching and the loss of lateral stiffness with travel are not in it.
+the shuttle is rigid. All nodes other than the shuttle are condensed out, which leaves the 3 x 3 stiffness in
+(x, y, theta) about the centre of the grating. Displacements are small: the model leaves out stretching and the loss of
+lateral stiffness with travel.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ SEGMENT = (-1.5, -0.5, 0.5, 1.5)
 
 @dataclass(frozen=True)
 class Damage:
-    """What is wrong with a suspension.
+    """Damage of a suspension.
 
     Parameters
     ----------
     adhesion : tuple, optional
-        Beam and share of its length, from its root (0) to the truss (1), of the point that holds to the ground; the
+        Beam, and share of its length from its root (0) to the truss (1), at which a point sticks to the ground; the
         beam is the one at +x on the side at +y.
     lost_ends : tuple of int
         Truss segments that are gone on the side at +y: 2 is the end at +x, 1 the middle; (0, 1, 2) is the whole truss.
@@ -42,12 +43,12 @@ class Damage:
 
 @dataclass(frozen=True)
 class Shape:
-    """A suspension that follows the shuttle.
+    """Nodes of a suspension and their motion with the shuttle.
 
     Parameters
     ----------
     points : ndarray, shape (nodes, 2)
-        Where the nodes are at rest, um.
+        Positions of the nodes at rest, um.
     elements : list of (int, int)
         The nodes at both ends of each beam, or part of a beam or truss.
     response : ndarray, shape (nodes, 3, 3)
@@ -107,7 +108,7 @@ def stiffness(geometry: Geometry, damage: Damage | None = None) -> FloatArray:
     geometry : Geometry
         The drawing.
     damage : Damage, optional
-        What is wrong with it.
+        Its damage.
 
     Returns
     -------
@@ -121,7 +122,7 @@ def stiffness(geometry: Geometry, damage: Damage | None = None) -> FloatArray:
 
 
 def shape(geometry: Geometry, damage: Damage | None = None) -> Shape:
-    """Return how every node of the suspension follows the shuttle, at rest in itself."""
+    """Return the displacement of every node of the suspension when the shuttle moves slowly."""
     mesh = _mesh(geometry, damage or Damage())
     whole, carried = _assembled(geometry, mesh)
     response = carried @ np.vstack([_following(carried.T @ whole @ carried), np.eye(3)])
@@ -129,7 +130,7 @@ def shape(geometry: Geometry, damage: Damage | None = None) -> Shape:
 
 
 def _assembled(geometry: Geometry, mesh: _Mesh) -> tuple[FloatArray, FloatArray]:
-    """Return the stiffness of all nodes, and what each freedom carries along: the free nodes, then the shuttle."""
+    """Return the stiffness of all nodes, and the nodes that each freedom moves: the free nodes, then the shuttle."""
     n = len(mesh.points)
     whole = np.zeros((3 * n, 3 * n))
     for a, b, modulus, width in mesh.elements:
@@ -149,7 +150,7 @@ def _assembled(geometry: Geometry, mesh: _Mesh) -> tuple[FloatArray, FloatArray]
 
 
 def _following(reduced: FloatArray) -> FloatArray:
-    """Return where the free nodes are per displacement of the shuttle."""
+    """Return the displacement of the free nodes per displacement of the shuttle."""
     return np.asarray(-np.linalg.lstsq(reduced[:-3, :-3], reduced[:-3, -3:], rcond=None)[0])
 
 

@@ -1,4 +1,4 @@
-r"""Frequency response of a device: figures of the resonance, and the band its tolerances leave.
+r"""Frequency response of a device: figures of the resonance, and the band within its tolerances.
 
 The phase does not count the 180 degrees of the negative force per volt (1.3.2).
 """
@@ -29,11 +29,12 @@ def figures(mass_kg: float, damping_ns_m: float, stiffness_n_m: float) -> dict[s
         \omega_p=\omega_0\sqrt{1-2\zeta^2},\; \frac{|H_p|}{|H_0|}=\frac1{2\zeta\sqrt{1-\zeta^2}},\;
         \left(\frac{\omega_{3dB}}{\omega_0}\right)^2=1-2\zeta^2\pm2\zeta\sqrt{1-\zeta^2}
 
-    Without a peak (:math:`\zeta\ge1/\sqrt2`) its figures are those at rest, and half power is counted from there.
+    Without a peak (:math:`\zeta\ge1/\sqrt2`) the figures of the peak are those at rest, and half power is relative to
+    rest.
     """
     f0 = math.sqrt(stiffness_n_m / mass_kg) / (2.0 * math.pi)
     zeta = damping_ns_m / (2.0 * math.sqrt(stiffness_n_m * mass_kg))
-    found = {"f0_hz": f0, "quality_factor": 0.5 / zeta, "damping_ratio": zeta}
+    resonance = {"f0_hz": f0, "quality_factor": 0.5 / zeta, "damping_ratio": zeta}
     centre = 1.0 - 2.0 * zeta * zeta
     if centre > 0.0:
         peak = 1.0 / (2.0 * zeta * math.sqrt(1.0 - zeta * zeta))
@@ -42,7 +43,7 @@ def figures(mass_kg: float, damping_ns_m: float, stiffness_n_m: float) -> dict[s
         peak = 1.0
         reach = math.sqrt(centre * centre + 1.0)
     return {
-        **found,
+        **resonance,
         "f_peak_hz": f0 * math.sqrt(max(centre, 0.0)),
         "f_damped_hz": f0 * math.sqrt(max(1.0 - zeta * zeta, 0.0)),
         "peak_db": 20.0 * math.log10(peak),
@@ -54,7 +55,7 @@ def figures(mass_kg: float, damping_ns_m: float, stiffness_n_m: float) -> dict[s
 
 @dataclass(frozen=True)
 class Band:
-    """What magnitude (dB re the nominal displacement at rest) and phase (degrees) can be at each frequency."""
+    """Ranges of magnitude (dB re the nominal displacement at rest) and phase (degrees) at each frequency."""
 
     frequency_hz: FloatArray
     low_db: FloatArray
@@ -81,7 +82,7 @@ def tolerance_band(
     mass_kg, damping_ns_m, stiffness_n_m : tuple of float
         Lower limit, nominal value, upper limit.
     frequency_hz : ndarray
-        Where.
+        Frequencies of the envelope.
     """
     omega = 2.0 * np.pi * np.asarray(frequency_hz, dtype=np.float64)
     least = stiffness_n_m[0] - mass_kg[2] * omega**2

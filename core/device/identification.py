@@ -28,8 +28,8 @@ class Tone:
 def tone(frequency_hz: float, dt_ms: float, voltage: FloatArray, displacement: FloatArray, *, held: bool) -> Tone:
     r"""Return the response at one tone from a steady record, by least squares.
 
-    A voltage held by a converter reaches the device as :math:`\mathrm{sinc}(fT)\,e^{-j\pi fT}` of its samples, which
-    is taken out; the images of the staircase are beyond the resonance and below 1e-4 of the tone.
+    A voltage held by a converter reaches the device as :math:`\mathrm{sinc}(fT)\,e^{-j\pi fT}` of its samples; the fit
+    takes this factor out. The images of the staircase are beyond the resonance and below 1e-4 of the tone.
 
     Parameters
     ----------
@@ -97,8 +97,8 @@ def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
     .. math:: \min_{m,\beta,k}\sum_i\frac1{\sigma_i^2}\left|H_i-\frac{F}{k-m\omega_i^2+j\beta\omega_i}\right|^2
 
     by Gauss and Newton from the linear fit of :math:`F/H`; the covariance is
-    :math:`s^2(J^TWJ)^{-1}` with the reduced sum of squares :math:`s^2`. Only ratios are seen: the force per volt
-    sets the scale of all three.
+    :math:`s^2(J^TWJ)^{-1}` with the reduced sum of squares :math:`s^2`. A sweep determines only ratios: the force per
+    volt sets the scale of all three.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
     heard: ComplexArray = np.array([entry.response for entry in tones], dtype=np.complex128)
     measured: ComplexArray = heard / (UM_PER_M * force_n_per_v)
     errors = np.array([entry.error for entry in tones])
-    floor = 1e-9 * np.abs(measured)  # a record without any noise still has one weight for each tone
+    floor = 1e-9 * np.abs(measured)  # without any noise, every tone has the same weight
     weight = 1.0 / np.maximum(errors / UM_PER_M / abs(force_n_per_v), floor)
     inverse = 1.0 / measured
     # scaled so that all three unknowns are of order one
@@ -151,8 +151,8 @@ def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
     mass, damping, stiffness = (float(value) for value in theta * scale)
     if min(mass, damping, stiffness) <= 0.0:
         raise InputError("the sweep does not look like a resonator; widen it or raise the amplitude", "study")
-    found = figures(mass, damping, stiffness)
-    wander = _figure_errors(found, (mass, damping, stiffness), covariance * np.outer(scale, scale))
+    resonance = figures(mass, damping, stiffness)
+    wander = _figure_errors(resonance, (mass, damping, stiffness), covariance * np.outer(scale, scale))
     return Identified(
         mass_kg=mass,
         damping_ns_m=damping,
@@ -160,9 +160,9 @@ def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
         mass_error_kg=float(spread[0] * scale[0]),
         damping_error_ns_m=float(spread[1] * scale[1]),
         stiffness_error_n_m=float(spread[2] * scale[2]),
-        f0_hz=found["f0_hz"],
-        f_peak_hz=found["f_peak_hz"],
-        quality_factor=found["quality_factor"],
+        f0_hz=resonance["f0_hz"],
+        f_peak_hz=resonance["f_peak_hz"],
+        quality_factor=resonance["quality_factor"],
         f0_error_hz=wander["f0_hz"],
         f_peak_error_hz=wander["f_peak_hz"],
         quality_factor_error=wander["quality_factor"],
@@ -172,10 +172,10 @@ def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
     )
 
 
-def _figure_errors(found: dict[str, float], fitted: tuple[float, ...], covariance: FloatArray) -> dict[str, float]:
-    """Carry the covariance of mass, damping and stiffness over to the figures of the resonance, to first order."""
+def _figure_errors(resonance: dict[str, float], fitted: tuple[float, ...], covariance: FloatArray) -> dict[str, float]:
+    """Propagate the covariance of mass, damping and stiffness to the figures of the resonance, to first order."""
     mass, damping, stiffness = fitted
-    f0, quality, peak = found["f0_hz"], found["quality_factor"], found["f_peak_hz"]
+    f0, quality, peak = resonance["f0_hz"], resonance["quality_factor"], resonance["f_peak_hz"]
     by_f0 = f0 * np.array([-0.5 / mass, 0.0, 0.5 / stiffness])
     by_quality = quality * np.array([0.5 / mass, -1.0 / damping, 0.5 / stiffness])
     # the square of the peak is f0^2 (1 - 1 / 2Q^2); without a peak it stays at rest
@@ -185,7 +185,7 @@ def _figure_errors(found: dict[str, float], fitted: tuple[float, ...], covarianc
 
 
 def _read(omega: FloatArray, measured: ComplexArray) -> dict[str, float | None]:
-    """Read peak, resonance and quality factor off the curve, with no model of the whole."""
+    """Read peak, resonance and quality factor off the curve, without a model of the whole curve."""
     square = omega**2
     power = np.abs(measured) ** 2
     top = int(np.argmax(power))

@@ -13,7 +13,7 @@ from core.device.geometry import Geometry
 
 @dataclass(frozen=True)
 class Lateral:
-    """What a plant in the plane needs beyond the motion along x; the names are those of its parameters."""
+    """Mechanics that a plant in the plane needs beyond the motion along x; the names are those of its parameters."""
 
     gap_um: float
     stator_tip_um: float

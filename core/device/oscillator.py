@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.linalg import expm
 
-from core.block import kernel
+from core.kernel import kernel
 
 
 @kernel
@@ -19,7 +19,7 @@ def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple
         \quad \sigma=\frac{\beta}{2m},\; s=\frac{\sin\omega_d h}{\omega_d},\; c=\cos\omega_d h
 
     Beyond critical damping the two rates of decay, :math:`r_{1,2}=\sigma\mp\sqrt{\sigma^2-\omega_0^2}`, take the place
-    of the oscillation, each from what does not cancel, and no factor of a product grows beyond all bounds:
+    of the oscillation. Each is computed without cancellation, and no factor of a product grows beyond all bounds:
 
     .. math:: e^{-\sigma h}s=e^{-r_1h}\frac{1-e^{-(r_2-r_1)h}}{r_2-r_1},\quad
         e^{-\sigma h}c=\tfrac12(e^{-r_1h}+e^{-r_2h})
@@ -61,7 +61,7 @@ def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple
 def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float, float, float, float, float, float]:
     r"""Return transition and effect of a unit force held over ``h``, for any :math:`m\ddot x+\beta\dot x+kx=f`.
 
-    Mass, stiffness and damping may be 0 and the last two negative, as those of a transfer function are:
+    Mass, stiffness and damping may be 0, and the last two negative, as in a transfer function:
 
     .. math:: \gamma_2=\frac{\varphi_{12}}{m},\quad
         \gamma_1=\frac{1-\varphi_{11}}{k}\;\Big(\frac{h-\varphi_{12}}{\beta},\;\frac{h^2}{2m}\text{ without spring,
@@ -98,9 +98,9 @@ def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float
 def parabola(
     mass: float, damping: float, stiffness: float, h: float, gain: float = 1.0
 ) -> tuple[float, float, float, float]:
-    r"""Return what displacement and velocity gain over ``h`` by a unit of :math:`\dot f`, then of :math:`\ddot f`.
+    r"""Return the gain of displacement and velocity over ``h`` from a unit of :math:`\dot f`, then of :math:`\ddot f`.
 
-    Of :math:`m\ddot x+\beta\dot x+kx=gf`, from its matrix exponential with f and its two derivatives as further
+    The motion obeys :math:`m\ddot x+\beta\dot x+kx=gf`; its matrix exponential has f and its two derivatives as further
     states.
 
     Parameters
@@ -117,17 +117,17 @@ def parabola(
         a[1, :3] = np.array([-stiffness, -damping, gain]) / mass
     else:
         a[0, :3] = np.array([-stiffness, 0.0, gain]) / damping
-    found = expm(a * h)
-    return found[0, 3], found[1, 3], found[0, 4], found[1, 4]
+    states = expm(a * h)
+    return states[0, 3], states[1, 3], states[0, 4], states[1, 4]
 
 
 def within(
     mass: float, damping: float, stiffness: float, h: float, gain: float = 1.0
 ) -> tuple[float, float, float, float]:
-    r"""Return what displacement and velocity gain by a unit of :math:`f_{1/2}-f_0`, then of :math:`f_1-f_0`.
+    r"""Return the gain of displacement and velocity from a unit of :math:`f_{1/2}-f_0`, then of :math:`f_1-f_0`.
 
-    The force is the parabola through its values at the start, in the middle and at the end of an interval, as it is to
-    the plant under an analogue drive:
+    The force is the parabola through its values at the start, in the middle and at the end of an interval, like the
+    force on the plant under an analogue drive:
 
     .. math:: h\dot f=4(f_{1/2}-f_0)-(f_1-f_0),\qquad h^2\ddot f=4(f_1-f_0)-8(f_{1/2}-f_0)
 

@@ -1,4 +1,4 @@
-"""What people quote of a device, and the equation each figure comes from."""
+"""Figures that are usually quoted of a device, with the equation of each."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""How small and how large the numbers of a device may be.
+"""Ranges of the numbers of a device.
 
-Many orders of magnitude to either side of anything built, so that nothing worked out from them leaves the floating
-point numbers: squares of stiffness, of gains and of their ratios are formed on the way.
+They reach many orders of magnitude to either side of any real device, and still keep all results within the floating
+point numbers, which include squares of stiffness, of gains and of their ratios.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ StiffnessNM = Annotated[float, Field(ge=1e-9, le=1e9)]
 ForceNPerV = Annotated[float, Field(ge=1e-15, le=1e3)]
 LengthUm = Annotated[float, Field(ge=1e-3, le=1e5)]
 PartUm = Annotated[float, Field(ge=0.0, le=1e5)]
-"""Of a part that may be missing."""
+"""A part that may be missing."""
 EtchUm = Annotated[float, Field(ge=-1e5, le=1e5)]
-"""What is taken from an edge, or grows on it."""
+"""A loss from an edge, or a growth on it."""
 Fingers = Annotated[int, Field(ge=1, le=100_000)]
 
 LEAST, MOST = 1e-9, 1e9
@@ -40,7 +40,7 @@ BiasV = Annotated[Sized, Field(ge=-1e3, le=1e3)]
 
 
 class Resonator(Table):
-    """Mass, damping and stiffness of a resonator, however they are given."""
+    """Mass, damping and stiffness of a resonator, measured or computed from a drawing."""
 
     mass_kg: MassKg
     damping_ns_m: DampingNsM

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.block import FloatArray, Oscillator, kernel
+from core.block import FloatArray, Oscillator
 from core.device.oscillator import transition
+from core.kernel import kernel
 
 AHEAD = 4
 
@@ -14,7 +15,7 @@ AHEAD = 4
 def _recur(
     phi: FloatArray, drive: FloatArray, chain: FloatArray, reach: FloatArray, u: FloatArray, x: FloatArray
 ) -> None:
-    """Advance four samples at a time: only one product of matrices waits for the one before.
+    """Advance four samples at a time: only one product of matrices depends on the last one.
 
     ``drive[j]`` is the effect of a voltage on the state j + 1 samples later, ``chain`` is the transition over four
     samples and ``reach[j]`` the first row of the transition over j samples.
@@ -69,5 +70,5 @@ def held_response(device: Oscillator, voltage: FloatArray, dt_ms: float) -> Floa
     drive = np.array([powers[j] @ gain for j in range(AHEAD)])
     reach = np.array([power[0] for power in powers])
     out = np.empty(len(voltage))
-    _recur(phi, drive, powers[AHEAD], reach, np.ascontiguousarray(voltage, dtype=np.float64), out)
+    _recur(phi, drive, powers[-1], reach, np.ascontiguousarray(voltage, dtype=np.float64), out)
     return out

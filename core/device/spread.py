@@ -28,7 +28,7 @@ PRINTED: dict[str, tuple[str, ...]] = {
     "damping": ("lithography", "etching", "surface roughness"),
     "force": ("etching", "surface roughness", "stiction"),
 }
-"""Table 2.1 as printed (it stands in chapter 1): what each parameter depends on."""
+"""Table 2.1 as printed (it stands in chapter 1): the steps that each parameter depends on."""
 MISSING: dict[str, dict[str, str]] = {
     "mass": {
         "lithography": "line widths set the area of the shuttle",
@@ -40,14 +40,14 @@ MISSING: dict[str, dict[str, str]] = {
         "material growth": "F is proportional to t/g, and t is grown (1.3.2)",
     },
 }
-"""Dots the text's own formulas 1.3.2 to 1.3.7 demand and the table does not have, with the reason."""
+"""Dots that the text's own formulas 1.3.2 to 1.3.7 demand and that the table lacks, with the reason."""
 CARRIERS: dict[str, tuple[str, ...]] = {
     "lithography": ("beam_bias_um", "comb_bias_um"),
     "material growth": ("thickness_um", "film_gap_um"),
     "etching": ("beam_bias_um", "comb_bias_um"),
     "mechanical properties": ("youngs_modulus_gpa",),
 }
-"""Which numbers of a drawing each step moves; the other steps have none in 1.3.2 to 1.3.7."""
+"""The numbers of a drawing that each step moves; the other steps have none in 1.3.2 to 1.3.7."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ QUANTITIES: dict[str, Callable[[Geometry], float]] = {
 
 @dataclass(frozen=True)
 class Spread:
-    """Devices of one drawing from one process: an array for each parameter, drawn and resulting."""
+    """Devices of one drawing from one process: arrays of the drawn numbers and of the resulting parameters."""
 
     drawn: dict[str, FloatArray]
     found: dict[str, FloatArray]
@@ -82,7 +82,7 @@ class Spread:
         return float(100.0 * np.std(values, ddof=1) / abs(np.mean(values)))
 
     def percentile(self, name: str, share_pct: float) -> float:
-        """Return the value that some share of the devices stays below."""
+        """Return the value that a share of the devices stays below."""
         return float(np.percentile(self.found[name], share_pct))
 
     def correlation(self, first: str, second: str) -> float:
@@ -100,7 +100,7 @@ def draw(geometry: Geometry, tolerances: Tolerances, draws: int, seed: int, cut:
     tolerances : Tolerances
         Standard deviations.
     draws, seed : int
-        How many, and from which seed; the same seed gives the same devices.
+        Number of devices and seed of the draw; the same seed gives the same devices.
     cut : float
         Largest deviation, in standard deviations.
 
@@ -140,8 +140,8 @@ def sensitivity(geometry: Geometry, name: str, change: float) -> dict[str, float
 
 def evaluate(geometry: Geometry) -> dict[str, FloatArray]:
     """Return the parameters of a drawing, or of many at once when its numbers are arrays."""
-    found: dict[str, FloatArray] = {name: np.asarray(quantity(geometry)) for name, quantity in QUANTITIES.items()}
-    omega = np.sqrt(found["stiffness_n_m"] / found["mass_kg"])
-    found["f0_hz"] = omega / (2.0 * np.pi)
-    found["quality_factor"] = omega * found["mass_kg"] / found["damping_ns_m"]
-    return found
+    parameters: dict[str, FloatArray] = {name: np.asarray(quantity(geometry)) for name, quantity in QUANTITIES.items()}
+    omega = np.sqrt(parameters["stiffness_n_m"] / parameters["mass_kg"])
+    parameters["f0_hz"] = omega / (2.0 * np.pi)
+    parameters["quality_factor"] = omega * parameters["mass_kg"] / parameters["damping_ns_m"]
+    return parameters

@@ -1,4 +1,4 @@
-r"""A plant that is no resonator: the examples of chapter 4 and appendix B."""
+r"""A plant that is not a resonator: the examples of chapter 4 and appendix B."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ class TransferFunction(BlockParams):
         return self
 
     def oscillator(self) -> Oscillator:
-        """Return it in the units of the loop: coefficients are mass, damping and stiffness."""
+        """Return the plant in the units of the loop, with its coefficients as mass, damping and stiffness."""
         return of_coefficients(self.gain, self.denominator, self.time_unit_ms)
 
     def metrics(self) -> dict[str, float]:
-        """Return the figures that mean something without units; a pole to the right of 0 is one that grows."""
+        """Return the figures that make sense without units; the motion of a pole to the right of 0 grows."""
         plant = self.oscillator()
-        found = {"slowest_pole_per_s": 1e3 * slowest_pole(plant)}
+        quoted = {"slowest_pole_per_s": 1e3 * slowest_pole(plant)}
         if plant.stiffness != 0.0:
-            found["static_gain_um_per_v"] = plant.static_gain
+            quoted["static_gain_um_per_v"] = plant.static_gain
         if plant.mass > 0.0 and plant.stiffness > 0.0:
-            found["f0_hz"] = 1e3 * math.sqrt(plant.stiffness / plant.mass) / (2.0 * math.pi)
-        return found
+            quoted["f0_hz"] = 1e3 * math.sqrt(plant.stiffness / plant.mass) / (2.0 * math.pi)
+        return quoted
 
 
 def of_coefficients(gain: float, denominator: list[float], unit_ms: float) -> Oscillator:
@@ -56,5 +56,5 @@ def slowest_pole(plant: Oscillator) -> float:
         return -plant.stiffness / plant.damping
     half, square = 0.5 * plant.damping / plant.mass, plant.stiffness / plant.mass
     root = math.sqrt(max(0.0, half * half - square))
-    # of two real poles far apart the slow one would be lost in the difference
+    # with two real poles far apart, the difference would lose the slow one
     return -square / (half + root) if half > 0.0 and root > 0.0 else root - half

@@ -20,7 +20,7 @@ from core.diagnose.hypothesis import Hypothesis
 
 FACTORS = ("mass", "stiffness", "damping", "gain")
 SAME = 1e-3
-"""Share of the response by which an equivalent change may miss."""
+"""Largest error of an equivalent change, as a share of the response."""
 
 
 class Response(BaseModel):
@@ -56,7 +56,7 @@ def alias_map(
     tones: Sequence[tuple[float, float]],
     within_um: float = 0.0,
 ) -> AliasMap:
-    """Return where the hypotheses lie in the plane of the response, and what coincides there.
+    """Return the response of every hypothesis at the tones, and the pairs that coincide.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def alias_map(
 def equivalents(
     hypotheses: Sequence[Hypothesis], name: str, nominal: Oscillator, tones: Sequence[tuple[float, float]]
 ) -> dict[str, float]:
-    """Return the factor on each single parameter of the device that has the response of a hypothesis at every tone."""
+    """Return the factors on single parameters of the device that each give a hypothesis's response at every tone."""
     item = next(item for item in hypotheses if item.name == name)
     return _equivalents(item, nominal, [f for f, _ in tones])
 
@@ -114,7 +114,7 @@ def hidden_um(noise_um: float) -> float:
 
 
 def _stiffness(item: Hypothesis, nominal: Oscillator, hz: float) -> complex:
-    """Return the dynamic stiffness per gain: what one tone tells."""
+    """Return the dynamic stiffness per gain, the only number that one tone tells."""
     omega = 2.0 * math.pi * hz / 1e3
     device = item.oscillator(nominal)
     return complex(device.stiffness - device.mass * omega**2, device.damping * omega) / item.gain
@@ -125,22 +125,22 @@ def _phasor(item: Hypothesis, nominal: Oscillator, hz: float) -> complex:
 
 
 def _equivalents(item: Hypothesis, nominal: Oscillator, tones: Sequence[float]) -> dict[str, float]:
-    """Return the factor on each single parameter of the nominal device that has the same response at every tone."""
-    found: dict[str, float] = {}
+    """Return the factors on single parameters of the nominal device that each give the same response at every tone."""
+    equivalents: dict[str, float] = {}
     for name in FACTORS:
         factors = [_single(name, _stiffness(item, nominal, f), nominal, f) for f in tones]
         if not factors or any(factor is None for factor in factors):
             continue
         values = [factor for factor in factors if factor is not None]
         changed = abs(values[0] - 1.0) > SAME * SAME
-        own = values[0] == getattr(item, name) or abs(values[0] - getattr(item, name)) < SAME * SAME
-        if max(values) - min(values) <= SAME * abs(values[0]) and changed and not own:
-            found[name] = values[0]
-    return found
+        unchanged = values[0] == getattr(item, name) or abs(values[0] - getattr(item, name)) < SAME * SAME
+        if max(values) - min(values) <= SAME * abs(values[0]) and changed and not unchanged:
+            equivalents[name] = values[0]
+    return equivalents
 
 
 def _single(name: str, wanted: complex, nominal: Oscillator, hz: float) -> float | None:
-    """Return the factor on one parameter that gives a dynamic stiffness, none when no positive one does."""
+    """Return the factor on one parameter that gives a dynamic stiffness, or None if no positive factor does."""
     omega = 2.0 * math.pi * hz / 1e3
     now = complex(nominal.stiffness - nominal.mass * omega**2, nominal.damping * omega)
     if name == "gain":

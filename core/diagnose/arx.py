@@ -1,4 +1,4 @@
-r"""Difference equations of the hypotheses: what every self-tuning bank shares.
+r"""Difference equations of the hypotheses, which all self-tuning banks share.
 
 .. math:: z_i=b_0u_{i-1}+b_1u_{i-2}-a_1z_{i-1}-a_2z_{i-2}=h_i^T\theta
 
@@ -8,31 +8,30 @@ The two voltages are means over their intervals, weighed as the nominal device d
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import Any
 
 from core import voltage
-from core.block import TICK, Block, Context, Oscillator, Port, kernel, parameter, settled
-from core.diagnose.hypothesis import BankParams, assumed_noise, lacking
-from core.diagnose.kalman import gaussian, shuttle_memory
+from core.block import Context, Oscillator, parameter
+from core.diagnose.bank import Bank
+from core.diagnose.hypothesis import BankParams, assumed_noise
+from core.diagnose.kalman import shuttle_memory
+from core.diagnose.lanes import LANE
+from core.diagnose.weights import floored
+from core.estimation import triangle
+from core.kernel import flush_tiny, kernel
+from core.ports import output, tap
+from core.record import Record, Vector, vector
+from core.voltage import Gathered, Interval, ObservedPorts, gather, interval_of, weighed_voltages
 
-COUNT, EVERY, FILTER1, FILTER2, MEMORY, LEAST_DRIVE, INTERVAL = range(7)
-LANES = INTERVAL + voltage.INTERVAL_SIZE
-"""Packed parameters of every bank; the lanes of the hypotheses follow, then a bank's own."""
-THETA, VARIANCE, HALF_LOG, WIDTH = 0, 4, 5, 6
-"""Lanes of the parameters: the four coefficients, the variance of the equation error, half its logarithm."""
-LEVEL, U1, U2, LATER1, LATER2, Z1, Z2, GATHERED = range(8)
-"""State of every bank: mean square of the voltage, two samples of it, of what of it acts later, and of the measurement,
-filtered; then the interval."""
-OWN = GATHERED + voltage.STATES
-MEASURED, APPLIED = range(2)
-PROBABILITY, RESIDUAL_TAP, NIS_TAP = range(
-    APPLIED + len(voltage.APPLIED_PORTS), APPLIED + len(voltage.APPLIED_PORTS) + 3
-)
-"""Ports of every bank."""
 SIZE = 4
 """Number of coefficients."""
+
+
+class Estimator(Record):
+    """Estimated coefficients, and the lower triangle of their covariance."""
+
+    theta: Vector = vector(SIZE)
+    covariance: Vector = vector(triangle(SIZE))
 
 
 def coefficients(device: Oscillator, dt_ms: float) -> tuple[float, float, float, float]:
@@ -40,82 +39,91 @@ def coefficients(device: Oscillator, dt_ms: float) -> tuple[float, float, float,
     return voltage.difference_equation(device, device.static_gain, dt_ms)
 
 
-@kernel
-def gathers(p: Any, s: Any, w: Any, io: Any) -> bool:
-    """Take in the voltage of a tick; say whether a bank that runs every N of them is between two of its turns."""
-    voltage.follow(p, INTERVAL, s, GATHERED, w[io[APPLIED]], w[io[APPLIED + 1]], w[io[APPLIED + 2]])
-    return bool(p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0)
+def coefficients_of(params: Any, context: Context) -> list[tuple[float, float, float, float]]:
+    """Return the coefficients of every hypothesis."""
+    return [coefficients(item.oscillator(context.device), context.dt_ms) for item in params.hypotheses]
 
 
 @kernel
-def regress(p: Any, s: Any, w: Any, io: Any, h: int) -> float:
-    """Write the regressor of this sample to ``h`` in the state, and return what it should explain.
+def gather_voltage(p: ArxBank.Packed, s: ArxBank.State, x: ArxBank.Ports) -> None:
+    """Add the voltage of a tick to the interval."""
+    gather(p.interval, s.gathered, x.applied, x.middle, x.end)
 
-    Voltage and measurement pass the same filter 1/A(q), if there is one. What was not measured is taken to be where
-    the sample before was.
+
+@kernel
+def between_updates(p: ArxBank.Packed, x: ArxBank.Ports) -> bool:
+    """Say whether a bank that runs every N ticks does not run at this one."""
+    return bool(p.every != 1.0 and x.tick % p.every != 0.0)
+
+
+@kernel
+def regress(p: ArxBank.Packed, s: ArxBank.State, x: ArxBank.Ports) -> float:
+    """Write the regressor of this sample, and return the filtered measurement it should explain.
+
+    Voltage and measurement pass the same filter 1/A(q), if there is one. A missing measurement is replaced by the last
+    one.
     """
-    z = w[io[MEASURED]]
-    u, later = voltage.weighed(p, INTERVAL, s, GATHERED)
-    s[LEVEL] = settled(p[MEMORY] * s[LEVEL] + (1.0 - p[MEMORY]) * u * u)
-    a1 = p[FILTER1]
-    a2 = p[FILTER2]
+    z = x.measured
+    u, later = weighed_voltages(p.interval, s.gathered)
+    s.power = flush_tiny(p.memory * s.power + (1.0 - p.memory) * u * u)
+    a1 = p.filter_a1
+    a2 = p.filter_a2
     if not math.isfinite(z):
-        z = (1.0 + a1) * s[Z1] + a2 * s[Z2]
-    u = settled(u - a1 * s[U1] - a2 * s[U2])
+        z = (1.0 + a1) * s.z1 + a2 * s.z2
+    u = flush_tiny(u - a1 * s.u1 - a2 * s.u2)
     if a1 != 0.0 or a2 != 0.0:
-        later = later - a1 * s[LATER1] - a2 * s[LATER2]
-    later = settled(later)
-    z = settled(z - a1 * s[Z1] - a2 * s[Z2])
-    s[h] = u
-    s[h + 1] = s[LATER1]
-    s[h + 2] = -s[Z1]
-    s[h + 3] = -s[Z2]
-    s[U2] = s[U1]
-    s[U1] = u
-    s[LATER2] = s[LATER1]
-    s[LATER1] = later
-    s[Z2] = s[Z1]
-    s[Z1] = z
+        later = later - a1 * s.later1 - a2 * s.later2
+    later = flush_tiny(later)
+    z = flush_tiny(z - a1 * s.z1 - a2 * s.z2)
+    s.h[0] = u
+    s.h[1] = s.later1
+    s.h[2] = -s.z1
+    s.h[3] = -s.z2
+    s.u2 = s.u1
+    s.u1 = u
+    s.later2 = s.later1
+    s.later1 = later
+    s.z2 = s.z1
+    s.z1 = z
     return float(z)
 
 
 @kernel
-def said(p: Any, s: Any, h: int, i: int, n: int) -> float:
-    """Return what hypothesis i makes of the regressor."""
-    at = LANES + i
-    return float(s[h] * p[at] + s[h + 1] * p[at + n] + s[h + 2] * p[at + 2 * n] + s[h + 3] * p[at + 3 * n])
+def predicted(p: ArxBank.Packed, h: Vector, i: int) -> float:
+    """Return the prediction of hypothesis i from a regressor."""
+    return float(h[0] * p.b0[i] + h[1] * p.b1[i] + h[2] * p.a1[i] + h[3] * p.a2[i])
 
 
 @kernel
-def unexplained(s: Any, z: float, h: int, theta: int) -> float:
-    """Return what coefficients kept at ``theta`` of the state do not explain of ``z``."""
+def unexplained(theta: Vector, h: Vector, z: float) -> float:
+    """Return ``z`` less the prediction of estimated coefficients."""
     residual = z
     for j in range(SIZE):
-        residual -= s[h + j] * s[theta + j]
+        residual -= h[j] * theta[j]
     return float(residual)
 
 
 @kernel
-def driven(p: Any, s: Any) -> bool:
+def driven(p: ArxBank.Packed, s: ArxBank.State) -> bool:
     """Say whether there is drive enough for residuals to be evidence; without it the quietest equation would win."""
-    return bool(s[LEVEL] >= p[LEAST_DRIVE])
+    return bool(s.power >= p.least_power)
 
 
 @kernel
-def judge(p: Any, s: Any, w: Any, io: Any, log: int, i: int, n: int, residual: float) -> float:
-    """Show the residual of hypothesis i; write and return the logarithm it leaves it with, from that at ``log``."""
-    nis = residual * residual / p[LANES + VARIANCE * n + i]
-    w[io[RESIDUAL_TAP] + i] = residual
-    w[io[NIS_TAP] + i] = nis
-    left = s[log + i]
+def judge(p: WeighedBank.Packed, s: WeighedBank.State, x: ArxBank.Ports, i: int, residual: float) -> float:
+    """Show the residual of hypothesis i; write and return its logarithm with the log-likelihood of the residual."""
+    nis = residual * residual / p.variance[i]
+    x.residual[i] = residual
+    x.nis[i] = nis
+    likelihood = s.log[i]
     if driven(p, s):
-        left = left - 0.5 * nis - p[LANES + HALF_LOG * n + i]
-    s[log + n + i] = left
-    return float(left)
+        likelihood = likelihood - 0.5 * nis - p.half_log[i]
+    s.likelihood[i] = likelihood
+    return float(likelihood)
 
 
 class ArxParams(BankParams):
-    """What every self-tuning bank assumes."""
+    """Assumptions of every self-tuning bank."""
 
     sensor_noise_um: float | None = parameter(
         None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
@@ -126,70 +134,126 @@ class ArxParams(BankParams):
     )
 
 
-class ArxBank(Block):
+class ArxBank(Bank):
     """Base of every self-tuning bank."""
 
-    inputs: ClassVar[tuple[Port, ...]] = (
-        Port("measured", "um", "measured displacement", source="sensor.displacement"),
-        *voltage.APPLIED_PORTS,
-    )
-    outputs: ClassVar[tuple[Port, ...]] = (
-        Port("probability", "1", "probability of the hypothesis", each="hypotheses"),
-    )
-    taps: ClassVar[tuple[Port, ...]] = (
-        Port("residual", "um", "what the difference equation does not explain", each="hypotheses"),
-        Port("nis", "1", "the same squared over its variance", each="hypotheses"),
-    )
+    class Packed(Record):
+        """Hypotheses and ticks between two updates; filter, memory and least power of the voltage; the equations.
 
-    every_tick: ClassVar[bool] = True
+        Each hypothesis has four coefficients, the variance of the equation error, and half its logarithm.
+        """
 
-    sample_by_sample: ClassVar[bool] = True
-    """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+        count: float
+        every: float
+        filter_a1: float
+        filter_a2: float
+        memory: float
+        least_power: float
+        interval: Interval
+        b0: Vector = vector(LANE)
+        b1: Vector = vector(LANE)
+        a1: Vector = vector(LANE)
+        a2: Vector = vector(LANE)
+        variance: Vector = vector(LANE)
+        half_log: Vector = vector(LANE)
+
+    class State(Record):
+        """Mean square of the voltage; two filtered samples of it, of its later effect, and of the measurement.
+
+        Then the interval, and the regressor.
+        """
+
+        power: float
+        u1: float
+        u2: float
+        later1: float
+        later2: float
+        z1: float
+        z2: float
+        gathered: Gathered
+        h: Vector = vector(SIZE)
+
+    class Ports(ObservedPorts):
+        """Measurement and voltage, and the residual and probability of each hypothesis."""
+
+        probability: Vector = output("1", "probability of the hypothesis", each="hypotheses")
+        residual: Vector = tap("um", "what the difference equation does not explain", each="hypotheses")
+        nis: Vector = tap("1", "the same squared over its variance", each="hypotheses")
 
     @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse plants without mass or spring."""
-        return lacking(device)
+    def filters_signals(cls, params: Any) -> bool:
+        """Say whether voltage and measurement pass the filter 1/A(q) of the healthy device."""
+        return False
 
     @classmethod
-    def prior(cls, params: Any, before: list[float]) -> list[float]:
-        """Return the probabilities before a measurement from those after the one before."""
-        return before
-
-    evidence: ClassVar[str] = ""
-    """What `log_likelihood` is, in LaTeX; nothing for the logarithm of the normal density."""
-
-    @classmethod
-    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
-        """Return the logarithm of the density of a residual."""
-        return gaussian(residual, covariance)
-
-    @classmethod
-    def equations_of(cls, params: Any, context: Context) -> list[float]:
+    def fill_equations(cls, p: Packed, params: Any, context: Context) -> None:
         r"""Pack the difference equations, and the variance of their error.
 
         White sensor noise of variance :math:`\sigma^2` makes an equation error of
         :math:`\sigma^2(1+a_1^2+a_2^2)`; behind the filter 1/A it is white again, and as large as the noise.
         """
         variance = (params.sensor_noise_um or assumed_noise(context)) ** 2 * params.assumed_noise_scale
-        filtered = getattr(params, "prefilter", False)
-        nominal = coefficients(context.device, context.dt_ms)
-        lanes = np.zeros((WIDTH, len(params.hypotheses)))
-        for i, hypothesis in enumerate(params.hypotheses):
-            theta = coefficients(hypothesis.oscillator(context.device), context.dt_ms)
+        filtered = cls.filters_signals(params)
+        _, _, a1, a2 = coefficients(context.device, context.dt_ms)
+        p.count = len(params.hypotheses)
+        p.every = context.every
+        p.filter_a1, p.filter_a2 = (a1, a2) if filtered else (0.0, 0.0)
+        p.memory = shuttle_memory(context)
+        p.least_power = params.least_drive_v**2
+        p.interval = interval_of(context)
+        for i, theta in enumerate(coefficients_of(params, context)):
             error = variance if filtered else variance * (1.0 + theta[2] ** 2 + theta[3] ** 2)
-            lanes[:, i] = (*theta, error, 0.5 * math.log(error))
-        head = [
-            len(params.hypotheses),
-            context.every,
-            *(nominal[2:] if filtered else (0.0, 0.0)),
-            shuttle_memory(context),
-            params.least_drive_v**2,
-            *voltage.pack_interval(context),
-        ]
-        return [*map(float, head), *lanes.ravel().tolist()]
+            p.b0[i], p.b1[i], p.a1[i], p.a2[i] = theta
+            p.variance[i], p.half_log[i] = error, 0.5 * math.log(error)
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:
-        """Tell of the hypothesis whose response to a tone is missed most."""
+        """Name the hypothesis whose difference equation loses most of its response to a tone."""
         return voltage.caution(context, {item.name: item.oscillator(context.device) for item in params.hypotheses}, hz)
+
+
+class WeighedBank(ArxBank):
+    """Base of the banks that weigh their hypotheses sample by sample, with a floor under the probabilities."""
+
+    class Packed(ArxBank.Packed):
+        """The floor and its logarithm."""
+
+        floor: float
+        log_floor: float
+
+    class State(ArxBank.State):
+        """Logarithms of the probabilities, and those of this sample before they are normalised."""
+
+        log: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
+
+    @classmethod
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
+    def fill_bank(cls, p: Packed, params: Any, context: Context) -> None:
+        """Pack the equations and the floor."""
+        cls.fill_equations(p, params, context)
+        p.floor, p.log_floor = floored(params.probability_floor)
+
+    @classmethod
+    def fill_alike(cls, s: State, params: Any) -> None:
+        """Begin with all hypotheses alike."""
+        n = len(params.hypotheses)
+        s.log[:n] = -math.log(n)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p = cls.Packed.blank()
+        cls.fill_bank(p, params, context)
+        return p
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """At rest, before the first sample, all hypotheses alike."""
+        s = cls.State.zeros()
+        cls.fill_alike(s, params)
+        return s

@@ -5,48 +5,17 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, parameter
-from core.diagnose.arx import (
-    COUNT,
-    LANES,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    ArxBank,
-    ArxParams,
-    gathers,
-    judge,
-    regress,
-    said,
-)
-from core.diagnose.weights import floored, weigh
-
-FLOOR, LOG_FLOOR = range(2)
-H, LOG = OWN, OWN + 4
+from core.block import Equation, parameter
+from core.diagnose.arx import ArxParams, WeighedBank, between_updates, gather_voltage, judge, predicted, regress
+from core.diagnose.weights import take_floored_softmax
 
 
-def arx_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Weigh every hypothesis by the error of its difference equation."""
-    if gathers(p, s, w, io):
-        return
-    n = int(p[COUNT])
-    own = LANES + WIDTH * n
-    z = regress(p, s, w, io, H)
-    best = -math.inf
-    for i in range(n):
-        residual = z - said(p, s, H, i, n)
-        best = max(best, judge(p, s, w, io, LOG, i, n, residual))
-    weigh(s, LOG, LOG + n, w, io[PROBABILITY], n, best, p[own + FLOOR], p[own + LOG_FLOOR])
-
-
-class FixedBank(ArxBank):
+class FixedBank(WeighedBank):
     r"""Banks that were tuned beforehand, each to its own sub-system, and are fixed now.
 
     .. math:: r_k=z_i-h_i^T\theta_k,\qquad R_e=\sigma^2(1+a_1^2+a_2^2)
 
-    No forgetting is left in it, and nothing of a filter either: good at 10 to 20 kHz, lost in noise at 50.
+    The bank has neither forgetting nor a filter: it works at 10 to 20 kHz and is lost in noise at 50.
     """
 
     title = "Bank of difference equations"
@@ -64,14 +33,20 @@ class FixedBank(ArxBank):
         prefilter: bool = parameter(False, "pass both signals through 1/A(q) of the healthy device", live=False)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        return np.array([*cls.equations_of(params, context), *floored(params.probability_floor)])
+    def filters_signals(cls, params: Any) -> bool:
+        """Say whether voltage and measurement pass the filter 1/A(q) of the healthy device."""
+        return bool(params.prefilter)
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """At rest, all hypotheses alike."""
-        n = len(params.hypotheses)
-        return np.array([0.0] * LOG + [-math.log(n)] * n + [0.0] * n)
-
-    step = arx_bank_step
+    @staticmethod
+    def step(p: WeighedBank.Packed, s: WeighedBank.State, x: WeighedBank.Ports) -> None:
+        """Weigh every hypothesis by the error of its difference equation."""
+        gather_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        n = int(p.count)
+        z = regress(p, s, x)
+        best = -math.inf
+        for i in range(n):
+            residual = z - predicted(p, s.h, i)
+            best = max(best, judge(p, s, x, i, residual))
+        take_floored_softmax(s.log, s.likelihood, x.probability, n, best, p.floor, p.log_floor)

@@ -2,89 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-import numpy as np
 from scipy.special import chdtri
 
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.diagnose import window
-from core.diagnose.filters import (
-    COUNT,
-    DEPTH,
-    LANES,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    coasts,
-    driven,
-    filters_step,
-)
+from core.diagnose.filters import between_updates, driven, filters_step
 from core.diagnose.kalman import KalmanBank, KalmanParams
-from core.diagnose.lanes import LANE
+from core.elementary import cos, sin
+from core.ports import output, tap
+from core.record import Vector
 
-CYCLES, DT, WINDOW, CAPACITY, POWER_LIMIT, TONE_LIMIT, ALONE_FOR, NONE_FOR, LEAN = range(9)
-ALONE, ALONE_RUN, NONE_RUN, SLIDING = range(4)
-VERDICT, CANDIDATES = PROBABILITY + 1, PROBABILITY + 2
-RESIDUAL_TAP, NIS_TAP, CONSISTENT_TAP, POWER_TAP, TONE_TAP = range(PROBABILITY + 3, PROBABILITY + 8)
-NORMAL, DETECTED, ISOLATED, AMBIGUOUS, UNKNOWN = range(5)
+NORMAL, DETECTED, ISOLATED, AMBIGUOUS, UNKNOWN = 0, 1, 2, 3, 4
 VERDICTS = ("normal", "detected", "isolated", "ambiguous", "unknown fault")
-
-
-def consistency_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, correct, test every hypothesis, conclude."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    own = LANES + WIDTH * LANE
-    state = OWN + DEPTH * LANE
-    at = state + SLIDING
-    capacity = int(p[own + CAPACITY])
-    place = window.begin(s, at, capacity, p[own + WINDOW], p[own + CYCLES])
-    turn = window.angle(w, p[own + CYCLES], p[own + DT])
-    cosine = math.cos(turn)
-    sine = math.sin(turn)
-    along, across = window.leaning(p, own + LEAN, cosine, sine)
-    span = p[own + LEAN + window.SPAN]
-    filters_step(p, s, w, io, n, RESIDUAL_TAP)
-    window.push(s, at, n, capacity, place, cosine, sine)
-    candidates = 0
-    last = -1
-    healthy = False
-    for i in range(n):
-        power = window.power(s, at, i)
-        tone = window.tone(s, at, i, along, across, span)
-        consistent = power <= p[own + POWER_LIMIT] and tone <= p[own + TONE_LIMIT]
-        w[io[POWER_TAP] + i] = power
-        w[io[TONE_TAP] + i] = tone
-        w[io[CONSISTENT_TAP] + i] = 1.0 if consistent else 0.0
-        if consistent:
-            candidates += 1
-            last = i
-            healthy = healthy or i == 0
-    alone = last if candidates == 1 else -1
-    s[state + ALONE_RUN] = s[state + ALONE_RUN] + 1.0 if alone == s[state + ALONE] else 1.0
-    s[state + ALONE] = alone
-    s[state + NONE_RUN] = s[state + NONE_RUN] + 1.0 if candidates == 0 else 0.0
-    verdict = 1.0
-    if healthy:
-        verdict = 0.0
-    elif candidates > 1:
-        verdict = 3.0
-    elif alone >= 0 and s[state + ALONE_RUN] >= p[own + ALONE_FOR]:
-        verdict = 2.0
-    elif s[state + NONE_RUN] >= p[own + NONE_FOR]:
-        verdict = 4.0
-    if driven(p, s):  # without drive everything is consistent with everything
-        w[io[VERDICT]] = verdict
-        w[io[CANDIDATES]] = candidates
-    if candidates == 0:
-        for i in range(n):
-            w[io[PROBABILITY] + i] = 1.0 / n
-    else:
-        for i in range(n):
-            w[io[PROBABILITY] + i] = w[io[CONSISTENT_TAP] + i] / candidates
 
 
 class Consistency(KalmanBank):
@@ -95,7 +26,7 @@ class Consistency(KalmanBank):
 
     Normal while the first hypothesis is consistent. Otherwise a fault is detected; it is isolated once exactly one
     other has been consistent for a while, ambiguous while several are, unknown once none has been for a while.
-    Isolated means not inconsistent with: what has the same response at the tone cannot be told apart.
+    Isolated only means not contradicted: hypotheses with the same response at the tone cannot be told apart.
 
     The probability is an equal share among the consistent ones, or among all when none is. The filters must assume
     the noise there is: with pseudo-noise the test is biased.
@@ -103,17 +34,7 @@ class Consistency(KalmanBank):
 
     sample_by_sample = False
     title = "Consistency test"
-    outputs = (
-        *KalmanBank.outputs,
-        Port("verdict", "1", "0 normal, 1 detected, 2 isolated, 3 ambiguous, 4 unknown fault"),
-        Port("candidates", "1", "number of consistent hypotheses"),
-    )
-    taps = (
-        *KalmanBank.taps,
-        Port("consistent", "1", "1 while the hypothesis is consistent with the window", each="hypotheses"),
-        Port("power", "1", "power of the normalised residuals over the window", each="hypotheses"),
-        Port("tone", "1", "part of the normalised residuals at the tone, 2 on average", each="hypotheses"),
-    )
+    lengths = ("window",)
     equations = (
         Equation(
             "behaviour",
@@ -142,25 +63,93 @@ class Consistency(KalmanBank):
         isolated_after: int = parameter(50, "samples with the same one left", ge=1, le=1_000_000)
         unknown_after: int = parameter(200, "samples with none left", ge=1, le=1_000_000)
 
+    class Packed(window.Packed):
+        """Parameters of filters and window; limits of the tests, samples before a verdict is given."""
+
+        power_limit: float
+        tone_limit: float
+        isolated_after: float
+        unknown_after: float
+
+    class State(window.State):
+        """Filters and window; the only candidate or -1, its samples so far, and the samples without any candidate."""
+
+        alone: float
+        alone_run: float
+        none_run: float
+
+    class Ports(KalmanBank.Ports):
+        """Ports of every bank; the verdict, and the tests behind it."""
+
+        verdict: float = output("1", "0 normal, 1 detected, 2 isolated, 3 ambiguous, 4 unknown fault")
+        candidates: float = output("1", "number of consistent hypotheses")
+        consistent: Vector = tap("1", "1 while the hypothesis is consistent with the window", each="hypotheses")
+        power: Vector = tap("1", "power of the normalised residuals over the window", each="hypotheses")
+        tone: Vector = tap("1", "part of the normalised residuals at the tone, 2 on average", each="hypotheses")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        own = [
-            window.tone_hz(params, context) / 1e3,
-            context.dt_ms / context.every,
-            float(params.window),
-            float(params.window),
-            float(chdtri(params.window, params.significance)),
-            float(chdtri(2, params.significance)),
-            float(params.isolated_after),
-            float(params.unknown_after),
-            *window.lean(params, context, params.window),
-        ]
-        return np.array(cls.filters(params, context) + own)
+        p = cls.filters(cls.Packed.blank(), params, context)
+        window.fill(p, params, context, params.window, params.window)
+        p.power_limit = chdtri(params.window, params.significance)
+        p.tone_limit = chdtri(2, params.significance)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """All filters at rest, nothing concluded, the window empty."""
-        return np.array(cls.at_rest(params, context) + [-1.0, 0.0, 0.0] + [0.0] * window.size(params.window))
+    def state(cls, params: Any, context: Context) -> State:
+        """All filters at rest, no verdict, the window empty."""
+        s = cls.at_rest(cls.State.zeros(params.window), params, context)
+        s.alone = -1.0
+        return s
 
-    step = consistency_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict, correct, test every hypothesis, conclude."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        place = window.begin(p, s)
+        turn = window.angle(p, x.tick)
+        cosine = cos(turn)
+        sine = sin(turn)
+        along, across = window.leaning(p, cosine, sine)
+        span = p.span
+        filters_step(p, s, x, n)
+        window.push(s, n, place, cosine, sine)
+        candidates = 0
+        last = -1
+        healthy = False
+        for i in range(n):
+            power = window.power(s, i)
+            tone = window.tone(s, i, along, across, span)
+            consistent = power <= p.power_limit and tone <= p.tone_limit
+            x.power[i] = power
+            x.tone[i] = tone
+            x.consistent[i] = 1.0 if consistent else 0.0
+            if consistent:
+                candidates += 1
+                last = i
+                healthy = healthy or i == 0
+        alone = last if candidates == 1 else -1
+        s.alone_run = s.alone_run + 1.0 if alone == s.alone else 1.0
+        s.alone = alone
+        s.none_run = s.none_run + 1.0 if candidates == 0 else 0.0
+        verdict = DETECTED
+        if healthy:
+            verdict = NORMAL
+        elif candidates > 1:
+            verdict = AMBIGUOUS
+        elif alone >= 0 and s.alone_run >= p.isolated_after:
+            verdict = ISOLATED
+        elif s.none_run >= p.unknown_after:
+            verdict = UNKNOWN
+        if driven(p, s):  # without drive every hypothesis is consistent with the measurement
+            x.verdict = verdict
+            x.candidates = candidates
+        if candidates == 0:
+            for i in range(n):
+                x.probability[i] = 1.0 / n
+        else:
+            for i in range(n):
+                x.probability[i] = x.consistent[i] / candidates

@@ -2,68 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
-from core.diagnose.filters import (
-    COUNT,
-    DEPTH,
-    HALF_LOG,
-    LANES,
-    NIS,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    coasts,
-    filters_step,
-    informed,
-    take_logarithms,
-)
+from core.block import Equation, parameter
+from core.diagnose.filters import between_updates, filters_step, informed, take_logarithms
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
-from core.diagnose.weights import share_out
-
-THRESHOLD = 0
-SUM, LIKELIHOOD = DEPTH, DEPTH + 1
-ALARM = PROBABILITY + 1
-RESIDUAL_TAP, NIS_TAP, SUM_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
-
-
-def cusum_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, correct, add up, compare with the threshold."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    threshold = p[LANES + WIDTH * LANE + THRESHOLD]
-    evidence = informed(p, s, w, io)
-    if filters_step(p, s, w, io, n, RESIDUAL_TAP):
-        take_logarithms(s, n)
-    healthy = 0.0
-    most = 0.0
-    for i in range(n):
-        log = -0.5 * s[OWN + NIS * LANE + i] - s[OWN + HALF_LOG * LANE + i]
-        if i == 0:
-            healthy = log
-        elif evidence:
-            s[OWN + SUM * LANE + i] = max(s[OWN + SUM * LANE + i] + log - healthy, 0.0)
-            most = max(most, s[OWN + SUM * LANE + i])
-    # a sum far beyond the threshold would not let go when the fault is gone
-    over = most - 2.0 * threshold
-    best = threshold
-    s[OWN + LIKELIHOOD * LANE] = threshold
-    for i in range(1, n):
-        total = s[OWN + SUM * LANE + i]
-        if over > 0.0:
-            total = max(total - over, 0.0)
-            s[OWN + SUM * LANE + i] = total
-        s[OWN + LIKELIHOOD * LANE + i] = total
-        best = max(best, total)
-    for i in range(n):
-        w[io[SUM_TAP] + i] = s[OWN + SUM * LANE + i]
-    w[io[ALARM]] = 1.0 if most > threshold else 0.0
-    share_out(s, OWN + LIKELIHOOD * LANE, w, io[PROBABILITY], n, best)
+from core.diagnose.weights import take_softmax
+from core.ports import output, tap
+from core.record import Vector, vector
 
 
 class Cusum(KalmanBank):
@@ -71,15 +16,13 @@ class Cusum(KalmanBank):
 
     .. math:: g_k\leftarrow\max\Bigl(0,\;g_k+\ln\frac{f_k(r_k)}{f_0(r_0)}\Bigr),\qquad \text{alarm when }\max_kg_k>h
 
-    The quickest there is for the fault it was built for, blind to others (Page 1954; Basseville and Nikiforov 1993).
-    The probability is that of the sums as log-odds, the threshold standing for the healthy device; no sum grows
-    beyond twice the threshold.
+    No test detects the fault it was built for more quickly, and it is blind to others (Page 1954; Basseville and
+    Nikiforov 1993). The probability takes the sums as log-odds, with the threshold standing for the healthy device; no
+    sum grows beyond twice the threshold.
     """
 
     sample_by_sample = False
     title = "Cumulative sums (CUSUM)"
-    outputs = (*KalmanBank.outputs, Port("alarm", "1", "1 while a sum is beyond the threshold"))
-    taps = (*KalmanBank.taps, Port("sum", "nat", "cumulative sum against the healthy device", each="hypotheses"))
     equations = (Equation("sum", r"g_k\leftarrow\max(0,\;g_k+\ln f_k-\ln f_0)", "Page 1954"),)
 
     class Params(KalmanParams):
@@ -90,14 +33,55 @@ class Cusum(KalmanBank):
         )
         threshold: float = parameter(10.0, "sum at which there is an alarm", "nat", gt=0, le=1000)
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        return np.array([*cls.filters(params, context), params.threshold])
+    class Packed(KalmanBank.Packed):
+        """Parameters of the filters; sum that raises the alarm."""
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """All filters at rest, all sums 0."""
-        return np.array(cls.at_rest(params, context, (0.0, 0.0)))
+        threshold: float
 
-    step = cusum_step
+    class State(KalmanBank.State):
+        """The filters; cumulative sums, and these as log-odds."""
+
+        sum: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
+
+    class Ports(KalmanBank.Ports):
+        """Ports of every bank; alarm and sums."""
+
+        alarm: float = output("1", "1 while a sum is beyond the threshold")
+        sum: Vector = tap("nat", "cumulative sum against the healthy device", each="hypotheses")
+
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict, correct, add up, compare with the threshold."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        threshold = p.threshold
+        evidence = informed(p, s, x.measured)
+        if filters_step(p, s, x, n):
+            take_logarithms(s, n)
+        healthy = 0.0
+        most = 0.0
+        for i in range(n):
+            log = -0.5 * s.nis[i] - s.half_log[i]
+            if i == 0:
+                healthy = log
+            elif evidence:
+                s.sum[i] = max(s.sum[i] + log - healthy, 0.0)
+                most = max(most, s.sum[i])
+        # a sum far beyond the threshold would keep the alarm after the fault is gone
+        over = most - 2.0 * threshold
+        best = threshold
+        s.likelihood[0] = threshold
+        for i in range(1, n):
+            total = s.sum[i]
+            if over > 0.0:
+                total = max(total - over, 0.0)
+                s.sum[i] = total
+            s.likelihood[i] = total
+            best = max(best, total)
+        sums = x.sum
+        for i in range(n):
+            sums[i] = s.sum[i]
+        x.alarm = 1.0 if most > threshold else 0.0
+        take_softmax(s.likelihood, x.probability, n, best)

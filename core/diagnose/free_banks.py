@@ -1,70 +1,36 @@
-"""Self-tuning banks that all learn from the device: a lesson in what not to do."""
+"""Self-tuning banks that all learn from the device, as an example of a design that fails."""
 
 from __future__ import annotations
 
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core import estimation
-from core.block import Context, Equation, FloatArray, parameter
+from core.block import Context, Equation, parameter
 from core.diagnose.arx import (
-    COUNT,
-    LANES,
-    OWN,
-    PROBABILITY,
-    RESIDUAL_TAP,
     SIZE,
-    WIDTH,
-    ArxBank,
     ArxParams,
-    gathers,
+    Estimator,
+    WeighedBank,
+    between_updates,
+    coefficients_of,
+    gather_voltage,
     judge,
     regress,
     unexplained,
 )
-from core.diagnose.weights import floored, likeliest, weigh
-
-FORGETTING, WINNER_ONLY, LIMIT, FLOOR, LOG_FLOOR = range(5)
-H, PRODUCT, LOG = OWN, OWN + 4, OWN + 8
-"""State: regressor, scratch; then two lanes of logarithms, and an estimator for each bank."""
-DEPTH = 14
-"""Numbers of one estimator: four coefficients, half a covariance."""
+from core.diagnose.lanes import LANE
+from core.diagnose.weights import take_floored_softmax, winner_of
+from core.estimation import diagonal, estimate
+from core.record import Records, Vector, several, vector
 
 
-def free_banks_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Weigh every bank by what it predicts, and let it learn."""
-    if gathers(p, s, w, io):
-        return
-    n = int(p[COUNT])
-    own = LANES + WIDTH * n
-    z = regress(p, s, w, io, H)
-    first = LOG + 2 * n
-    best = -math.inf
-    for i in range(n):
-        theta = first + DEPTH * i
-        best = max(best, judge(p, s, w, io, LOG, i, n, unexplained(s, z, H, theta)))
-    at = io[PROBABILITY]
-    weigh(s, LOG, LOG + n, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
-    winner = likeliest(w, at, n)
-    forgetting = p[own + FORGETTING]
-    for i in range(n):
-        if p[own + WINNER_ONLY] == 0.0 or i == winner:
-            theta = first + DEPTH * i
-            error = w[io[RESIDUAL_TAP] + i]
-            estimation.least_squares(
-                s, theta, theta + SIZE, H, PRODUCT, SIZE, error, forgetting, forgetting, p[own + LIMIT]
-            )
-
-
-class FreeBanks(ArxBank):
+class FreeBanks(WeighedBank):
     r"""Each bank starts at its hypothesis and then learns from the device: all of them become the device.
 
     .. math:: \hat\theta_k(0)=\theta_k,\qquad \hat\theta_k\leftarrow\hat\theta_k+\frac{\eta h}{\lambda+h^T\eta h}r_k
 
-    With one input and one output to learn from, the residuals of all banks are the same within a hundred samples and
-    nothing is left to choose by. When only the winner learns, it learns the fault it should have reported.
+    With one input and one output to learn from, the residuals of all banks are the same within a hundred samples, and
+    nothing distinguishes them any more. When only the winner learns, it learns the fault it should have reported.
     """
 
     title = "Free self-tuning banks"
@@ -93,19 +59,53 @@ class FreeBanks(ArxBank):
         )
         trace_limit: float = parameter(1e10, "trace beyond which the covariance stays as it is", gt=0, le=1e100)
 
+    class Packed(WeighedBank.Packed):
+        """Forgetting factor, whether only the winner learns, limit of the covariances."""
+
+        forgetting: float
+        winner_only: float
+        trace_limit: float
+
+    class State(WeighedBank.State):
+        """Scratch, and an estimator for each bank."""
+
+        product: Vector = vector(SIZE)
+        banks: Records[Estimator] = several(LANE)
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        own = [params.forgetting, float(params.adapting == "winner"), params.trace_limit]
-        return np.array([*cls.equations_of(params, context), *own, *floored(params.probability_floor)])
+        p = cls.Packed.blank()
+        cls.fill_bank(p, params, context)
+        p.winner_only = float(params.adapting == "winner")
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Every bank at its hypothesis, all alike."""
-        n = len(params.hypotheses)
-        lanes = np.array(cls.equations_of(params, context)[LANES:]).reshape(WIDTH, n)
-        covariance = estimation.diagonal(SIZE, params.initial_covariance)
-        banks = [value for i in range(n) for value in (*lanes[:SIZE, i], *covariance)]
-        return np.array([0.0] * LOG + [-math.log(n)] * n + [0.0] * n + banks)
+        s = cls.State.zeros()
+        cls.fill_alike(s, params)
+        for i, theta in enumerate(coefficients_of(params, context)):
+            s.banks[i].theta[:] = theta
+            s.banks[i].covariance[:] = diagonal(SIZE, params.initial_covariance)
+        return s
 
-    step = free_banks_step
+    @staticmethod
+    def step(p: Packed, s: State, x: WeighedBank.Ports) -> None:
+        """Weigh every bank by its prediction, and let it learn."""
+        gather_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        n = int(p.count)
+        z = regress(p, s, x)
+        best = -math.inf
+        for i in range(n):
+            best = max(best, judge(p, s, x, i, unexplained(s.banks[i].theta, s.h, z)))
+        take_floored_softmax(s.log, s.likelihood, x.probability, n, best, p.floor, p.log_floor)
+        winner = winner_of(x.probability, n)
+        for i in range(n):
+            if p.winner_only == 0.0 or i == winner:
+                bank, error = s.banks[i], x.residual[i]
+                estimate(
+                    bank.theta, bank.covariance, s.h, s.product, SIZE, error, p.forgetting, p.forgetting, p.trace_limit
+                )

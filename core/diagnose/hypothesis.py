@@ -44,7 +44,7 @@ SEVEN_STEP = [
 
 
 def lacking(device: Oscillator) -> str:
-    """Say why a device has no hypotheses: they are factors on mass and spring."""
+    """Say why a device cannot have hypotheses, which are factors on mass and spring; "" if it can."""
     return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
 
@@ -67,6 +67,11 @@ class BankParams(BlockParams):
         return self
 
 
+def hypotheses_of(params: BlockParams) -> list[Hypothesis]:
+    """Return the hypotheses a diagnoser chooses between; none where it chooses between none."""
+    return params.hypotheses if isinstance(params, BankParams) else []
+
+
 def assumed_noise(context: Context) -> float:
-    """Return the sensor noise a bank assumes: what the sensor has, at least a thousandth of a micrometre."""
+    """Return the sensor noise a bank assumes: that of the sensor, at least a thousandth of a micrometre."""
     return max(context.sensor_noise_um, 1e-3)

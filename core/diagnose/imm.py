@@ -5,110 +5,56 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, inlined, parameter
+from core.block import Context, Equation, parameter
 from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
-from core.diagnose.filters import (
-    COUNT,
-    COVARIANCE,
-    DEPTH,
-    LANES,
-    NIS,
-    OWN,
-    P11,
-    P12,
-    P22,
-    PROBABILITY,
-    STARTED,
-    WIDTH,
-    X1,
-    X2,
-    coasts,
-    filters_step,
-    informed,
-)
+from core.diagnose.filters import between_updates, filters_step, informed
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
-
-OTHER = 0
-"""Parameter of its own."""
-WEIGHT, SEPARATION = DEPTH, DEPTH + 1
-"""Lanes of its own."""
-RESIDUAL_TAP, NIS_TAP, INFORMATION, UNEXCITED = range(PROBABILITY + 1, PROBABILITY + 5)
+from core.elementary import exp
+from core.kernel import inlined
+from core.ports import tap
+from core.record import Vector, vector
 
 
 @inlined
-def mix(s: Any, n: int, other: float) -> None:
+def mix(s: Imm.State, n: int, switching: float) -> None:
     r"""Give every filter the mixture of states it may have come from, and its weight before the measurement.
 
-    With :math:`\pi_{ij}=e+(1-ne)\delta_{ij}` the sums over i are the same for all j but for one term, so mixing costs
-    n terms and not n squared. Spreads are taken about the common mean.
+    With :math:`\pi_{ij}=e+(1-ne)\delta_{ij}` the sums over i are the same for all j except for one term, so mixing
+    costs n terms instead of n squared. The spreads are taken about the common mean.
     """
-    keep = 1.0 - n * other
+    keep = 1.0 - n * switching
     x1 = 0.0
     x2 = 0.0
     for i in range(n):
-        b = OWN + i
-        weight = s[b + WEIGHT * LANE]
-        x1 += weight * s[b + X1 * LANE]
-        x2 += weight * s[b + X2 * LANE]
+        weight = s.weight[i]
+        x1 += weight * s.x1[i]
+        x2 += weight * s.x2[i]
     m11 = 0.0
     m12 = 0.0
     m22 = 0.0
     for i in range(n):
-        b = OWN + i
-        weight = s[b + WEIGHT * LANE]
-        d1 = s[b + X1 * LANE] - x1
-        d2 = s[b + X2 * LANE] - x2
-        m11 += weight * (s[b + P11 * LANE] + d1 * d1)
-        m12 += weight * (s[b + P12 * LANE] + d1 * d2)
-        m22 += weight * (s[b + P22 * LANE] + d2 * d2)
+        weight = s.weight[i]
+        d1 = s.x1[i] - x1
+        d2 = s.x2[i] - x2
+        m11 += weight * (s.p11[i] + d1 * d1)
+        m12 += weight * (s.p12[i] + d1 * d2)
+        m22 += weight * (s.p22[i] + d2 * d2)
     for i in range(n):
-        b = OWN + i
-        own = keep * s[b + WEIGHT * LANE]
-        before = other + own
-        own /= before
-        rest = other / before
-        d1 = s[b + X1 * LANE] - x1
-        d2 = s[b + X2 * LANE] - x2
-        k1 = own * d1
-        k2 = own * d2
-        s[b + X1 * LANE] = x1 + k1
-        s[b + X2 * LANE] = x2 + k2
-        s[b + P11 * LANE] = rest * m11 + own * (s[b + P11 * LANE] + d1 * d1) - k1 * k1
-        s[b + P12 * LANE] = rest * m12 + own * (s[b + P12 * LANE] + d1 * d2) - k1 * k2
-        s[b + P22 * LANE] = rest * m22 + own * (s[b + P22 * LANE] + d2 * d2) - k2 * k2
-        s[b + WEIGHT * LANE] = before
-
-
-def imm_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Mix, predict and correct, weigh."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    evidence = informed(p, s, w, io)
-    if evidence and s[STARTED] != 0.0:
-        mix(s, n, p[LANES + WIDTH * LANE + OTHER])
-    filters_step(p, s, w, io, n, RESIDUAL_TAP)
-    if evidence:
-        least = math.inf
-        for i in range(n):
-            least = min(least, s[OWN + NIS * LANE + i])
-        total = 0.0
-        for i in range(n):
-            density = math.exp(0.5 * (least - s[OWN + NIS * LANE + i])) / math.sqrt(s[OWN + COVARIANCE * LANE + i])
-            share = s[OWN + WEIGHT * LANE + i] * density
-            s[OWN + WEIGHT * LANE + i] = share
-            total += share
-        for i in range(n):
-            s[OWN + WEIGHT * LANE + i] /= total
-    at = io[PROBABILITY]
-    for i in range(n):
-        w[at + i] = s[OWN + WEIGHT * LANE + i]
-    information = nearest_rival(p, s, OWN + SEPARATION * LANE, n, w, at)
-    w[io[INFORMATION]] = information
-    w[io[UNEXCITED]] = 1.0 if information < LEAST_INFORMATION else 0.0
+        stays = keep * s.weight[i]
+        before = switching + stays
+        stays /= before
+        rest = switching / before
+        d1 = s.x1[i] - x1
+        d2 = s.x2[i] - x2
+        k1 = stays * d1
+        k2 = stays * d2
+        s.x1[i] = x1 + k1
+        s.x2[i] = x2 + k2
+        s.p11[i] = rest * m11 + stays * (s.p11[i] + d1 * d1) - k1 * k1
+        s.p12[i] = rest * m12 + stays * (s.p12[i] + d1 * d2) - k1 * k2
+        s.p22[i] = rest * m22 + stays * (s.p22[i] + d2 * d2) - k2 * k2
+        s.weight[i] = before
 
 
 class Imm(KalmanBank):
@@ -124,11 +70,6 @@ class Imm(KalmanBank):
     """
 
     title = "Interacting multiple models (IMM)"
-    taps = (
-        *KalmanBank.taps,
-        Port("information", "nat", "evidence per sample against the nearest rival of the winner"),
-        Port("unexcited", "1", "1 while the drive hardly tells the winner from its nearest rival"),
-    )
     equations = (
         Equation(
             "mixing",
@@ -146,21 +87,68 @@ class Imm(KalmanBank):
         )
         switching: float = parameter(1e-4, "probability of a change to another hypothesis, per sample", gt=0, le=0.5)
 
+    class Packed(KalmanBank.Packed):
+        """Parameters of the filters; probability of a change to one particular other hypothesis."""
+
+        switching: float
+
+    class State(KalmanBank.State):
+        """The filters; weights of the hypotheses, separations."""
+
+        weight: Vector = vector(LANE)
+        separation: Vector = vector(LANE)
+
+    class Ports(KalmanBank.Ports):
+        """Ports of every bank, and the evidence per sample."""
+
+        information: float = tap("nat", "evidence per sample against the nearest rival of the winner")
+        unexcited: float = tap("1", "1 while the drive hardly tells the winner from its nearest rival")
+
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:
         """Return the weights after mixing."""
-        other = params.switching / (len(before) - 1)
-        return [other + (1.0 - len(before) * other) * weight for weight in before]
+        switching = params.switching / (len(before) - 1)
+        return [switching + (1.0 - len(before) * switching) * weight for weight in before]
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        other = params.switching / (len(params.hypotheses) - 1)
-        return np.array([*cls.filters(params, context), other])
+        p = cls.filters(cls.Packed.blank(), params, context)
+        p.switching = params.switching / (len(params.hypotheses) - 1)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike."""
-        return np.array(cls.at_rest(params, context, (1.0 / len(params.hypotheses), 0.0)))
+        s = cls.at_rest(cls.State.zeros(), params, context)
+        s.weight[:] = 1.0 / len(params.hypotheses)
+        return s
 
-    step = imm_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Mix, predict and correct, weigh."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        evidence = informed(p, s, x.measured)
+        if evidence and s.started != 0.0:
+            mix(s, n, p.switching)
+        filters_step(p, s, x, n)
+        if evidence:
+            least = math.inf
+            for i in range(n):
+                least = min(least, s.nis[i])
+            total = 0.0
+            for i in range(n):
+                density = exp(0.5 * (least - s.nis[i])) / math.sqrt(s.covariance[i])
+                share = s.weight[i] * density
+                s.weight[i] = share
+                total += share
+            for i in range(n):
+                s.weight[i] /= total
+        probability = x.probability
+        for i in range(n):
+            probability[i] = s.weight[i]
+        information = nearest_rival(p, s, s.separation, x.probability, n)
+        x.information = information
+        x.unexcited = 1.0 if information < LEAST_INFORMATION else 0.0

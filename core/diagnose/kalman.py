@@ -1,34 +1,23 @@
-"""Banks of Kalman filters, one for each hypothesis: what every bank shares."""
+"""Base of the banks of Kalman filters, which have one filter for each hypothesis."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from core.block import Block, BlockParams, Context, FloatArray, Oscillator, Port, parameter
-from core.diagnose.filters import (
-    DEPTH,
-    GAIN1,
-    INVERSE_PSI,
-    LEAST,
-    MOVE11,
-    NOISE22,
-    OWN,
-    P11,
-    P22,
-    PSI,
-    TAKE_MIDDLE,
-    TAKE_PARABOLA,
-    TAKE_START,
-    WIDTH,
-)
-from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise, lacking
-from core.diagnose.lanes import lanes
+from core.block import BlockParams, Context, FloatArray, parameter
+from core.diagnose.bank import Bank
+from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
+from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
+from core.diagnose.lanes import Filters, PackedFilters
 from core.format import format_short
-from core.voltage import APPLIED_PORTS, MOST_LOST, PUSH1, PUSH2, pack_tick
+from core.voltage import MOST_LOST, tick_of
+
+P = TypeVar("P", bound=PackedFilters)
+S = TypeVar("S", bound=Filters)
 
 
 class FilterParams(BlockParams):
@@ -58,95 +47,82 @@ class KalmanParams(FilterParams, BankParams):
     """Assumptions of a bank of Kalman filters, and its hypotheses."""
 
 
-class KalmanBank(Block):
-    """Base of every bank of Kalman filters: the filters, not what is concluded from them."""
+class KalmanBank(Bank):
+    """Base of every bank of Kalman filters: it has the filters; its subclasses draw the conclusions."""
 
     Params: ClassVar[type[BlockParams]] = KalmanParams
-    inputs: ClassVar[tuple[Port, ...]] = (
-        Port("measured", "um", "measured displacement", source="sensor.displacement"),
-        *APPLIED_PORTS,
-    )
-    outputs: ClassVar[tuple[Port, ...]] = (
-        Port("probability", "1", "probability of the hypothesis", each="hypotheses"),
-    )
-    taps: ClassVar[tuple[Port, ...]] = (
-        Port("residual", "um", "measured minus predicted displacement", each="hypotheses"),
-        Port(
-            "nis",
-            "1",
-            "normalised residual squared, 1 on average for a true and well tuned model",
-            each="hypotheses",
-        ),
-    )
 
-    every_tick: ClassVar[bool] = True
+    class Packed(PackedFilters):
+        """Parameters of the filters."""
 
-    sample_by_sample: ClassVar[bool] = True
-    """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+    class State(Filters):
+        """The filters."""
+
+    class Ports(BankPorts):
+        """Ports of every bank."""
 
     @classmethod
-    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse plants without mass or spring."""
-        return lacking(device)
+    def takes_steady_gains(cls, params: Any) -> bool:
+        """Say whether the gains are those in the limit."""
+        return False
 
     @classmethod
-    def prior(cls, params: Any, before: list[float]) -> list[float]:
-        """Return the probabilities before a measurement from those after the one before."""
-        return before
-
-    evidence: ClassVar[str] = ""
-    """What `log_likelihood` is, in LaTeX; nothing for the logarithm of the normal density."""
+    def leaves_sensor_noise_out(cls, params: Any) -> bool:
+        """Say whether the residual covariance is that of the text, without R."""
+        return False
 
     @classmethod
-    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
-        """Return the logarithm of the density of a residual."""
-        return gaussian(residual, covariance)
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        return cls.filters(cls.Packed.blank(), params, context)
 
     @classmethod
-    def filters(cls, params: Any, context: Context, hypotheses: list[Hypothesis] | None = None) -> list[float]:
-        """Pack what every bank needs; steady gains from the Riccati equation, for those that offer them."""
+    def state(cls, params: Any, context: Context) -> State:
+        """All filters at rest."""
+        return cls.at_rest(cls.State.zeros(), params, context)
+
+    @classmethod
+    def filters(cls, p: P, params: Any, context: Context, hypotheses: list[Hypothesis] | None = None) -> P:
+        """Pack the filters of a bank, with steady gains from the Riccati equation if it offers them."""
         hypotheses = hypotheses or params.hypotheses
         scale = params.assumed_noise_scale
         q = params.process_noise_v**2 * scale
         r = (params.sensor_noise_um or assumed_noise(context)) ** 2 * scale
-        table = lanes(WIDTH, len(hypotheses))
-        steady = getattr(params, "form", "") == "steady"
-        printed = getattr(params, "residual_covariance", "") == "printed"
+        steady, printed = cls.takes_steady_gains(params), cls.leaves_sensor_noise_out(params)
         for i, hypothesis in enumerate(hypotheses):
             device = hypothesis.oscillator(context.device)
-            tick = pack_tick(device, device.force, context.dt_ms / context.every, context.analogue)
-            push = tick[PUSH1], tick[PUSH2]
-            phi, noise = over_ticks(np.reshape(tick[:PUSH1], (2, 2)), np.outer(push, push) * q, context.every)
-            table[: NOISE22 + 1, i] = (*phi.flat, noise[0, 0], noise[0, 1], noise[1, 1])
-            table[MOVE11:, i] = tick
+            tick = tick_of(device, device.force, context.dt_ms / context.every, context.analogue)
+            push = tick.push1, tick.push2
+            over_tick = np.array([[tick.phi11, tick.phi12], [tick.phi21, tick.phi22]])
+            phi, noise = over_ticks(over_tick, np.outer(push, push) * q, context.every)
+            p.phi11[i], p.phi12[i], p.phi21[i], p.phi22[i] = phi.flat
+            p.noise11[i], p.noise12[i], p.noise22[i] = noise[0, 0], noise[0, 1], noise[1, 1]
+            p.tick11[i], p.tick12[i], p.tick21[i], p.tick22[i] = over_tick.flat
+            p.push1[i], p.push2[i] = push
+            p.middle1[i], p.middle2[i], p.end1[i], p.end2[i] = tick.middle1, tick.middle2, tick.end1, tick.end2
             if steady:
-                table[GAIN1 : PSI + 1, i] = steady_gain(phi, noise, r, printed)
-                table[INVERSE_PSI, i] = 1.0 / table[PSI, i]
-        head = [
-            len(hypotheses),
-            r,
-            steady,
-            printed,
-            context.every,
-            _taken(params, context),
-            shuttle_memory(context),
-            params.least_drive_v**2,
-        ]
-        return [float(value) for value in (*head, *table.ravel())]
+                p.gain1[i], p.gain2[i], p.psi[i] = steady_gain(phi, noise, r, printed)
+                p.inverse_psi[i] = 1.0 / p.psi[i]
+        p.count = len(hypotheses)
+        p.sensor = r
+        p.steady = steady
+        p.printed = printed
+        p.every = context.every
+        p.taken = _taken(params, context)
+        p.memory = shuttle_memory(context)
+        p.least_drive = params.least_drive_v**2
+        return p
 
     @classmethod
-    def at_rest(cls, params: Any, context: Context, more: tuple[float, ...] = (), count: int = 0) -> list[float]:
-        """All filters at rest, as uncertain as the parameters say; then lanes of a bank's own, each of one value."""
-        table = lanes(DEPTH + len(more), count or len(params.hypotheses))
-        table[P11] = params.initial_std_um**2
-        table[P22] = (params.initial_std_um * context.device.natural_frequency) ** 2
-        for row, value in enumerate(more, DEPTH):
-            table[row] = value
-        return [0.0] * OWN + [float(value) for value in table.ravel()]
+    def at_rest(cls, s: S, params: Any, context: Context) -> S:
+        """Put all filters at rest, with the initial uncertainty of the parameters."""
+        s.p11[:] = params.initial_std_um**2
+        s.p22[:] = (params.initial_std_um * context.device.natural_frequency) ** 2
+        return s
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:
-        r"""Tell of an analogue drive taken for held: :math:`1-\sin x/x` of a tone, from the start late by x as well."""
+        r"""Warn if an analogue drive is taken for held: a tone loses :math:`1-\sin x/x`, and more if late by x."""
         x = math.pi * 1e-3 * hz * context.dt_ms / context.every
         if not context.analogue or params.voltage == "parabola" or x <= 0.0:
             return ""
@@ -158,19 +134,14 @@ class KalmanBank(Block):
 
 
 def _taken(params: Any, context: Context) -> int:
-    """Return what is taken for the voltage of a tick."""
+    """Return which voltage the filters assume over a tick."""
     if params.voltage == "start":
         return TAKE_START
     return TAKE_PARABOLA if context.analogue and params.voltage == "parabola" else TAKE_MIDDLE
 
 
-def gaussian(residual: float, covariance: float) -> float:
-    """Return the logarithm of the normal density."""
-    return -0.5 * (residual * residual / covariance + math.log(2.0 * math.pi * covariance))
-
-
 def shuttle_memory(context: Context) -> float:
-    """Return what a mean with the memory of the shuttle, 2m/beta or a cycle, keeps from sample to sample."""
+    """Return the share that a mean keeps from sample to sample if its memory is the shuttle's, 2m/beta or a cycle."""
     device = context.device
     cycle = 2.0 * math.pi / device.natural_frequency
     lasting = max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
@@ -178,17 +149,17 @@ def shuttle_memory(context: Context) -> float:
 
 
 def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatArray, FloatArray]:
-    r"""Return the transition over some ticks, and the covariance that the noise of each leaves behind them.
+    r"""Return the transition over some ticks, and the covariance that their noise has caused at the end of them.
 
     .. math:: \Phi=\varphi^N,\qquad W=\sum_{j=0}^{N-1}\varphi^jw(\varphi^T)^j
 
-    The noise is another at every tick; that of a voltage held for all of them would be far more. The sum over twice as
-    many ticks is :math:`W+\Phi W\Phi^T`.
+    The noise is independent from tick to tick; a noise voltage held for all of them would cause far more. The sum over
+    twice as many ticks is :math:`W+\Phi W\Phi^T`.
 
     Parameters
     ----------
     tick, noise : array of shape (2, 2)
-        Transition of a tick, and the covariance of what noise does in it.
+        Transition of a tick, and the covariance that noise causes in it.
     ticks : int
         N.
     """
@@ -207,7 +178,7 @@ def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> 
     Parameters
     ----------
     phi, noise : array of shape (2, 2)
-        Transition between two samples, and the covariance of what noise does meanwhile.
+        Transition between two samples, and the covariance that noise causes between them.
     r : float
         Variance of a measurement, um^2.
     printed : bool

@@ -1,72 +1,19 @@
-"""Multiple-model estimation that only listens at the frequency of the drive."""
+"""Multiple-model estimation from the residuals at the frequency of the drive only."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.diagnose import window
-from core.diagnose.filters import (
-    COUNT,
-    DEPTH,
-    LANES,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    coasts,
-    filters_step,
-    informed,
-)
+from core.diagnose.filters import between_updates, filters_step, informed
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
-from core.diagnose.weights import floored, weigh
-
-FLOOR, LOG_FLOOR, CYCLES, DT, WINDOW, CAPACITY, LEAN = range(7)
-LOG, LIKELIHOOD, SLIDING = DEPTH, DEPTH + 1, DEPTH + 2
-RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 1, PROBABILITY + 4)
-
-
-def lock_in_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, correct, demodulate the residuals, weigh by what of them is at the tone."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    own = LANES + WIDTH * LANE
-    evidence = informed(p, s, w, io)
-    at = OWN + SLIDING * LANE
-    capacity = int(p[own + CAPACITY])
-    place = window.begin(s, at, capacity, p[own + WINDOW], p[own + CYCLES])
-    turn = window.angle(w, p[own + CYCLES], p[own + DT])
-    cosine = math.cos(turn)
-    sine = math.sin(turn)
-    along, across = window.leaning(p, own + LEAN, cosine, sine)
-    span = p[own + LEAN + window.SPAN]
-    half = 0.5 / p[own + WINDOW]
-    filters_step(p, s, w, io, n, RESIDUAL_TAP)
-    window.push(s, at, n, capacity, place, cosine, sine)
-    best = -math.inf
-    for i in range(n):
-        tone = window.tone(s, at, i, along, across, span)
-        w[io[TONE_TAP] + i] = tone
-        log = s[OWN + LOG * LANE + i]
-        if evidence:
-            log -= half * tone
-        s[OWN + LIKELIHOOD * LANE + i] = log
-        best = max(best, log)
-    weigh(
-        s,
-        OWN + LOG * LANE,
-        OWN + LIKELIHOOD * LANE,
-        w,
-        io[PROBABILITY],
-        n,
-        best,
-        p[own + FLOOR],
-        p[own + LOG_FLOOR],
-    )
+from core.diagnose.weights import floored, take_floored_softmax
+from core.elementary import cos, sin
+from core.ports import tap
+from core.record import Vector, vector
 
 
 class LockIn(KalmanBank):
@@ -75,13 +22,13 @@ class LockIn(KalmanBank):
     .. math:: T_k=b_k^TG^{-1}b_k,\quad b_k=\sum_W\frac{r_k}{\sqrt{\psi_k}}z,\quad G=\sum_W zz^T,\quad
         z=\binom{\cos\omega t}{\sin\omega t},\qquad\ell_k\leftarrow\ell_k-\frac{T_k}{2W}
 
-    A fault of the device moves the response at the tone, hum and noise stated wrongly do not. It needs a known tone
+    A fault of the device moves the response at the tone; hum and wrongly stated noise do not. It needs a known tone
     and is about a quarter of a window slower (the idea of Hanlon and Maybeck 2000, which the text cites and does not
     use).
     """
 
     title = "Residual-correlation bank (lock-in)"
-    taps = (*KalmanBank.taps, Port("tone", "1", "part of the residuals at the tone, 2 on average", each="hypotheses"))
+    lengths = ("window",)
     equations = (
         Equation(
             "tone",
@@ -100,31 +47,73 @@ class LockIn(KalmanBank):
         )
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
 
+    class Packed(window.Packed):
+        """Parameters of filters and window; floor under probabilities and its logarithm."""
+
+        probability_floor: float
+        log_floor: float
+
+    class State(window.State):
+        """Filters and window; logarithms of probabilities, and those of this sample."""
+
+        log: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
+
+    class Ports(KalmanBank.Ports):
+        """Ports of every bank, and the tone."""
+
+        tone: Vector = tap("1", "part of the residuals at the tone, 2 on average", each="hypotheses")
+
     evidence = r"-\frac{T_k}{2W}"
 
     @classmethod
     def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
-        """Return the evidence of a sample: what of the residuals is at the tone, spread over the window."""
+        """Return the evidence of a sample: the part of the residuals at the tone, spread over the window."""
         return -0.5 * tone / window.length(params, context)
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        own = [
-            *floored(params.probability_floor),
-            window.tone_hz(params, context) / 1e3,
-            context.dt_ms / context.every,
-            float(window.length(params, context)),
-            float(window.room(params)),
-            *window.lean(params, context, window.length(params, context)),
-        ]
-        return np.array(cls.filters(params, context) + own)
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """All filters at rest, all hypotheses alike, the window empty."""
-        n = len(params.hypotheses)
-        sliding = [0.0] * window.size(window.room(params))
-        return np.array(cls.at_rest(params, context, (-math.log(n), 0.0)) + sliding)
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p = cls.filters(cls.Packed.blank(), params, context)
+        window.fill(p, params, context, window.length(params, context), window.room(params))
+        p.probability_floor, p.log_floor = floored(params.probability_floor)
+        return p
 
-    step = lock_in_step
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """All filters at rest, all hypotheses alike, the window empty."""
+        s = cls.at_rest(cls.State.zeros(window.room(params)), params, context)
+        s.log[:] = -math.log(len(params.hypotheses))
+        return s
+
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict, correct, demodulate the residuals, weigh by their part at the tone."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        evidence = informed(p, s, x.measured)
+        place = window.begin(p, s)
+        turn = window.angle(p, x.tick)
+        cosine = cos(turn)
+        sine = sin(turn)
+        along, across = window.leaning(p, cosine, sine)
+        span = p.span
+        half = 0.5 / p.samples
+        filters_step(p, s, x, n)
+        window.push(s, n, place, cosine, sine)
+        best = -math.inf
+        for i in range(n):
+            tone = window.tone(s, i, along, across, span)
+            x.tone[i] = tone
+            log = s.log[i]
+            if evidence:
+                log -= half * tone
+            s.likelihood[i] = log
+            best = max(best, log)
+        take_floored_softmax(s.log, s.likelihood, x.probability, n, best, p.probability_floor, p.log_floor)

@@ -5,59 +5,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.diagnose import window
-from core.diagnose.filters import (
-    COUNT,
-    DEPTH,
-    LANES,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    coasts,
-    driven,
-    filters_step,
-)
+from core.diagnose.filters import between_updates, driven, filters_step
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
-from core.diagnose.weights import share_out
-
-CYCLES, DT, WINDOW, THRESHOLD, LEAN = range(5)
-LIKELIHOOD, SLIDING = DEPTH, DEPTH + 1
-ALARM = PROBABILITY + 1
-RESIDUAL_TAP, NIS_TAP, TONE_TAP = range(PROBABILITY + 2, PROBABILITY + 5)
-
-
-def lock_in_glr_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, correct, demodulate, compare with the threshold."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    own = LANES + WIDTH * LANE
-    at = OWN + SLIDING * LANE
-    capacity = int(p[own + WINDOW])
-    place = window.begin(s, at, capacity, p[own + WINDOW], p[own + CYCLES])
-    turn = window.angle(w, p[own + CYCLES], p[own + DT])
-    cosine = math.cos(turn)
-    sine = math.sin(turn)
-    along, across = window.leaning(p, own + LEAN, cosine, sine)
-    span = p[own + LEAN + window.SPAN]
-    threshold = p[own + THRESHOLD]
-    filters_step(p, s, w, io, n, RESIDUAL_TAP)
-    window.push(s, at, n, capacity, place, cosine, sine)
-    best = -math.inf
-    for i in range(n):
-        tone = window.tone(s, at, i, along, across, span)
-        w[io[TONE_TAP] + i] = tone
-        log = -0.5 * tone
-        if i == 0:
-            w[io[ALARM]] = 1.0 if tone > threshold and driven(p, s) else 0.0
-            log += 0.5 * threshold
-        s[OWN + LIKELIHOOD * LANE + i] = log
-        best = max(best, log)
-    share_out(s, OWN + LIKELIHOOD * LANE, w, io[PROBABILITY], n, best)
+from core.diagnose.weights import take_softmax
+from core.elementary import cos, sin
+from core.ports import output, tap
+from core.record import Vector, vector
 
 
 class LockInGlr(KalmanBank):
@@ -66,15 +22,14 @@ class LockInGlr(KalmanBank):
     .. math:: T_0=\max_{Y}2\ln\frac{f(r\mid Y)}{f(r\mid0)}=b_0^TG^{-1}b_0\sim\chi^2_2,\quad
         b_0=\sum_W\frac{r_0}{\sqrt{\psi_0}}z,\quad G=\sum_W zz^T,\quad z=\binom{\cos\omega t}{\sin\omega t}
 
-    Maximised over the unknown change of the phasor, so it needs no list of faults; the longer the window, the smaller
-    the change it sees and the later. The list only serves to name it: the threshold is the head start of the healthy
-    device.
+    The ratio is maximised over the unknown change of the phasor, so it needs no list of faults. A longer window detects
+    smaller changes, and detects them later. The list only serves to name the change: the threshold is the head start of
+    the healthy device.
     """
 
     sample_by_sample = False
     title = "Lock-in detector (GLR)"
-    outputs = (*KalmanBank.outputs, Port("alarm", "1", "1 while the healthy device does not explain the tone"))
-    taps = (*KalmanBank.taps, Port("tone", "1", "part of the residuals at the tone, 2 on average", each="hypotheses"))
+    lengths = ("window",)
     equations = (
         Equation(
             "ratio",
@@ -93,16 +48,57 @@ class LockInGlr(KalmanBank):
         tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
         threshold: float = parameter(23.0, "T at which there is an alarm", gt=0, le=1e6)
 
+    class Packed(window.Packed):
+        """Parameters of filters and window; T that raises the alarm."""
+
+        threshold: float
+
+    class State(window.State):
+        """Filters and window; logarithms of this sample."""
+
+        likelihood: Vector = vector(LANE)
+
+    class Ports(KalmanBank.Ports):
+        """Ports of every bank; alarm and tone."""
+
+        alarm: float = output("1", "1 while the healthy device does not explain the tone")
+        tone: Vector = tap("1", "part of the residuals at the tone, 2 on average", each="hypotheses")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        cycles = window.tone_hz(params, context) / 1e3
-        own = [cycles, context.dt_ms / context.every, float(params.window), params.threshold]
-        return np.array(cls.filters(params, context) + own + window.lean(params, context, params.window))
+        p = cls.filters(cls.Packed.blank(), params, context)
+        window.fill(p, params, context, params.window, params.window)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, the window empty."""
-        return np.array(cls.at_rest(params, context, (0.0,)) + [0.0] * window.size(params.window))
+        return cls.at_rest(cls.State.zeros(params.window), params, context)
 
-    step = lock_in_glr_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict, correct, demodulate, compare with the threshold."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        place = window.begin(p, s)
+        turn = window.angle(p, x.tick)
+        cosine = cos(turn)
+        sine = sin(turn)
+        along, across = window.leaning(p, cosine, sine)
+        span = p.span
+        threshold = p.threshold
+        filters_step(p, s, x, n)
+        window.push(s, n, place, cosine, sine)
+        best = -math.inf
+        for i in range(n):
+            tone = window.tone(s, i, along, across, span)
+            x.tone[i] = tone
+            log = -0.5 * tone
+            if i == 0:
+                x.alarm = 1.0 if tone > threshold and driven(p, s) else 0.0
+                log += 0.5 * threshold
+            s.likelihood[i] = log
+            best = max(best, log)
+        take_softmax(s.likelihood, x.probability, n, best)

@@ -5,79 +5,42 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, kernel, parameter
+from core.block import Context, Equation, parameter
 from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
-from core.diagnose.filters import (
-    COUNT,
-    DEPTH,
-    HALF_LOG,
-    LANES,
-    NIS,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    coasts,
-    filters_step,
-    informed,
-    judge,
-    take_logarithms,
-)
+from core.diagnose.filters import between_updates, filters_step, informed, judge, take_logarithms
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
-from core.diagnose.weights import floored, weigh
+from core.diagnose.weights import floored, take_floored_softmax
+from core.elementary import exp
+from core.kernel import kernel
+from core.ports import tap
+from core.record import Vector, vector
 
-LINEAR, FLOOR, LOG_FLOOR = range(3)
-"""Parameters of its own."""
-LOG, LIKELIHOOD, SEPARATION = DEPTH, DEPTH + 1, DEPTH + 2
-"""Lanes of its own; with linear arithmetic the first holds the probabilities themselves."""
-RESIDUAL_TAP, NIS_TAP, INFORMATION, UNEXCITED = range(PROBABILITY + 1, PROBABILITY + 5)
 TWO_PI_ROOT = math.sqrt(2.0 * math.pi)
 
 
 @kernel
-def multiply(s: Any, n: int, w: Any, probability: int, floor: float, evidence: bool) -> None:
-    """Normalise products of densities and probabilities; where nothing is left of them, keep what was."""
+def multiply(s: Mmae.State, probability: Vector, n: int, floor: float, evidence: bool) -> None:
+    """Normalise products of densities and probabilities; if all of them are 0, keep the last probabilities."""
     total = 0.0
     for i in range(n):
-        share = s[OWN + LOG * LANE + i]
+        share = s.weight[i]
         if evidence:
-            # a density times a probability, as printed: either may be too small for a number
-            density = math.exp(-0.5 * s[OWN + NIS * LANE + i])
-            share *= density / (TWO_PI_ROOT * math.exp(s[OWN + HALF_LOG * LANE + i]))
-        s[OWN + LIKELIHOOD * LANE + i] = share
+            # a density times a probability, as printed: either may underflow
+            density = exp(-0.5 * s.nis[i])
+            share *= density / (TWO_PI_ROOT * exp(s.half_log[i]))
+        s.likelihood[i] = share
         total += share
     if total > 0.0 and math.isfinite(total):
         after = 0.0
         for i in range(n):
-            share = max(s[OWN + LIKELIHOOD * LANE + i] / total, floor)
-            s[OWN + LOG * LANE + i] = share
+            share = max(s.likelihood[i] / total, floor)
+            s.weight[i] = share
             after += share
         for i in range(n):
-            s[OWN + LOG * LANE + i] /= after
+            s.weight[i] /= after
     for i in range(n):
-        w[probability + i] = s[OWN + LOG * LANE + i]
-
-
-def mmae_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict and correct every filter, then weigh the hypotheses."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    own = LANES + WIDTH * LANE
-    evidence = informed(p, s, w, io)
-    if filters_step(p, s, w, io, n, RESIDUAL_TAP):
-        take_logarithms(s, n)
-    at = io[PROBABILITY]
-    if p[own + LINEAR] == 0.0:
-        best = judge(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, n, evidence)
-        weigh(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
-    else:
-        multiply(s, n, w, at, p[own + FLOOR], evidence)
-    information = nearest_rival(p, s, OWN + SEPARATION * LANE, n, w, at)
-    w[io[INFORMATION]] = information
-    w[io[UNEXCITED]] = 1.0 if information < LEAST_INFORMATION else 0.0
+        probability[i] = s.weight[i]
 
 
 class Mmae(KalmanBank):
@@ -94,11 +57,6 @@ class Mmae(KalmanBank):
     """
 
     title = "Kalman bank (MMAE)"
-    taps = (
-        *KalmanBank.taps,
-        Port("information", "nat", "evidence per sample against the nearest rival of the winner"),
-        Port("unexcited", "1", "1 while the drive hardly tells the winner from its nearest rival"),
-    )
     equations = (
         Equation(
             "filter",
@@ -140,21 +98,71 @@ class Mmae(KalmanBank):
             "logarithmic", "what probabilities are kept as; linear as printed", equation="5.2.3.2.6", live=False
         )
 
+    class Packed(KalmanBank.Packed):
+        """Parameters of the filters; whether probabilities are stored as such, their floor and its logarithm."""
+
+        linear: float
+        probability_floor: float
+        log_floor: float
+
+    class State(KalmanBank.State):
+        """The filters; logarithms of probabilities (linear: probabilities); those of a sample; separations."""
+
+        weight: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
+        separation: Vector = vector(LANE)
+
+    class Ports(KalmanBank.Ports):
+        """Ports of every bank, and the evidence per sample."""
+
+        information: float = tap("nat", "evidence per sample against the nearest rival of the winner")
+        unexcited: float = tap("1", "1 while the drive hardly tells the winner from its nearest rival")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
+    def takes_steady_gains(cls, params: Any) -> bool:
+        """Say whether the gains are those in the limit."""
+        return bool(params.form == "steady")
+
+    @classmethod
+    def leaves_sensor_noise_out(cls, params: Any) -> bool:
+        """Say whether the residual covariance is that of the text, without R."""
+        return bool(params.residual_covariance == "printed")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        return np.array([*cls.filters(params, context), *cls.weighing(params)])
+        p = cls.filters(cls.Packed.blank(), params, context)
+        p.linear = params.arithmetic == "linear"
+        p.probability_floor, p.log_floor = floored(params.probability_floor)
+        return p
 
     @classmethod
-    def weighing(cls, params: Any) -> list[float]:
-        """Pack how probabilities are kept."""
-        return [float(params.arithmetic == "linear"), *floored(params.probability_floor)]
-
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike."""
+        s = cls.at_rest(cls.State.zeros(), params, context)
         n = len(params.hypotheses)
-        log = 1.0 / n if params.arithmetic == "linear" else -math.log(n)
-        return np.array(cls.at_rest(params, context, (log, 0.0, 0.0)))
+        s.weight[:] = 1.0 / n if params.arithmetic == "linear" else -math.log(n)
+        return s
 
-    step = mmae_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict and correct every filter, then weigh the hypotheses."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        evidence = informed(p, s, x.measured)
+        if filters_step(p, s, x, n):
+            take_logarithms(s, n)
+        if p.linear == 0.0:
+            best = judge(s, s.weight, s.likelihood, n, evidence)
+            take_floored_softmax(s.weight, s.likelihood, x.probability, n, best, p.probability_floor, p.log_floor)
+        else:
+            multiply(s, x.probability, n, p.probability_floor, evidence)
+        information = nearest_rival(p, s, s.separation, x.probability, n)
+        x.information = information
+        x.unexcited = 1.0 if information < LEAST_INFORMATION else 0.0

@@ -5,78 +5,17 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
-from core.diagnose.filters import (
-    COUNT,
-    COVARIANCE,
-    DEPTH,
-    HALF_LOG,
-    LANES,
-    MEASURED,
-    NIS,
-    OWN,
-    PROBABILITY,
-    RESIDUAL,
-    STARTED,
-    WIDTH,
-    coasts,
-    driven,
-    filter_step,
-    hand_over,
-)
+from core.block import Context, Equation, parameter
+from core.diagnose.filters import between_updates, driven, filter_step, hand_over
 from core.diagnose.hypothesis import Hypothesis
 from core.diagnose.kalman import FilterParams, KalmanBank
-from core.diagnose.lanes import LANE
-from core.diagnose.weights import floored, weigh
+from core.diagnose.weights import floored, take_floored_softmax
+from core.elementary import log
+from core.ports import output, tap
+from core.record import Vector, tail, vector
 
-FLOOR, LOG_FLOOR, MOVE_ABOVE, SPACING = range(4)
-LOG, LIKELIHOOD, CENTRE = DEPTH, DEPTH + 1, DEPTH + 2
-ESTIMATE = PROBABILITY + 1
-RESIDUAL_TAP, NIS_TAP = PROBABILITY + 2, PROBABILITY + 3
-
-
-def moving_bank_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Run the filter in the centre and its two neighbours; go where the evidence is."""
-    n = int(p[COUNT])
-    lane = max(n, LANE)
-    centre = int(s[OWN + CENTRE * lane])
-    if coasts(p, s, w, io, lane, centre - 1, centre + 2):
-        return
-    own = LANES + WIDTH * lane
-    z = w[io[MEASURED]]
-    first = s[STARTED] == 0.0
-    s[STARTED] = 1.0
-    seen = math.isfinite(z)
-    evidence = seen and driven(p, s)
-    low = centre - 1
-    best = -math.inf
-    for j in range(3):
-        i = low + j
-        if filter_step(p, s, i, lane, z, first, seen) != 0:
-            s[OWN + HALF_LOG * lane + i] = 0.5 * math.log(s[OWN + COVARIANCE * lane + i])
-        nis = s[OWN + NIS * lane + i]
-        w[io[RESIDUAL_TAP] + j] = s[OWN + RESIDUAL * lane + i]
-        w[io[NIS_TAP] + j] = nis
-        log = s[OWN + LOG * lane + i]
-        if evidence:
-            log += -0.5 * nis - s[OWN + HALF_LOG * lane + i]
-        s[OWN + LIKELIHOOD * lane + i] = log
-        best = max(best, log)
-    at = io[PROBABILITY]
-    logs = OWN + LOG * lane + low
-    weigh(s, logs, OWN + LIKELIHOOD * lane + low, w, at, 3, best, p[own + FLOOR], p[own + LOG_FLOOR])
-    half = n // 2
-    w[io[ESTIMATE]] = 1.0 + p[own + SPACING] * (low - half + w[at + 1] + 2.0 * w[at + 2])
-    step = 1 if w[at + 2] > p[own + MOVE_ABOVE] else -1 if w[at] > p[own + MOVE_ABOVE] else 0
-    if step != 0 and 1 <= centre + step <= n - 2:
-        # the one that comes in starts where its neighbour is
-        new = centre + 2 * step
-        edge = centre + step
-        hand_over(s, lane, edge, new)
-        s[OWN + LOG * lane + new] = p[own + LOG_FLOOR]
-        s[OWN + CENTRE * lane] = centre + step
+THREE = ("lower", "centre", "upper")
+"""The filters that run."""
 
 
 class MovingBank(KalmanBank):
@@ -90,14 +29,7 @@ class MovingBank(KalmanBank):
 
     sample_by_sample = False
     title = "Moving bank"
-    outputs = (
-        Port("probability", "1", "probability of the filter", labels=("lower", "centre", "upper")),
-        Port("estimate", "1", "estimated factor on the parameter"),
-    )
-    taps = (
-        Port("residual", "um", "measured minus predicted displacement", labels=("lower", "centre", "upper")),
-        Port("nis", "1", "normalised residual squared", labels=("lower", "centre", "upper")),
-    )
+    lengths = ("reach",)
     equations = (Equation("estimate", r"\hat f=\sum_kp_kf_k", "Maybeck and Hentz 1987"),)
 
     class Params(FilterParams):
@@ -113,23 +45,134 @@ class MovingBank(KalmanBank):
 
         @property
         def models(self) -> list[Hypothesis]:
-            """The whole bank; what is not positive is left at the smallest."""
-            steps = range(-self.reach, self.reach + 1)
+            """The whole bank; factors that would not be positive are set to the smallest one."""
             return [
                 Hypothesis(name=f"{self.follows}{i:+d}", **{self.follows: max(1.0 + self.spacing * i, self.spacing)})
-                for i in steps
+                for i in range(-self.reach, self.reach + 1)
             ]
 
+    class Packed(KalmanBank.Packed):
+        """Parameters of the filters for any number of models, which run one by one and need no common lane.
+
+        Then the floor under probabilities and its logarithm, the probability that moves the centre, the spacing of the
+        bank.
+        """
+
+        probability_floor: float
+        log_floor: float
+        move_above: float
+        spacing: float
+        phi11: Vector = tail()
+        phi12: Vector = tail()
+        phi21: Vector = tail()
+        phi22: Vector = tail()
+        noise11: Vector = tail()
+        noise12: Vector = tail()
+        noise22: Vector = tail()
+        gain1: Vector = tail()
+        gain2: Vector = tail()
+        psi: Vector = tail()
+        inverse_psi: Vector = tail()
+        tick11: Vector = tail()
+        tick12: Vector = tail()
+        tick21: Vector = tail()
+        tick22: Vector = tail()
+        push1: Vector = tail()
+        push2: Vector = tail()
+        middle1: Vector = tail()
+        middle2: Vector = tail()
+        end1: Vector = tail()
+        end2: Vector = tail()
+
+    class State(KalmanBank.State):
+        """All filters; the one in the centre; logarithms of probabilities of the three that run, and of this sample."""
+
+        centre: float
+        log: Vector = vector(3)
+        likelihood: Vector = vector(3)
+        x1: Vector = tail()
+        x2: Vector = tail()
+        p11: Vector = tail()
+        p12: Vector = tail()
+        p22: Vector = tail()
+        residual: Vector = tail()
+        nis: Vector = tail()
+        covariance: Vector = tail()
+        inverse: Vector = tail()
+        half_log: Vector = tail()
+        pushed1: Vector = tail()
+        pushed2: Vector = tail()
+
+    class Ports(KalmanBank.Ports):
+        """Measurement and voltage; the three filters, and the estimate."""
+
+        probability: Vector = output("1", "probability of the filter", labels=THREE)
+        estimate: float = output("1", "estimated factor on the parameter")
+        residual: Vector = tap("um", "measured minus predicted displacement", labels=THREE)
+        nis: Vector = tap("1", "normalised residual squared", labels=THREE)
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        own = [*floored(params.probability_floor), params.move_above, params.spacing]
-        return np.array(cls.filters(params, context, params.models) + own)
+        models = params.models
+        p = cls.filters(cls.Packed.blank(len(models)), params, context, models)
+        p.probability_floor, p.log_floor = floored(params.probability_floor)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, the nominal one in the centre."""
-        lanes = cls.at_rest(params, context, (-math.log(3.0), 0.0), count=2 * params.reach + 1)
-        return np.array([*lanes, float(params.reach)])
+        s = cls.at_rest(cls.State.zeros(len(params.models)), params, context)
+        s.centre = params.reach
+        s.log[:] = -math.log(3.0)
+        return s
 
-    step = moving_bank_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Run the filter in the centre and its two neighbours; move the centre if a neighbour is likelier."""
+        n = int(p.count)
+        centre = int(s.centre)
+        if between_updates(p, s, x, centre - 1, centre + 2):
+            return
+        z = x.measured
+        first = s.started == 0.0
+        s.started = 1.0
+        seen = math.isfinite(z)
+        evidence = seen and driven(p, s)
+        low = centre - 1
+        best = -math.inf
+        for j in range(3):
+            i = low + j
+            if filter_step(p, s, i, z, first, seen) != 0:
+                s.half_log[i] = 0.5 * log(s.covariance[i])
+            nis = s.nis[i]
+            x.residual[j] = s.residual[i]
+            x.nis[j] = nis
+            likelihood = s.log[j]
+            if evidence:
+                likelihood += -0.5 * nis - s.half_log[i]
+            s.likelihood[j] = likelihood
+            best = max(best, likelihood)
+        probability = x.probability
+        take_floored_softmax(s.log, s.likelihood, probability, 3, best, p.probability_floor, p.log_floor)
+        half = n // 2
+        x.estimate = 1.0 + p.spacing * (low - half + probability[1] + 2.0 * probability[2])
+        step = 1 if probability[2] > p.move_above else -1 if probability[0] > p.move_above else 0
+        if step != 0 and 1 <= centre + step <= n - 2:
+            # the new filter starts with the state of its neighbour
+            edge = centre + step
+            hand_over(s, edge, edge + step)
+            if step > 0:
+                s.log[0] = s.log[1]
+                s.log[1] = s.log[2]
+                s.log[2] = p.log_floor
+            else:
+                s.log[2] = s.log[1]
+                s.log[1] = s.log[0]
+                s.log[0] = p.log_floor
+            s.centre = edge

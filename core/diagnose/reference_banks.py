@@ -5,73 +5,43 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core import estimation
-from core.block import TICK, Context, Equation, FloatArray, parameter, settled
+from core.block import Context, Equation, parameter
 from core.diagnose.arx import (
-    COUNT,
-    LANES,
-    OWN,
-    PROBABILITY,
     SIZE,
-    WIDTH,
-    ArxBank,
     ArxParams,
-    gathers,
+    Estimator,
+    WeighedBank,
+    between_updates,
+    coefficients_of,
+    gather_voltage,
     judge,
     regress,
     unexplained,
 )
 from core.diagnose.hypothesis import assumed_noise
-from core.diagnose.weights import floored, weigh
+from core.diagnose.lanes import LANE
+from core.diagnose.weights import take_floored_softmax
+from core.estimation import diagonal, estimate
+from core.kernel import flush_tiny
 from core.noise import key, normal
-
-FORGETTING, LIMIT, FLOOR, LOG_FLOOR, NOISE, KEYS = range(6)
-H, G, PRODUCT, LOG = OWN, OWN + 4, OWN + 8, OWN + 12
-"""State: regressors of the device and of a record, scratch; then two lanes of logarithms, and the banks."""
-CLEAN1, CLEAN2, SEEN1, SEEN2, DEPTH = 14, 15, 16, 17, 18
-"""A bank: four coefficients, half a covariance, then its record: two samples as they are, two as measured."""
+from core.record import Records, Vector, several, vector
 
 
-def reference_banks_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Let every bank learn from its own record, and weigh it by what it makes of the device."""
-    if gathers(p, s, w, io):
-        return
-    n = int(p[COUNT])
-    own = LANES + WIDTH * n
-    z = regress(p, s, w, io, H)
-    first = LOG + 2 * n
-    forgetting = p[own + FORGETTING]
-    best = -math.inf
-    for i in range(n):
-        bank = first + DEPTH * i
-        best = max(best, judge(p, s, w, io, LOG, i, n, unexplained(s, z, H, bank)))
-        # its own sub-system under the same voltage, as its own sensor would see it
-        at = LANES + i
-        clean = (
-            s[H] * p[at] + s[H + 1] * p[at + n] - s[bank + CLEAN1] * p[at + 2 * n] - s[bank + CLEAN2] * p[at + 3 * n]
-        )
-        seen = clean + p[own + NOISE] * normal(p[own + KEYS + i], w[TICK])
-        s[G] = s[H]
-        s[G + 1] = s[H + 1]
-        s[G + 2] = -s[bank + SEEN1]
-        s[G + 3] = -s[bank + SEEN2]
-        error = unexplained(s, seen, G, bank)
-        estimation.least_squares(s, bank, bank + SIZE, G, PRODUCT, SIZE, error, forgetting, forgetting, p[own + LIMIT])
-        s[bank + CLEAN2] = s[bank + CLEAN1]
-        s[bank + CLEAN1] = settled(clean)
-        s[bank + SEEN2] = s[bank + SEEN1]
-        s[bank + SEEN1] = seen
-    weigh(s, LOG, LOG + n, w, io[PROBABILITY], n, best, p[own + FLOOR], p[own + LOG_FLOOR])
+class Bank(Estimator):
+    """An estimator and its own record: two true samples and two measured ones."""
+
+    clean1: float
+    clean2: float
+    seen1: float
+    seen2: float
 
 
-class ReferenceBanks(ArxBank):
+class ReferenceBanks(WeighedBank):
     r"""Each bank identifies a sub-system of its own, which runs beside the device, and is tried on the device.
 
     .. math:: \hat\theta_k\ \text{from}\ (u,z_k),\qquad r_k=z-h^T\hat\theta_k
 
-    The records never change, so the forgetting factor has hardly anything to do with the verdict.
+    The records never change, so the forgetting factor hardly affects the verdict.
     """
 
     title = "Self-tuning banks with records of their own"
@@ -92,21 +62,66 @@ class ReferenceBanks(ArxBank):
         )
         trace_limit: float = parameter(1e10, "trace beyond which the covariance stays as it is", gt=0, le=1e100)
 
+    class Packed(WeighedBank.Packed):
+        """Forgetting factor, limit of the covariances, noise of the records and the key of each."""
+
+        forgetting: float
+        trace_limit: float
+        noise_um: float
+        keys: Vector = vector(LANE)
+
+    class State(WeighedBank.State):
+        """Regressor of a record, scratch, and the banks."""
+
+        g: Vector = vector(SIZE)
+        product: Vector = vector(SIZE)
+        banks: Records[Bank] = several(LANE)
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        noise = params.sensor_noise_um or assumed_noise(context)
-        own = [params.forgetting, params.trace_limit, *floored(params.probability_floor), noise]
-        keys = [key(context.seed, f"diagnose.record.{i}") for i in range(len(params.hypotheses))]
-        return np.array(cls.equations_of(params, context) + own + keys)
+        p = cls.Packed.blank()
+        cls.fill_bank(p, params, context)
+        p.noise_um = params.sensor_noise_um or assumed_noise(context)
+        for i in range(len(params.hypotheses)):
+            p.keys[i] = key(context.seed, f"diagnose.record.{i}")
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Every bank at its hypothesis, every record at rest."""
-        n = len(params.hypotheses)
-        lanes = np.array(cls.equations_of(params, context)[LANES:]).reshape(WIDTH, n)
-        covariance = estimation.diagonal(SIZE, params.initial_covariance)
-        banks = [value for i in range(n) for value in (*lanes[:SIZE, i], *covariance, 0.0, 0.0, 0.0, 0.0)]
-        return np.array([0.0] * LOG + [-math.log(n)] * n + [0.0] * n + banks)
+        s = cls.State.zeros()
+        cls.fill_alike(s, params)
+        for i, theta in enumerate(coefficients_of(params, context)):
+            s.banks[i].theta[:] = theta
+            s.banks[i].covariance[:] = diagonal(SIZE, params.initial_covariance)
+        return s
 
-    step = reference_banks_step
+    @staticmethod
+    def step(p: Packed, s: State, x: WeighedBank.Ports) -> None:
+        """Let every bank learn from its own record, and weigh it by its prediction of the device."""
+        gather_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        n = int(p.count)
+        z = regress(p, s, x)
+        best = -math.inf
+        for i in range(n):
+            bank = s.banks[i]
+            best = max(best, judge(p, s, x, i, unexplained(bank.theta, s.h, z)))
+            # the bank's sub-system under the same voltage, as its own sensor would measure it
+            clean = s.h[0] * p.b0[i] + s.h[1] * p.b1[i] - bank.clean1 * p.a1[i] - bank.clean2 * p.a2[i]
+            seen = clean + p.noise_um * normal(p.keys[i], x.tick)
+            s.g[0] = s.h[0]
+            s.g[1] = s.h[1]
+            s.g[2] = -bank.seen1
+            s.g[3] = -bank.seen2
+            error = unexplained(bank.theta, s.g, seen)
+            estimate(
+                bank.theta, bank.covariance, s.g, s.product, SIZE, error, p.forgetting, p.forgetting, p.trace_limit
+            )
+            bank.clean2 = bank.clean1
+            bank.clean1 = flush_tiny(clean)
+            bank.seen2 = bank.seen1
+            bank.seen1 = seen
+        take_floored_softmax(s.log, s.likelihood, x.probability, n, best, p.floor, p.log_floor)

@@ -1,72 +1,20 @@
-"""Performance regions: how far the shuttle is from where a healthy one would be."""
+"""Performance regions, by the distance of the shuttle from the motion of a healthy one."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Block, BlockParams, Context, Equation, FloatArray, Oscillator, Port, parameter, settled
+from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
 from core.diagnose import window
 from core.diagnose.hypothesis import lacking
-from core.voltage import (
-    APPLIED_PORTS,
-    END1,
-    END2,
-    MIDDLE1,
-    MIDDLE2,
-    PHI11,
-    PHI12,
-    PHI21,
-    PHI22,
-    TICK_SIZE,
-    moved,
-    pack_tick,
-)
+from core.kernel import flush_tiny
+from core.ports import output
+from core.record import Record
+from core.voltage import ObservedPorts, Tick, moves, tick_of
 
-STATIC, EVERY, WINDOW, DEGRADED_AT, UNACCEPTABLE_AT, DANGER_AT, DANGER_UM = range(TICK_SIZE, TICK_SIZE + 7)
-STARTED, X, V, ERROR, POWER, SAMPLES = range(6)
-MEASURED, APPLIED, REGION, LOSS = 0, 1, 1 + len(APPLIED_PORTS), 2 + len(APPLIED_PORTS)
-REQUIRED, DEGRADED, UNACCEPTABLE, DANGER = range(4)
+REQUIRED, DEGRADED, UNACCEPTABLE, DANGER = 0.0, 1.0, 2.0, 3.0
 REGIONS = ("required performance", "degraded performance", "unacceptable performance", "danger")
-
-
-def regions_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance the healthy device over a tick, compare over a period, say where that is."""
-    y = w[io[MEASURED]]
-    if s[STARTED] != 0.0:
-        u, middle, end = moved(w, io, APPLIED)
-        rest = p[STATIC] * u
-        x = s[X] - rest
-        v = s[V]
-        more_x = p[MIDDLE1] * middle + p[END1] * end
-        more_v = p[MIDDLE2] * middle + p[END2] * end
-        s[X] = settled(p[PHI11] * x + p[PHI12] * v + rest + more_x)
-        s[V] = settled(p[PHI21] * x + p[PHI22] * v + more_v)
-    else:
-        s[STARTED] = 1.0
-        w[io[REGION]] = 0.0
-        w[io[LOSS]] = 0.0
-    if not math.isfinite(y) or (p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0):
-        return
-    error = y - s[X]
-    s[ERROR] += error * error
-    s[POWER] += s[X] * s[X]
-    s[SAMPLES] += 1.0
-    if s[SAMPLES] >= p[WINDOW]:
-        loss = math.sqrt(s[ERROR] / s[POWER]) if s[POWER] > 0.0 else 0.0
-        s[ERROR] = 0.0
-        s[POWER] = 0.0
-        s[SAMPLES] = 0.0
-        w[io[LOSS]] = loss
-        region = 0.0
-        for i in range(3):
-            if loss >= p[DEGRADED_AT + i]:
-                region = 1.0 + i
-        w[io[REGION]] = region
-    if abs(y) > p[DANGER_UM]:
-        w[io[REGION]] = 3.0
 
 
 class Regions(Block):
@@ -80,14 +28,6 @@ class Regions(Block):
 
     every_tick = True
     title = "Performance regions"
-    inputs = (
-        Port("measured", "um", "measured displacement", source="sensor.displacement"),
-        *APPLIED_PORTS,
-    )
-    outputs = (
-        Port("region", "1", "0 required, 1 degraded, 2 unacceptable, 3 danger"),
-        Port("loss", "1", "rms distance from the healthy motion over its rms"),
-    )
     equations = (Equation("loss", r"J=\mathrm{rms}(y-y_0)/\mathrm{rms}(y_0)", "5.1.5"),)
 
     class Params(BlockParams):
@@ -109,19 +49,82 @@ class Regions(Block):
         """Refuse plants without mass or spring."""
         return lacking(device)
 
+    class Packed(Record):
+        """The healthy device over a tick and at rest, ticks between two samples, samples of a window, and limits."""
+
+        tick: Tick
+        static_gain: float
+        every: float
+        window: float
+        degraded_above: float
+        unacceptable_above: float
+        danger_above: float
+        danger_um: float
+
+    class State(Record):
+        """Whether it has run, the healthy motion; sums of squares of the error and of that motion, and their count."""
+
+        started: float
+        x: float
+        v: float
+        error: float
+        power: float
+        samples: float
+
+    class Ports(ObservedPorts):
+        """The region, and the loss of performance."""
+
+        region: float = output("1", "0 required, 1 degraded, 2 unacceptable, 3 danger")
+        loss: float = output("1", "rms distance from the healthy motion over its rms")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         device = context.device
-        tick = pack_tick(device, device.force, context.dt_ms / context.every, context.analogue)
         period = 1e3 / (window.tone_hz(params, context) * context.dt_ms)
-        limits = [params.degraded_above, params.unacceptable_above, params.danger_above, params.danger_um]
-        samples = float(params.window or max(2, round(period)))
-        return np.array([*tick, device.static_gain, context.every, samples, *limits])
+        p = cls.Packed.blank()
+        p.tick = tick_of(device, device.force, context.dt_ms / context.every, context.analogue)
+        p.static_gain = device.static_gain
+        p.every = context.every
+        p.window = params.window or max(2, round(period))
+        return p
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """At rest, nothing compared."""
-        return np.zeros(6)
-
-    step = regions_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Advance the healthy device over a tick, compare over a period, tell the region."""
+        y = x.measured
+        if s.started != 0.0:
+            u, middle, end = moves(x)
+            rest = p.static_gain * u
+            free = s.x - rest
+            v = s.v
+            more_x = p.tick.middle1 * middle + p.tick.end1 * end
+            more_v = p.tick.middle2 * middle + p.tick.end2 * end
+            s.x = flush_tiny(p.tick.phi11 * free + p.tick.phi12 * v + rest + more_x)
+            s.v = flush_tiny(p.tick.phi21 * free + p.tick.phi22 * v + more_v)
+        else:
+            s.started = 1.0
+            x.region = REQUIRED
+            x.loss = 0.0
+        if not math.isfinite(y) or (p.every != 1.0 and x.tick % p.every != 0.0):
+            return
+        error = y - s.x
+        s.error += error * error
+        s.power += s.x * s.x
+        s.samples += 1.0
+        if s.samples >= p.window:
+            loss = math.sqrt(s.error / s.power) if s.power > 0.0 else 0.0
+            s.error = 0.0
+            s.power = 0.0
+            s.samples = 0.0
+            x.loss = loss
+            region = REQUIRED
+            if loss >= p.degraded_above:
+                region = DEGRADED
+            if loss >= p.unacceptable_above:
+                region = UNACCEPTABLE
+            if loss >= p.danger_above:
+                region = DANGER
+            x.region = region
+        if abs(y) > p.danger_um:
+            x.region = DANGER

@@ -5,60 +5,24 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, kernel, parameter
-from core.diagnose.filters import (
-    COUNT,
-    DEPTH,
-    LANES,
-    OWN,
-    PROBABILITY,
-    WIDTH,
-    coasts,
-    filters_step,
-    hand_over,
-    informed,
-    judge,
-    take_logarithms,
-)
+from core.block import Context, Equation, parameter
+from core.diagnose.filters import between_updates, filters_step, hand_over, informed, judge, take_logarithms
 from core.diagnose.kalman import KalmanBank, KalmanParams
-from core.diagnose.lanes import LANE
-from core.diagnose.weights import floored, likeliest, weigh
-
-FLOOR, LOG_FLOOR, INTERVAL, SURE, HOPELESS = range(5)
-LOG, LIKELIHOOD, COUNTER = DEPTH, DEPTH + 1, DEPTH + 2
-RESIDUAL_TAP, NIS_TAP = PROBABILITY + 1, PROBABILITY + 2
+from core.diagnose.lanes import LANE, Filters
+from core.diagnose.weights import floored, take_floored_softmax, winner_of
+from core.kernel import kernel
+from core.record import Vector, vector
 
 
 @kernel
-def reseed(s: Any, n: int, w: Any, probability: int, sure: float, hopeless: float) -> None:
-    """Copy the state of a sure winner into the filters of those without hope."""
-    winner = likeliest(w, probability, n)
-    if w[probability + winner] <= sure:
+def reseed(s: Filters, probability: Vector, n: int, sure: float, hopeless: float) -> None:
+    """Copy the state of a sure winner into the filters of hopeless hypotheses."""
+    winner = winner_of(probability, n)
+    if probability[winner] <= sure:
         return
     for i in range(n):
-        if w[probability + i] < hopeless:
-            hand_over(s, LANE, winner, i)
-
-
-def reseed_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, correct, weigh; now and then seed anew."""
-    n = int(p[COUNT])
-    if coasts(p, s, w, io, LANE, 0, n):
-        return
-    own = LANES + WIDTH * LANE
-    evidence = informed(p, s, w, io)
-    if filters_step(p, s, w, io, n, RESIDUAL_TAP):
-        take_logarithms(s, n)
-    best = judge(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, n, evidence)
-    at = io[PROBABILITY]
-    weigh(s, OWN + LOG * LANE, OWN + LIKELIHOOD * LANE, w, at, n, best, p[own + FLOOR], p[own + LOG_FLOOR])
-    counter = OWN + COUNTER * LANE
-    s[counter] += 1.0
-    if s[counter] >= p[own + INTERVAL]:
-        s[counter] = 0.0
-        reseed(s, n, w, at, p[own + SURE], p[own + HOPELESS])
+        if probability[i] < hopeless:
+            hand_over(s, winner, i)
 
 
 class Reseed(KalmanBank):
@@ -67,8 +31,8 @@ class Reseed(KalmanBank):
     .. math:: p_j>p_{sure},\;p_k<p_{hopeless}\;\Rightarrow\;x_k\leftarrow x_j,\;P_k\leftarrow P_j\quad
         \text{every } M \text{ samples}
 
-    A filter with little noise is a simulator: after a jump the right one still carries the motion of a device that
-    was not there. Seeding cures that without pseudo-noise.
+    A filter with little noise is almost a simulator: after a jump, the filter of the true hypothesis still carries the
+    motion of a device that did not exist. Seeding cures that without pseudo-noise.
     """
 
     title = "Re-seeding bank"
@@ -85,16 +49,53 @@ class Reseed(KalmanBank):
         sure: float = parameter(0.9, "probability above which a winner passes on its state", ge=0.5, le=1)
         hopeless: float = parameter(0.01, "probability below which a filter is given it", ge=0, le=0.5)
 
+    class Packed(KalmanBank.Packed):
+        """Parameters of the filters; floor under probabilities and its logarithm, period and limits of a seeding."""
+
+        probability_floor: float
+        log_floor: float
+        interval: float
+        sure: float
+        hopeless: float
+
+    class State(KalmanBank.State):
+        """The filters; logarithms of probabilities, those of this sample, samples since the last seeding."""
+
+        log: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
+        counter: float
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def floor(cls, params: Any) -> float:
+        """Return the smallest probability."""
+        return float(params.probability_floor)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        own = [*floored(params.probability_floor), float(params.interval), params.sure, params.hopeless]
-        return np.array(cls.filters(params, context) + own)
+        p = cls.filters(cls.Packed.blank(), params, context)
+        p.probability_floor, p.log_floor = floored(params.probability_floor)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike; the samples since the last seeding."""
-        n = len(params.hypotheses)
-        return np.array([*cls.at_rest(params, context, (-math.log(n), 0.0)), 0.0])
+        s = cls.at_rest(cls.State.zeros(), params, context)
+        s.log[:] = -math.log(len(params.hypotheses))
+        return s
 
-    step = reseed_step
+    @staticmethod
+    def step(p: Packed, s: State, x: KalmanBank.Ports) -> None:
+        """Predict, correct, weigh; now and then seed anew."""
+        n = int(p.count)
+        if between_updates(p, s, x, 0, n):
+            return
+        evidence = informed(p, s, x.measured)
+        if filters_step(p, s, x, n):
+            take_logarithms(s, n)
+        best = judge(s, s.log, s.likelihood, n, evidence)
+        take_floored_softmax(s.log, s.likelihood, x.probability, n, best, p.probability_floor, p.log_floor)
+        s.counter += 1.0
+        if s.counter >= p.interval:
+            s.counter = 0.0
+            reseed(s, x.probability, n, p.sure, p.hopeless)

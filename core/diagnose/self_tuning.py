@@ -5,111 +5,67 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core import estimation
-from core.block import Context, Equation, FloatArray, Port, kernel, parameter, settled
+from core.block import Context, Equation, parameter
 from core.diagnose.arx import (
-    COUNT,
-    LANES,
-    OWN,
-    PROBABILITY,
     SIZE,
-    VARIANCE,
-    WIDTH,
     ArxBank,
     ArxParams,
+    between_updates,
     driven,
-    gathers,
+    gather_voltage,
+    predicted,
     regress,
-    said,
+    unexplained,
 )
-from core.diagnose.weights import share_out
+from core.diagnose.lanes import LANE
+from core.diagnose.weights import take_softmax
+from core.estimation import diagonal, entry, estimate, trace_of, triangle
+from core.kernel import flush_tiny, kernel
+from core.ports import tap
+from core.record import Vector, vector
 
-FORGETTING, MODE, STEP, GATE, LEAST, WINDOW, LIMIT, NOISE = range(8)
-"""Parameters of its own."""
-H, THETA, COVARIANCE, PRODUCT = OWN, OWN + SIZE, OWN + 2 * SIZE, OWN + 2 * SIZE + 10
-LAMBDA, RATIO, WEIGHT, COST = OWN + 3 * SIZE + 10, OWN + 3 * SIZE + 11, OWN + 3 * SIZE + 12, OWN + 3 * SIZE + 13
-"""State: regressor, estimate, covariance, scratch; forgetting, R, gamma; then costs and logarithms of the models."""
-RESIDUAL_TAP, NIS_TAP, ESTIMATE_TAP, FORGETTING_TAP, RATIO_TAP, TRACE_TAP = range(PROBABILITY + 1, PROBABILITY + 7)
-FIXED, DIRECT, STEPPED, PRINTED = range(4)
 MODES = ("fixed", "direct", "stepped", "printed")
+FIXED, DIRECT, STEPPED, PRINTED = 0.0, 1.0, 2.0, 3.0
+"""Codes of the ways to set the forgetting factor."""
 HUGE = 1e300
-"""Where the printed recursion, which grows beyond all bounds, is stopped so that it stays a number."""
+"""Bound of the printed recursion, which would grow without end."""
 
 
 @kernel
-def quadratic(s: Any, covariance: int, h: int, n: int) -> float:
+def quadratic(covariance: Vector, h: Vector, n: int) -> float:
     """Return h' P h."""
     total = 0.0
     for i in range(n):
-        row = 0.5 * s[covariance + estimation.entry(i, i)] * s[h + i]
+        row = 0.5 * covariance[entry(i, i)] * h[i]
         for j in range(i):
-            row += s[covariance + estimation.entry(i, j)] * s[h + j]
-        total += 2.0 * row * s[h + i]
+            row += covariance[entry(i, j)] * h[j]
+        total += 2.0 * row * h[i]
     return float(total)
 
 
 @kernel
-def adapted(p: Any, own: int, s: Any, innovation: float, gain: float) -> float:
+def adapted(p: SelfTuning.Packed, s: SelfTuning.State, innovation: float, gain: float) -> float:
     """Return the forgetting factor for this sample."""
-    before = s[LAMBDA]
-    normalised = innovation * innovation / p[own + NOISE]
-    mode = p[own + MODE]
-    if mode == 1.0:
+    before = s.forgetting
+    normalised = innovation * innovation / p.noise_variance
+    if p.mode == DIRECT:
         # R over a short window, and the factor that makes 1 + h'eta h/lambda equal to it
-        share = 1.0 / p[own + WINDOW]
-        s[RATIO] = settled((1.0 - share) * s[RATIO] + share * normalised)
-        if s[RATIO] <= p[own + GATE]:
+        share = 1.0 / p.innovation_window
+        s.ratio = flush_tiny((1.0 - share) * s.ratio + share * normalised)
+        if s.ratio <= p.gate:
             return 1.0
-        return float(min(max(gain / max(s[RATIO] - 1.0, 1e-12), p[own + LEAST]), 1.0))
-    s[WEIGHT] = 1.0 + before * s[WEIGHT]
-    last = s[RATIO]
-    if mode == 2.0:
-        s[RATIO] = settled(((s[WEIGHT] - 1.0) * last + normalised) / s[WEIGHT])
+        return float(min(max(gain / max(s.ratio - 1.0, 1e-12), p.least_forgetting), 1.0))
+    s.weight = 1.0 + before * s.weight
+    last = s.ratio
+    if p.mode == STEPPED:
+        s.ratio = flush_tiny(((s.weight - 1.0) * last + normalised) / s.weight)
     else:
-        s[RATIO] = min((before * last + innovation * innovation) / (s[WEIGHT] * p[own + NOISE]), HUGE)
-    target = before * (1.0 + gain / before) / max(s[RATIO], 1e-300)
-    moved = before + (p[own + STEP] if target > before else -p[own + STEP] if target < before else 0.0)
-    if mode == 2.0:
-        return float(min(max(moved, p[own + LEAST]), 1.0))
+        s.ratio = min((before * last + innovation * innovation) / (s.weight * p.noise_variance), HUGE)
+    target = before * (1.0 + gain / before) / max(s.ratio, 1e-300)
+    moved = before + (p.forgetting_step if target > before else -p.forgetting_step if target < before else 0.0)
+    if p.mode == STEPPED:
+        return float(min(max(moved, p.least_forgetting), 1.0))
     return float(min(max(moved, 1e-3), 2.0))
-
-
-def self_tuning_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Estimate, adapt the forgetting, weigh every hypothesis by its cost over the same memory."""
-    if gathers(p, s, w, io):
-        return
-    n = int(p[COUNT])
-    own = LANES + WIDTH * n
-    z = regress(p, s, w, io, H)
-    innovation = z
-    for j in range(SIZE):
-        innovation -= s[H + j] * s[THETA + j]
-    forgetting = p[own + FORGETTING]
-    if p[own + MODE] != 0.0:
-        forgetting = adapted(p, own, s, innovation, quadratic(s, COVARIANCE, H, SIZE))
-    s[LAMBDA] = forgetting
-    estimation.least_squares(s, THETA, COVARIANCE, H, PRODUCT, SIZE, innovation, forgetting, forgetting, p[own + LIMIT])
-    best = -math.inf
-    evidence = driven(p, s)
-    for i in range(n):
-        error = z - said(p, s, H, i, n)
-        cost = s[COST + i]
-        if evidence:
-            cost = settled(forgetting * cost + error * error)
-        s[COST + i] = cost
-        log = -0.5 * cost / p[own + NOISE]
-        s[COST + n + i] = log
-        best = max(best, log)
-        w[io[RESIDUAL_TAP] + i] = error
-        w[io[NIS_TAP] + i] = error * error / p[LANES + VARIANCE * n + i]
-    share_out(s, COST + n, w, io[PROBABILITY], n, best)
-    for j in range(SIZE):
-        w[io[ESTIMATE_TAP] + j] = s[THETA + j]
-    w[io[FORGETTING_TAP]] = forgetting
-    w[io[RATIO_TAP]] = s[RATIO]
-    w[io[TRACE_TAP]] = estimation.trace(s, COVARIANCE, SIZE)
 
 
 class SelfTuning(ArxBank):
@@ -119,16 +75,16 @@ class SelfTuning(ArxBank):
         (\hat\theta-\theta_k)^T\eta^{-1}(\hat\theta-\theta_k)=J(\theta_k)-J(\hat\theta),\quad
         J(\theta)=\sum_j\lambda^{i-j}(z_j-h_j^T\theta)^2
 
-    Near in the metric of the information, that is: one sine and white noise pin down two numbers of the four, so
-    distance between coefficients means nothing. Costs over the same memory give the same likelihoods, and are what
-    is computed.
+    Nearness is measured in the metric of the information: one sine and white noise determine two numbers of the four,
+    so the plain distance between coefficients means nothing. Costs over the same memory give the same likelihoods, and
+    the bank computes these.
 
-    Voltage and measurement may pass 1/A(q) of the healthy device first, which makes the error of the equation white:
-    without it the method is for 10 to 20 kHz.
+    Voltage and measurement may pass 1/A(q) of the healthy device first, which makes the error of the equation white.
+    Without that filter the method works at 10 to 20 kHz.
 
-    The forgetting factor is fixed, or follows the innovations: ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
-    with R over a few samples, when R is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
-    a ramp that does not look at the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
+    The forgetting factor is fixed, or follows the innovations. ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
+    if R, taken over a few samples, is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
+    a ramp that ignores the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
     """
 
     sample_by_sample = False
@@ -138,13 +94,6 @@ class SelfTuning(ArxBank):
         "10 nm, it is right for 99 % of the samples at 2 kHz, 91 % at 1 kHz, 67 % at 500 Hz and 41 % at 200 Hz.",
         "With 50 nm of noise it is right for 96 % at 2 kHz and 39 % at 1 kHz, where it takes the healthy device for "
         "another three times in four; IMM is right for 92 % there.",
-    )
-    taps = (
-        *ArxBank.taps,
-        Port("estimate", "1", "estimated coefficients", labels=("b0", "b1", "a1", "a2")),
-        Port("forgetting", "1", "forgetting factor"),
-        Port("innovation_ratio", "1", "R: power of the innovations over that of the noise"),
-        Port("trace", "1", "trace of the covariance"),
     )
     equations = (
         Equation("difference equation", r"z_{i+1}=b_0u_i+b_1u_{i-1}-a_1z_i-a_2z_{i-1}", "5.3.3.1, ARX"),
@@ -198,29 +147,90 @@ class SelfTuning(ArxBank):
         )
         trace_limit: float = parameter(1e10, "trace beyond which the covariance stays as it is", gt=0, le=1e100)
 
+    class Packed(ArxBank.Packed):
+        """Forgetting and how it adapts, limit of the covariance, variance of the equation error."""
+
+        forgetting: float
+        mode: float
+        forgetting_step: float
+        gate: float
+        least_forgetting: float
+        innovation_window: float
+        trace_limit: float
+        noise_variance: float
+
+    class State(ArxBank.State):
+        """Estimate, covariance, scratch; forgetting factor, R and gamma; costs and logarithms of the models."""
+
+        theta: Vector = vector(SIZE)
+        covariance: Vector = vector(triangle(SIZE))
+        product: Vector = vector(SIZE)
+        forgetting: float
+        ratio: float
+        weight: float
+        cost: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
+
+    class Ports(ArxBank.Ports):
+        """The estimate and its forgetting factor."""
+
+        estimate: Vector = tap("1", "estimated coefficients", labels=("b0", "b1", "a1", "a2"))
+        forgetting: float = tap("1", "forgetting factor")
+        innovation_ratio: float = tap("1", "R: power of the innovations over that of the noise")
+        trace: float = tap("1", "trace of the covariance")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def filters_signals(cls, params: Any) -> bool:
+        """Say whether voltage and measurement pass the filter 1/A(q) of the healthy device."""
+        return bool(params.prefilter)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        packed = cls.equations_of(params, context)
-        noise = params.noise_variance or packed[LANES + VARIANCE * len(params.hypotheses)]
-        own = [
-            params.forgetting,
-            float(MODES.index(params.adaptation)),
-            params.forgetting_step,
-            params.gate,
-            params.least_forgetting,
-            params.innovation_window,
-            params.trace_limit,
-            noise,
-        ]
-        return np.array(packed + own)
+        p = cls.Packed.blank()
+        cls.fill_equations(p, params, context)
+        p.mode = float(MODES.index(params.adaptation))
+        p.noise_variance = params.noise_variance or p.variance[0]
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """No estimate, as good as no information; no costs."""
-        n = len(params.hypotheses)
-        covariance = estimation.diagonal(SIZE, params.initial_covariance)
-        start = [0.0] * (OWN + 2 * SIZE) + covariance + [0.0] * SIZE + [params.initial_forgetting, 0.0, 0.0]
-        return np.array(start + [0.0] * (2 * n))
+    def state(cls, params: Any, context: Context) -> State:
+        """No estimate and almost no information; no costs."""
+        s = cls.State.zeros()
+        s.covariance[:] = diagonal(SIZE, params.initial_covariance)
+        s.forgetting = params.initial_forgetting
+        return s
 
-    step = self_tuning_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Estimate, adapt the forgetting, weigh every hypothesis by its cost over the same memory."""
+        gather_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        n = int(p.count)
+        z = regress(p, s, x)
+        innovation = unexplained(s.theta, s.h, z)
+        forgetting = p.forgetting
+        if p.mode != FIXED:
+            forgetting = adapted(p, s, innovation, quadratic(s.covariance, s.h, SIZE))
+        s.forgetting = forgetting
+        estimate(s.theta, s.covariance, s.h, s.product, SIZE, innovation, forgetting, forgetting, p.trace_limit)
+        best = -math.inf
+        evidence = driven(p, s)
+        for i in range(n):
+            error = z - predicted(p, s.h, i)
+            cost = s.cost[i]
+            if evidence:
+                cost = flush_tiny(forgetting * cost + error * error)
+            s.cost[i] = cost
+            likelihood = -0.5 * cost / p.noise_variance
+            s.likelihood[i] = likelihood
+            best = max(best, likelihood)
+            x.residual[i] = error
+            x.nis[i] = error * error / p.variance[i]
+        take_softmax(s.likelihood, x.probability, n, best)
+        for j in range(SIZE):
+            x.estimate[j] = s.theta[j]
+        x.forgetting = forgetting
+        x.innovation_ratio = s.ratio
+        x.trace = trace_of(s.covariance, SIZE)

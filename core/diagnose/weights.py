@@ -2,50 +2,47 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from core.elementary import exp, log
+from core.kernel import SMALL, inlined
+from core.record import Vector
 
-from core.block import SMALL, inlined
-
-LEAST_LOG = math.log(SMALL)
+LEAST_LOG = log(SMALL)
 """Logarithm below which a share counts as nothing."""
 
 
 def floored(floor: float) -> list[float]:
-    """Pack a floor under probabilities and its logarithm; 0 is none, and then the logarithm is not used."""
-    return [floor, math.log(floor) if floor > 0.0 else 0.0]
+    """Pack a floor under probabilities and its logarithm; a floor of 0 means none, and its logarithm is not used."""
+    return [floor, log(floor) if floor > 0.0 else 0.0]
 
 
 @inlined
-def likeliest(w: Any, probability: int, n: int) -> int:
-    """Return the hypothesis with the largest probability, the first of equals."""
+def shrunk(logarithm: float) -> float:
+    """Return the number with this logarithm, or 0 for the smallest: a processor is ten times slower with underflow."""
+    return 0.0 if logarithm < LEAST_LOG else exp(logarithm)
+
+
+@inlined
+def winner_of(probability: Vector, n: int) -> int:
+    """Return the hypothesis with the largest probability, or the first of several with the same."""
     winner = 0
     for i in range(1, n):
-        if w[probability + i] > w[probability + winner]:
+        if probability[i] > probability[winner]:
             winner = i
     return winner
 
 
 @inlined
-def shrunk(log: float) -> float:
-    """Return the number with this logarithm, nothing for the smallest: a processor underflows ten times slower."""
-    return 0.0 if log < LEAST_LOG else math.exp(log)
-
-
-@inlined
-def weigh(
-    s: Any, log: int, likelihood: int, w: Any, probability: int, n: int, best: float, floor: float, log_floor: float
+def take_floored_softmax(
+    logs: Vector, likelihood: Vector, probability: Vector, n: int, best: float, floor: float, log_floor: float
 ) -> None:
     r"""Turn unnormalised logarithms into probabilities, :math:`p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})`.
 
     Parameters
     ----------
-    s : array
-        State that holds both lanes of logarithms.
-    log, likelihood : int
-        Where the logarithms go, normalised as before the floor, and where those of this sample stand.
-    w, probability
-        Signals, and where the probabilities go.
+    logs, likelihood : vectors
+        Where the logarithms go, normalised as before the floor, and the logarithms of this sample.
+    probability : vector
+        Where the probabilities go.
     n : int
         Number of hypotheses.
     best : float
@@ -55,31 +52,31 @@ def weigh(
     """
     total = 0.0
     for i in range(n):
-        share = shrunk(s[likelihood + i] - best)
-        w[probability + i] = share
+        share = shrunk(likelihood[i] - best)
+        probability[i] = share
         total += share
     after = 0.0
     inverse = 1.0 / total
     for i in range(n):
-        share = max(w[probability + i] * inverse, floor)
-        w[probability + i] = share
+        share = max(probability[i] * inverse, floor)
+        probability[i] = share
         after += share
-    shift = best + math.log(total)
+    shift = best + log(total)
     inverse = 1.0 / after
     for i in range(n):
-        share = w[probability + i]
+        share = probability[i]
         floored = floor > 0.0 and share == floor
-        s[log + i] = log_floor if floored else s[likelihood + i] - shift
-        w[probability + i] = share * inverse
+        logs[i] = log_floor if floored else likelihood[i] - shift
+        probability[i] = share * inverse
 
 
 @inlined
-def share_out(s: Any, likelihood: int, w: Any, probability: int, n: int, best: float) -> None:
-    """Turn unnormalised logarithms into probabilities that nothing remembers."""
+def take_softmax(likelihood: Vector, probability: Vector, n: int, best: float) -> None:
+    """Turn unnormalised logarithms into probabilities, and store no logarithms."""
     total = 0.0
     for i in range(n):
-        share = shrunk(s[likelihood + i] - best)
-        w[probability + i] = share
+        share = shrunk(likelihood[i] - best)
+        probability[i] = share
         total += share
     for i in range(n):
-        w[probability + i] /= total
+        probability[i] /= total

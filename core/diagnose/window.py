@@ -9,9 +9,9 @@ for a true and well tuned model, :math:`\nu=r/\sqrt\psi`. The sum of the squares
     D=\frac{\sin W\omega h}{\sin\omega h},
 
 with the angle :math:`\theta` in the middle of the window; over whole half periods :math:`D=0` and
-:math:`T_k=\tfrac2W|b_k|^2`. While the window fills, :math:`T_k` is less than it may be. Sums slide: what enters is
-added and what leaves is taken off; once per window each is exchanged for one summed anew, so that rounding never adds
-up.
+:math:`T_k=\tfrac2W|b_k|^2`. While the window fills, :math:`T_k` is less than it may be. The sums slide: each new sample
+is added and the oldest is subtracted. Once per window each sum is replaced by one formed anew, so that rounding errors
+never accumulate.
 """
 
 from __future__ import annotations
@@ -19,44 +19,76 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import TICK, Context, inlined, kernel
-from core.diagnose.filters import COVARIANCE, OWN, RESIDUAL
+from core.block import Context
+from core.diagnose.kalman import KalmanBank
 from core.diagnose.lanes import LANE
+from core.elementary import floor
+from core.kernel import inlined, kernel
+from core.record import Record, Records, Vector, tail, vector
 
-LENGTH, PLACE, TONE, HEAD = range(4)
-COSINE_SUM, SINE_SUM, POWER_SUM, COSINE_NEW, SINE_NEW, POWER_NEW, SUMS = range(7)
-"""Lanes of sums; then rings of cosines, of sines, and of lanes of normalised residuals."""
 MOST = 512
-"""Longest window that is not asked for."""
-ALONG, ACROSS, SPAN, LEAN = range(4)
-"""Packed parameters of the tone: D/W at the angle of the last sample, and W - D^2/W."""
+"""Longest window that the block chooses by itself."""
+
+
+class Packed(KalmanBank.Packed):
+    """Parameters of the filters; tone, tick, samples of the window and room for them; D/W at the last sample's angle.
+
+    ``span`` is W - D^2/W.
+    """
+
+    cycles_per_ms: float
+    tick_ms: float
+    samples: float
+    capacity: float
+    along: float
+    across: float
+    span: float
+
+
+class Sample(Record):
+    """Cosine, sine, and the normalised residuals of all models."""
+
+    cosine: float
+    sine: float
+    residual: Vector = vector(LANE)
+
+
+class State(KalmanBank.State):
+    """The filters; samples and tone of the window, place of the next sample; sums, and new ones; the samples."""
+
+    samples: float
+    place: float
+    tone: float
+    cosine_sum: Vector = vector(LANE)
+    sine_sum: Vector = vector(LANE)
+    power_sum: Vector = vector(LANE)
+    cosine_new: Vector = vector(LANE)
+    sine_new: Vector = vector(LANE)
+    power_new: Vector = vector(LANE)
+    ring: Records[Sample] = tail()
 
 
 def tone_hz(params: Any, context: Context) -> float:
-    """Return the tone: given, or that of the reference, or the resonance."""
+    """Return the given tone, or that of the reference, or the resonance."""
     return float(params.tone_hz or context.tone_hz or 1e3 * context.device.natural_frequency / (2.0 * math.pi))
 
 
 def length(params: Any, context: Context) -> int:
-    """Return the length of the window: given, or one period of the tone, as far as there is room."""
+    """Return the given length of the window, or one period of the tone, as far as there is room."""
     period = 1e3 / (tone_hz(params, context) * context.dt_ms)
     return params.window or min(max(2, round(period)), MOST)
 
 
 def room(params: Any) -> int:
-    """Return how many samples there is room for."""
+    """Return the number of samples the window has room for."""
     return params.window or MOST
 
 
-def size(capacity: int) -> int:
-    """Return how many numbers a window takes."""
-    return HEAD + SUMS * LANE + (2 + LANE) * capacity
+def lean(params: Any, context: Context, samples: int) -> tuple[float, float, float]:
+    """Return the deviation of the sums of squares and products of cosine and sine from those over whole half periods.
 
-
-def lean(params: Any, context: Context, samples: int) -> list[float]:
-    """Pack by how much the squares and products of cosine and sine over the window are not those of whole half periods.
-
-    Where they are nearly dependent only the larger direction counts: one degree of freedom, which is conservative.
+    If cosine and sine are nearly dependent, only the larger direction counts: one degree of freedom, which is
+    conservative.
     """
     cycles = tone_hz(params, context) / 1e3 * context.dt_ms
     step = 2.0 * math.pi * (cycles - math.floor(cycles))
@@ -68,88 +100,115 @@ def lean(params: Any, context: Context, samples: int) -> list[float]:
     span = samples * (1.0 - share * share)
     if abs(share) > 1.0 - 1e-6:
         share, span = -math.copysign(1.0, share), 4.0 * samples
-    return [share * math.cos(back), share * math.sin(back), span]
+    return share * math.cos(back), share * math.sin(back), span
+
+
+def fill(p: Packed, params: Any, context: Context, samples: int, capacity: int) -> None:
+    """Pack the tone and the window."""
+    p.cycles_per_ms = tone_hz(params, context) / 1e3
+    p.tick_ms = context.dt_ms / context.every
+    p.samples, p.capacity = samples, capacity
+    p.along, p.across, p.span = lean(params, context, samples)
 
 
 @kernel
-def begin(s: Any, at: int, capacity: int, window: float, tone: float) -> int:
-    """Return the place of this sample; a window of another length starts empty, and of another tone without a tone."""
-    sums = at + HEAD
-    rings = sums + SUMS * LANE
-    if s[at + LENGTH] != window:
-        for i in range(at, rings + (2 + LANE) * capacity):
-            s[i] = 0.0
-        s[at + LENGTH] = window
-    if s[at + TONE] != tone:
+def begin(p: Packed, s: State) -> int:
+    """Return the place of this sample; clear the window if its length changed, and its tone if that changed."""
+    capacity = int(p.capacity)
+    if s.samples != p.samples:
+        s.place = 0.0
+        s.tone = 0.0
         for i in range(LANE):
-            for row in (COSINE_SUM, SINE_SUM, COSINE_NEW, SINE_NEW):
-                s[sums + row * LANE + i] = 0.0
-        for i in range(rings, rings + 2 * capacity):
-            s[i] = 0.0
-        s[at + TONE] = tone
-    return int(s[at + PLACE])
+            s.power_sum[i] = 0.0
+            s.power_new[i] = 0.0
+        for place in range(capacity):
+            sample = s.ring[place]
+            for i in range(LANE):
+                sample.residual[i] = 0.0
+        clear_tone(s, capacity)
+        s.samples = p.samples
+    if s.tone != p.cycles_per_ms:
+        clear_tone(s, capacity)
+        s.tone = p.cycles_per_ms
+    return int(s.place)
+
+
+@kernel
+def clear_tone(s: State, capacity: int) -> None:
+    """Clear the sums and samples at the tone."""
+    for i in range(LANE):
+        s.cosine_sum[i] = 0.0
+        s.sine_sum[i] = 0.0
+        s.cosine_new[i] = 0.0
+        s.sine_new[i] = 0.0
+    for place in range(capacity):
+        sample = s.ring[place]
+        sample.cosine = 0.0
+        sample.sine = 0.0
 
 
 @inlined
-def push(s: Any, at: int, n: int, capacity: int, place: int, cosine: float, sine: float) -> None:
-    """Let the normalised residuals of all models in, and the oldest out; go on to the next place.
+def push(s: State, n: int, place: int, cosine: float, sine: float) -> None:
+    """Add the normalised residuals of all models, subtract the oldest ones, and go on to the next place.
 
-    At the end of the window the sums are exchanged for those summed anew.
+    At the end of the window the sums are replaced by those formed anew.
     """
-    sums = at + HEAD
-    ring = sums + SUMS * LANE
-    rows = ring + 2 * capacity
-    old_cosine = s[ring + place]
-    old_sine = s[ring + capacity + place]
-    s[ring + place] = cosine
-    s[ring + capacity + place] = sine
-    row = rows + LANE * place
+    sample = s.ring[place]
+    old_cosine = sample.cosine
+    old_sine = sample.sine
+    sample.cosine = cosine
+    sample.sine = sine
+    row = sample.residual
     for i in range(n):
-        value = s[OWN + RESIDUAL * LANE + i] / math.sqrt(s[OWN + COVARIANCE * LANE + i])
-        old = s[row + i]
-        s[row + i] = value
+        value = s.residual[i] / math.sqrt(s.covariance[i])
+        old = row[i]
+        row[i] = value
         c = value * cosine
         d = value * sine
         e = value * value
-        s[sums + COSINE_SUM * LANE + i] += c - old * old_cosine
-        s[sums + SINE_SUM * LANE + i] += d - old * old_sine
-        s[sums + POWER_SUM * LANE + i] += e - old * old
-        s[sums + COSINE_NEW * LANE + i] += c
-        s[sums + SINE_NEW * LANE + i] += d
-        s[sums + POWER_NEW * LANE + i] += e
+        s.cosine_sum[i] += c - old * old_cosine
+        s.sine_sum[i] += d - old * old_sine
+        s.power_sum[i] += e - old * old
+        s.cosine_new[i] += c
+        s.sine_new[i] += d
+        s.power_new[i] += e
     place += 1
-    if place >= s[at + LENGTH]:
+    if place >= s.samples:
         place = 0
-        for i in range(3 * LANE):
-            s[sums + i] = s[sums + COSINE_NEW * LANE + i]
-            s[sums + COSINE_NEW * LANE + i] = 0.0
-    s[at + PLACE] = place
+        for i in range(LANE):
+            s.cosine_sum[i] = s.cosine_new[i]
+            s.sine_sum[i] = s.sine_new[i]
+            s.power_sum[i] = s.power_new[i]
+            s.cosine_new[i] = 0.0
+            s.sine_new[i] = 0.0
+            s.power_new[i] = 0.0
+    s.place = place
 
 
 @inlined
-def leaning(p: Any, a: int, cosine: float, sine: float) -> tuple[float, float]:
+def leaning(p: Packed, cosine: float, sine: float) -> tuple[float, float]:
     """Return D/W times cosine and twice the sine of the doubled angle in the middle of the window."""
     c = cosine * cosine - sine * sine
     d = 2.0 * cosine * sine
-    return p[a + ALONG] * c + p[a + ACROSS] * d, 2.0 * (p[a + ALONG] * d - p[a + ACROSS] * c)
+    return p.along * c + p.across * d, 2.0 * (p.along * d - p.across * c)
 
 
 @inlined
-def tone(s: Any, at: int, i: int, along: float, across: float, span: float) -> float:
+def tone(s: State, i: int, along: float, across: float, span: float) -> float:
     """Return T of one model."""
-    c = s[at + HEAD + COSINE_SUM * LANE + i]
-    d = s[at + HEAD + SINE_SUM * LANE + i]
+    c = s.cosine_sum[i]
+    d = s.sine_sum[i]
     return 2.0 * (c * c + d * d - (along * (c * c - d * d) + across * (c * d))) / span  # type: ignore[no-any-return]
 
 
 @inlined
-def power(s: Any, at: int, i: int) -> float:
-    """Return S of one model, never less than nothing by rounding."""
-    return max(s[at + HEAD + POWER_SUM * LANE + i], 0.0)  # type: ignore[no-any-return]
+def power(s: State, i: int) -> float:
+    """Return S of one model, which rounding cannot make negative."""
+    return max(s.power_sum[i], 0.0)  # type: ignore[no-any-return]
 
 
 @kernel
-def angle(w: Any, cycles_per_ms: float, dt_ms: float) -> float:
+def angle(p: Packed, tick: float) -> float:
     """Return the angle of the tone at this tick."""
-    cycles = w[TICK] * dt_ms * cycles_per_ms
-    return float(2.0 * math.pi * (cycles - math.floor(cycles)))
+    cycles = tick * p.tick_ms * p.cycles_per_ms
+    return 2.0 * math.pi * (cycles - floor(cycles))

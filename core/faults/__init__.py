@@ -1,1 +1,1 @@
-"""Faults: what they change, how severity enters, where they show."""
+"""Faults: the changes they make, the effect of their severity, and the part they are seen on."""

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from core.block import Equation, Port, parameter
-from core.faults.fault import Fault, FaultParams, channel, scale_step
+from core.block import Equation, parameter
+from core.faults.fault import FaultParams, ScaleFault, effect, severity
+from core.ports import BlockPorts
 
 
-class AddedMass(Fault):
+class AddedMass(ScaleFault):
     r"""Mass on the shuttle, :math:`m\to m(1+s)`."""
 
     title = "Added mass"
     shows = "plate"
     changes = "mass of the shuttle; the resonance falls, the displacement at rest stays"
     suggested = 0.05
-    inputs = channel("mass_scale")
-    outputs = (Port("severity", "1", "added mass, share of nominal"),)
     equations = (Equation("effect", r"m\to m\,(1+s)", "5.2.4"),)
 
     class Params(FaultParams):
@@ -22,4 +21,8 @@ class AddedMass(Fault):
 
         severity: float = parameter(0.0, "added mass, share of nominal", "1", gt=-0.95, le=20)
 
-    step = scale_step
+    class Ports(BlockPorts):
+        """The mass."""
+
+        effect: float = effect("mass_scale")
+        severity: float = severity("1", "added mass, share of nominal")

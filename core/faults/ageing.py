@@ -2,33 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import TICK, Equation, Port, parameter
+from core.block import Equation, parameter
 from core.device.environment import ageing_ratio
-from core.faults.fault import Fault, FaultParams, channels, severity_at
-
-STIFFNESS, ELASTICITY, AGE, WEEKS = range(4)
-
-
-def ageing_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Stiffen every beam by what age takes of the displacement."""
-    weeks = severity_at(p, w[TICK])
-    w[io[WEEKS]] = weeks
-    if weeks != 0.0:
-        age = w[io[AGE]]
-        stiffer = ageing_ratio(age) / ageing_ratio(age + weeks)
-        w[io[STIFFNESS]] *= stiffer
-        w[io[ELASTICITY]] *= stiffer
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts, reads
+from core.record import Record
 
 
 class Ageing(Fault):
     r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less displacement at rest after four (3.1.3.2).
 
-    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. Only the end is the
-    text's; the exponential and its time constant of two weeks are assumed. So is that age changes the material of all
-    beams alike, as a modulus :math:`E\to E/r(t)`: the text measured along x alone. Stiffness sideways, in rotation and
-    cubic go with it, and pull-in by the bias with :math:`1/\sqrt r`.
+    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. The text gives only
+    the end; the exponential and its time constant of two weeks are assumed. It is also assumed that age changes the
+    material of all beams alike, as a modulus :math:`E\to E/r(t)`: the text measured along x alone. The stiffnesses
+    sideways, in rotation and cubic change with it, and pull-in by the bias with :math:`1/\sqrt r`.
     """
 
     title = "Ageing"
@@ -38,11 +25,6 @@ class Ageing(Fault):
         "sideways and in rotation too in the planar plant"
     )
     suggested = 4.0
-    inputs = (
-        *channels("stiffness_scale", "elasticity_scale"),
-        Port("age", "week", "age without the fault", source="environment.age"),
-    )
-    outputs = (Port("severity", "week", "age"),)
     equations = (
         Equation(
             "effect",
@@ -56,4 +38,20 @@ class Ageing(Fault):
 
         severity: float = parameter(0.0, "age", "week", ge=0, le=52)
 
-    step = ageing_step
+    class Ports(BlockPorts):
+        """The modulus of the beams, and their age."""
+
+        stiffness_scale: float = effect("stiffness_scale")
+        elasticity_scale: float = effect("elasticity_scale")
+        age: float = reads("environment.age", "week", "age without the fault")
+        severity: float = severity("week", "age")
+
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Ports) -> None:
+        """Stiffen every beam as the loss of displacement with age requires."""
+        weeks = severity_now(p, x.tick)
+        x.severity = weeks
+        if weeks != 0.0:
+            stiffer = ageing_ratio(x.age) / ageing_ratio(x.age + weeks)
+            x.stiffness_scale *= stiffer
+            x.elasticity_scale *= stiffer

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.device.frame import Damage
 from core.device.geometry import drawn
-from core.faults.fault import Fault, FaultParams
-from core.faults.structure import STRUCTURE, Bending, effects, packed, structure_step
+from core.faults.fault import FaultParams, severity
+from core.faults.structure import Bending, Effects, StructureFault, effects
 
 EXTENTS = {
     "end": (Damage(lost_ends=(2,)), Bending(10.0 / 9.4, 21.6 / 39.7, 0.0, 80.0, -3.5e10)),
@@ -18,7 +16,7 @@ EXTENTS = {
 }
 
 
-class BrokenTruss(Fault):
+class BrokenTruss(StructureFault):
     r"""A truss broken off at one end, or the whole truss of one side lost.
 
     One end leaves 0.83 of the stiffness (5/6 for stiff trusses), the whole truss 0.49. The displacement grows, by 1.205
@@ -32,8 +30,6 @@ class BrokenTruss(Fault):
         "plant only"
     )
     suggested = 1.0
-    inputs = STRUCTURE
-    outputs = (Port("severity", "1", "how far the truss is broken"),)
     equations = (
         Equation(
             "stiffness",
@@ -51,11 +47,12 @@ class BrokenTruss(Fault):
         severity: float = parameter(0.0, "how far the truss is broken", "1", ge=0, le=1)
         extent: Literal["end", "whole"] = parameter("end", "one end of a truss, or the whole truss of one side")
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity, profile and effects."""
-        common = super().pack(params, context)
-        whole = effects(drawn(context), *EXTENTS[params.extent]) if params.severity != 0.0 else [0.0] * 9
-        return np.array(packed(common, params.severity, whole))
+    class Ports(StructureFault.Ports):
+        """The suspension."""
 
-    step = structure_step
+        severity: float = severity("1", "how far the truss is broken")
+
+    @classmethod
+    def whole(cls, params: Any, context: Context) -> Effects:
+        """Return a share of the effects of a clean break."""
+        return effects(drawn(context), *EXTENTS[params.extent]).scaled(params.severity)

@@ -4,30 +4,14 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.device.geometry import drawn
 from core.device.lateral import lateral
-from core.faults.fault import SEVERITY, Fault, FaultParams, channels, severity_at
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
-STIFFER, DAMPER, TURNING, TURN, COMBS = range(5, 10)
-COMB = {"right": 1.0, "left": 2.0}
-
-
-def debris_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Add the spring of the particle, its drag, and a short when it conducts."""
-    severity = severity_at(p, w[0])
-    w[io[6]] = severity
-    if severity != 0.0:
-        share = severity / p[SEVERITY]
-        w[io[0]] *= 1.0 + share * p[STIFFER]
-        w[io[1]] *= 1.0 + share * p[DAMPER]
-        w[io[2]] *= 1.0 + share * p[TURNING]
-        w[io[3]] += share * p[TURN]
-        if p[COMBS] != 0.0:
-            w[io[4]] = float(int(w[io[4]]) | int(p[COMBS]))
-            w[io[5]] += severity
+COMBS = {"right": 1.0, "left": 2.0}
 
 
 class Debris(Fault):
@@ -43,8 +27,6 @@ class Debris(Fault):
         "plant only"
     )
     suggested = 0.1
-    inputs = channels("stiffness_scale", "damping_scale", "rotation_scale", "turn", "short", "other")
-    outputs = (Port("severity", "1", "stiffness of the particle, share of nominal"),)
     equations = (Equation("effect", r"U\to U+\tfrac12sk\,(x-y_d\theta)^2", "3.1.3.2, 5.1.2"),)
 
     class Params(FaultParams):
@@ -56,19 +38,50 @@ class Debris(Fault):
         conductive: bool = parameter(False, "whether it shorts the comb it is in")
         comb: Literal["right", "left"] = parameter("right", "which comb it is in, seen with +x to the right")
 
+    class Packed(PackedFault):
+        """Profile and severity, then the effects at full severity: added shares, a turn, the shorted combs."""
+
+        stiffness: float
+        damping: float
+        rotation: float
+        turn: float
+        shorted: float
+
+    class Ports(BlockPorts):
+        """The suspension, the damping, and the combs."""
+
+        stiffness_scale: float = effect("stiffness_scale")
+        damping_scale: float = effect("damping_scale")
+        rotation_scale: float = effect("rotation_scale")
+        turn: float = effect("turn")
+        short: float = effect("short")
+        other: float = effect("other")
+        severity: float = severity("1", "stiffness of the particle, share of nominal")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack severity, profile and effects: the spring as seen along x with the shuttle free to turn."""
         resists = 1e12 * lateral(drawn(context)).rotation_stiffness_nm
         spring = params.severity * context.device.stiffness
         turning = spring * params.place_um * params.place_um / resists
-        own = [
-            params.severity / (1.0 + turning),
-            params.damping,
-            turning,
-            spring * params.place_um / resists / (1.0 + turning),
-            COMB[params.comb] if params.conductive else 0.0,
-        ]
-        return np.array([*super().pack(params, context).tolist(), *own])
+        p: Debris.Packed = super().pack(params, context)
+        p.stiffness = params.severity / (1.0 + turning)
+        p.rotation = turning
+        p.turn = spring * params.place_um / resists / (1.0 + turning)
+        p.shorted = COMBS[params.comb] if params.conductive else 0.0
+        return p
 
-    step = debris_step
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Add the spring of the particle, its drag, and a short when it conducts."""
+        now = severity_now(p, x.tick)
+        x.severity = now
+        if now != 0.0:
+            share = now / p.severity
+            x.stiffness_scale *= 1.0 + share * p.stiffness
+            x.damping_scale *= 1.0 + share * p.damping
+            x.rotation_scale *= 1.0 + share * p.rotation
+            x.turn += share * p.turn
+            if p.shorted != 0.0:
+                x.short = float(int(x.short) | int(p.shorted))
+                x.other += now

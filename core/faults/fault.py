@@ -1,15 +1,15 @@
-"""What every fault shares: severity over time."""
+"""Base of the faults: severity over time."""
 
 from __future__ import annotations
 
-import math
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Protocol
 
-import numpy as np
+from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor
+from core.kernel import kernel
+from core.ports import output, reads
+from core.record import Record
 
-from core.block import Block, BlockParams, Context, FloatArray, Port, kernel, parameter
-
-KIND, SEVERITY, START, LENGTH, ON = range(5)
 STEP, RAMP, INTERMITTENT = 0.0, 1.0, 2.0
 KINDS = {"step": STEP, "ramp": RAMP, "intermittent": INTERMITTENT}
 
@@ -24,56 +24,85 @@ class Profile(BlockParams):
 
 
 class FaultParams(BlockParams):
-    """A fault as injected; severity 0 is bit for bit no fault."""
+    """An injected fault; with severity 0 the results are bit for bit those without the fault."""
 
     severity: float = parameter(0.0, "severity, a share of the nominal value", "1")
     profile: Profile = parameter(Profile(), "how the severity comes")
     start_tick: int = parameter(0, "tick of the injection", ge=0, live=False)
 
 
-class Fault(Block):
-    """A fault multiplies effect channels, or adds to them; ``shows`` names the part it is seen on."""
+class PackedFault(Record):
+    """Profile, severity, tick of the injection, ticks of the ramp or the period, ticks of it that are on."""
 
-    shows: ClassVar[str]
-    changes: ClassVar[str]
-    suggested: ClassVar[float] = 0.05
+    kind: float
+    severity: float
+    start_tick: float
+    length: float
+    on: float
+
+
+@kernel
+def severity_now(p: PackedFault, tick: float) -> float:
+    """Return the severity at a tick."""
+    if p.severity == 0.0:
+        return 0.0
+    since = tick - p.start_tick
+    if p.kind == RAMP:
+        return float(p.severity * min(1.0, since / p.length))
+    if p.kind == INTERMITTENT:
+        return float(p.severity) if since - p.length * floor(since / p.length) < p.on else 0.0
+    return float(p.severity)
+
+
+def effect(channel: str) -> Any:
+    """Declare the effect channel a fault multiplies, or adds to."""
+    return reads(f"effects.{channel}", "1", f"effect channel {channel}")
+
+
+def severity(unit: str, meaning: str) -> Any:
+    """Declare the output of the present severity."""
+    return output(unit, meaning)
+
+
+class Fault(Block):
+    """A fault, which multiplies effect channels or adds to them; ``shows`` names the part it is seen on."""
+
+    suggested = 0.05
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity and profile; the interval and its part that is on in whole ticks."""
+    def rests(cls, params: Any) -> bool:
+        """Say whether the fault is absent."""
+        return bool(params.severity == 0.0)
+
+    Packed: ClassVar[type[Record]] = PackedFault
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Any:
+        """Pack severity and profile; the period and its active part are in whole ticks."""
         profile = params.profile
         length = profile.duration_ms if profile.kind == "ramp" else profile.period_ms
         ticks = max(1.0, round(length / context.dt_ms))
         on = max(1.0, round(profile.duty * ticks))
-        return np.array([KINDS[profile.kind], params.severity, float(params.start_tick), ticks, on])
+        p: Any = cls.Packed.blank()
+        p.kind, p.length, p.on = KINDS[profile.kind], ticks, on
+        return p
 
 
-def channel(name: str) -> tuple[Port, ...]:
-    """Return the input port of a fault: the effect it multiplies."""
-    return (Port("effect", "1", f"effect channel {name}", source=f"effects.{name}"),)
+class Scales(Protocol):
+    """Ports of a fault that scales one channel."""
+
+    tick: float
+    effect: float
+    severity: float
 
 
-def channels(*names: str) -> tuple[Port, ...]:
-    """Return the input ports of a fault with several effects, in their order."""
-    return tuple(Port(name, "1", f"effect channel {name}", source=f"effects.{name}") for name in names)
+class ScaleFault(Fault):
+    """A fault that multiplies one effect channel by one plus the severity."""
 
-
-@kernel
-def severity_at(p: Any, tick: float) -> float:
-    """Severity at a tick."""
-    if p[SEVERITY] == 0.0:
-        return 0.0
-    since = tick - p[START]
-    if p[KIND] == RAMP:
-        return float(p[SEVERITY] * min(1.0, since / p[LENGTH]))
-    if p[KIND] == INTERMITTENT:
-        return float(p[SEVERITY]) if since - p[LENGTH] * math.floor(since / p[LENGTH]) < p[ON] else 0.0
-    return float(p[SEVERITY])
-
-
-def scale_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Multiply the effect channel by one plus the severity."""
-    severity = severity_at(p, w[0])
-    w[io[1]] = severity
-    if severity != 0.0:
-        w[io[0]] *= 1.0 + severity
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Scales) -> None:
+        """Multiply the effect channel by one plus the severity."""
+        now = severity_now(p, x.tick)
+        x.severity = now
+        if now != 0.0:
+            x.effect *= 1.0 + now

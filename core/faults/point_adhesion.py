@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.device.frame import Damage
 from core.device.geometry import Geometry, drawn
-from core.faults.fault import Fault, FaultParams
-from core.faults.structure import STRUCTURE, Bending, effects, linear, packed, structure_step
+from core.faults.fault import FaultParams, severity
+from core.faults.structure import Bending, Effects, StructureFault, effects, linear
 
 FITTED = Damage(adhesion=("inner", 0.75))
 BENDING = Bending(15.6 / 9.4, 37.8 / 39.7, 1.0e8, 1089.0, 1.18e11)
 
 
-class PointAdhesion(Fault):
+class PointAdhesion(StructureFault):
     r"""A point of one beam held to the ground, as a particle or a printed anchor does it.
 
     The stiffness rises by 1.46 at three quarters of an inner beam (the text's +46 % of effort) and at most by 1.5 there
     (36EI over 24EI), by up to five on an outer beam. The shuttle turns by about 30 rad per m of travel: the far end
-    moves 1.01 times as far as the centre. The text's E = 2 takes the adhesion for a rigid pivot.
+    moves 1.01 times as far as the centre. The text's E = 2 treats the adhesion as a rigid pivot.
     """
 
     title = "Point adhesion"
@@ -31,8 +29,6 @@ class PointAdhesion(Fault):
         "planar plant only, the hardening in the planar and the nonlinear one"
     )
     suggested = 1.0
-    inputs = STRUCTURE
-    outputs = (Port("severity", "1", "how firmly the point is held"),)
     equations = (
         Equation(
             "stiffness",
@@ -57,14 +53,14 @@ class PointAdhesion(Fault):
             0.75, "place along the beam, from its root (0) to the truss (1)", "1", ge=0.1, le=0.95
         )
 
+    class Ports(StructureFault.Ports):
+        """The suspension."""
+
+        severity: float = severity("1", "how firmly the point is held")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity, profile and effects."""
-        common = super().pack(params, context)
-        if params.severity == 0.0:
-            return np.array(packed(common, 0.0, [0.0] * 9))
+    def whole(cls, params: Any, context: Context) -> Effects:
+        """Return a share of the effects of a point that is held firmly."""
         damage = Damage(adhesion=(params.beam, params.position))
         bending = BENDING.scaled(linear(drawn(context), damage)[3] / linear(Geometry(), FITTED)[3])
-        return np.array(packed(common, params.severity, effects(drawn(context), damage, bending)))
-
-    step = structure_step
+        return effects(drawn(context), damage, bending).scaled(params.severity)

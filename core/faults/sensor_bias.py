@@ -2,21 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import TICK, Equation, Port, parameter
-from core.faults.fault import Fault, FaultParams, channels, severity_at
-
-OFFSET, OTHER, BIAS = range(3)
-
-
-def sensor_bias_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Shift what is measured."""
-    bias = severity_at(p, w[TICK])
-    w[io[BIAS]] = bias
-    if bias != 0.0:
-        w[io[OFFSET]] += bias
-        w[io[OTHER]] += 1.0
+from core.block import Equation, parameter
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class SensorBias(Fault):
@@ -26,8 +15,6 @@ class SensorBias(Fault):
     shows = "sensor"
     changes = "measured displacement, whatever the sensor; a controller moves the shuttle by as much the other way"
     suggested = 0.5
-    inputs = channels("sensor_offset", "other")
-    outputs = (Port("severity", "um", "bias"),)
     equations = (Equation("effect", r"z\to z+b", "not in the text"),)
 
     class Params(FaultParams):
@@ -35,4 +22,18 @@ class SensorBias(Fault):
 
         severity: float = parameter(0.0, "bias", "um", ge=-100, le=100)
 
-    step = sensor_bias_step
+    class Ports(BlockPorts):
+        """The error added to the measurement."""
+
+        sensor_offset: float = effect("sensor_offset")
+        other: float = effect("other")
+        severity: float = severity("um", "bias")
+
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Ports) -> None:
+        """Shift the measurement."""
+        bias = severity_now(p, x.tick)
+        x.severity = bias
+        if bias != 0.0:
+            x.sensor_offset += bias
+            x.other += 1.0

@@ -4,24 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, Port, parameter
-from core.faults.fault import Fault, FaultParams, channels, severity_at
+from core.block import Context, Equation, parameter
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
 from core.noise import key, uniform
-
-KEY = 5
-HELD, OTHER, SHARE = range(3)
-
-
-def sensor_dropout_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Lose the sample, or not."""
-    share = severity_at(p, w[TICK])
-    w[io[SHARE]] = share
-    if share != 0.0:
-        if uniform(p[KEY], w[TICK]) < share:
-            w[io[HELD]] += 1.0
-        w[io[OTHER]] += 1.0
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class SensorDropout(Fault):
@@ -29,16 +16,14 @@ class SensorDropout(Fault):
 
     .. math:: z_i\to z_{i-1}\quad\text{with probability}\ q
 
-    The gaps are geometric, :math:`1/(1-q)` samples from one that comes to the next on average. An intermittent
-    drop-out of everything is a loose contact.
+    The lengths of the gaps are geometric: a sample arrives every :math:`1/(1-q)` samples on average. An intermittent
+    drop-out of all samples is a loose contact.
     """
 
     title = "Sensor drop-out"
     shows = "sensor"
     changes = "measured displacement, which stays where it was while samples are lost; filters take it for new"
     suggested = 0.2
-    inputs = channels("sensor_held", "other")
-    outputs = (Port("severity", "1", "share of samples lost"),)
     equations = (Equation("effect", r"z_i\to z_{i-1}\ \text{with probability}\ q", "not in the text"),)
 
     class Params(FaultParams):
@@ -46,9 +31,31 @@ class SensorDropout(Fault):
 
         severity: float = parameter(0.0, "share of samples lost", "1", ge=0, le=1)
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity, profile and noise stream."""
-        return np.array([*super().pack(params, context).tolist(), key(context.seed, "faults.sensor_dropout")])
+    class Packed(PackedFault):
+        """Profile and severity, and the noise stream."""
 
-    step = sensor_dropout_step
+        key: float
+
+    class Ports(BlockPorts):
+        """Whether the sample is lost."""
+
+        sensor_held: float = effect("sensor_held")
+        other: float = effect("other")
+        severity: float = severity("1", "share of samples lost")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack severity, profile and noise stream."""
+        p: SensorDropout.Packed = super().pack(params, context)
+        p.key = key(context.seed, "faults.sensor_dropout")
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Lose the sample, or not."""
+        share = severity_now(p, x.tick)
+        x.severity = share
+        if share != 0.0:
+            if uniform(p.key, x.tick) < share:
+                x.sensor_held += 1.0
+            x.other += 1.0

@@ -5,37 +5,23 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, TIME_MS, Context, Equation, FloatArray, Port, parameter
-from core.faults.fault import Fault, FaultParams, channels, severity_at
-
-TURNS_PER_MS = 5
-OFFSET, OTHER, AMPLITUDE = range(3)
-
-
-def sensor_hum_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Add the hum; its phase goes on while an intermittent fault is off."""
-    amplitude = severity_at(p, w[TICK])
-    w[io[AMPLITUDE]] = amplitude
-    if amplitude != 0.0:
-        turns = p[TURNS_PER_MS] * w[TIME_MS]
-        w[io[OFFSET]] += amplitude * math.sin(2.0 * math.pi * (turns - math.floor(turns)))
-        w[io[OTHER]] += 1.0
+from core.block import Context, Equation, parameter
+from core.elementary import floor, sin
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class SensorHum(Fault):
     r"""The mains in what is measured, :math:`z\to z+a\sin2\pi ft`.
 
-    One period of 50 Hz lasts 20 ms, which is as long as many a scenario.
+    One period of 50 Hz lasts 20 ms, as long as many scenarios.
     """
 
     title = "Sensor hum"
     shows = "sensor"
     changes = "measured displacement, whatever the sensor; a controller makes the shuttle follow the mains"
     suggested = 0.2
-    inputs = channels("sensor_offset", "other")
-    outputs = (Port("severity", "um", "amplitude of the hum"),)
     equations = (Equation("effect", r"z\to z+a\sin2\pi ft", "not in the text"),)
 
     class Params(FaultParams):
@@ -44,9 +30,31 @@ class SensorHum(Fault):
         severity: float = parameter(0.0, "amplitude of the hum", "um", ge=0, le=100)
         frequency_hz: float = parameter(50.0, "frequency of the mains, or of one of its multiples", "Hz", gt=0, le=1e5)
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity, profile and frequency."""
-        return np.array([*super().pack(params, context).tolist(), 1e-3 * params.frequency_hz])
+    class Packed(PackedFault):
+        """Profile and severity, and the frequency."""
 
-    step = sensor_hum_step
+        turns_per_ms: float
+
+    class Ports(BlockPorts):
+        """The error added to the measurement."""
+
+        sensor_offset: float = effect("sensor_offset")
+        other: float = effect("other")
+        severity: float = severity("um", "amplitude of the hum")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack severity, profile and frequency."""
+        p: SensorHum.Packed = super().pack(params, context)
+        p.turns_per_ms = 1e-3 * params.frequency_hz
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Add the hum; its phase goes on while an intermittent fault is off."""
+        amplitude = severity_now(p, x.tick)
+        x.severity = amplitude
+        if amplitude != 0.0:
+            turns = p.turns_per_ms * x.time_ms
+            x.sensor_offset += amplitude * sin(2.0 * math.pi * (turns - floor(turns)))
+            x.other += 1.0

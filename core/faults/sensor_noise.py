@@ -4,38 +4,24 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, Port, parameter
-from core.faults.fault import Fault, FaultParams, channels, severity_at
+from core.block import Context, Equation, parameter
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
 from core.noise import key, normal
-
-KEY = 5
-OFFSET, OTHER, DEVIATION = range(3)
-
-
-def sensor_noise_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Add noise of its own to what is measured."""
-    deviation = severity_at(p, w[TICK])
-    w[io[DEVIATION]] = deviation
-    if deviation != 0.0:
-        w[io[OFFSET]] += deviation * normal(p[KEY], w[TICK])
-        w[io[OTHER]] += 1.0
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class SensorNoise(Fault):
     r"""White noise beside that of the sensor, :math:`z\to z+\sigma n`, with :math:`n` normal.
 
-    Filters go on with the noise the sensor has without it: the residuals of all hypotheses grow by
-    :math:`1+\sigma^2/\sigma_0^2` in their variance.
+    Filters still assume the noise of the sensor without the fault: the variance of the residuals of all hypotheses
+    grows by :math:`1+\sigma^2/\sigma_0^2`.
     """
 
     title = "Sensor noise"
     shows = "sensor"
     changes = "measured displacement, whatever the sensor; what filters assume of the noise stays"
     suggested = 0.1
-    inputs = channels("sensor_offset", "other")
-    outputs = (Port("severity", "um", "standard deviation of the noise added"),)
     equations = (Equation("effect", r"z\to z+\sigma n,\quad n\sim N(0,1)", "not in the text"),)
 
     class Params(FaultParams):
@@ -43,9 +29,30 @@ class SensorNoise(Fault):
 
         severity: float = parameter(0.0, "standard deviation of the noise added", "um", ge=0, le=100)
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity, profile and noise stream."""
-        return np.array([*super().pack(params, context).tolist(), key(context.seed, "faults.sensor_noise")])
+    class Packed(PackedFault):
+        """Profile and severity, and the noise stream."""
 
-    step = sensor_noise_step
+        key: float
+
+    class Ports(BlockPorts):
+        """The error added to the measurement."""
+
+        sensor_offset: float = effect("sensor_offset")
+        other: float = effect("other")
+        severity: float = severity("um", "standard deviation of the noise added")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack severity, profile and noise stream."""
+        p: SensorNoise.Packed = super().pack(params, context)
+        p.key = key(context.seed, "faults.sensor_noise")
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Add noise from its own stream to the measurement."""
+        deviation = severity_now(p, x.tick)
+        x.severity = deviation
+        if deviation != 0.0:
+            x.sensor_offset += deviation * normal(p.key, x.tick)
+            x.other += 1.0

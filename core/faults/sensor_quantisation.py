@@ -2,36 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import TICK, Equation, Port, parameter
-from core.faults.fault import Fault, FaultParams, channels, severity_at
-
-QUANTUM, OTHER, WIDTH = range(3)
-
-
-def sensor_quantisation_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Coarsen what is measured; of two converters in a row the coarser counts."""
-    width = severity_at(p, w[TICK])
-    w[io[WIDTH]] = width
-    if width != 0.0:
-        w[io[QUANTUM]] = max(w[io[QUANTUM]], width)
-        w[io[OTHER]] += 1.0
+from core.block import Equation, parameter
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class SensorQuantisation(Fault):
     r"""A converter that has lost its lower bits, :math:`z\to q\lfloor z/q+\tfrac12\rfloor`.
 
-    While the signal crosses many steps the error is evenly spread over one, :math:`q/\sqrt{12}` rms; a signal within
-    half a step of zero is not seen at all.
+    While the signal crosses many steps, the error is uniform over one step, :math:`q/\sqrt{12}` rms. A signal within
+    half a step of zero is measured as zero.
     """
 
     title = "Sensor quantisation"
     shows = "sensor"
     changes = "measured displacement, in steps; small motion is not seen at all"
     suggested = 0.1
-    inputs = channels("sensor_quantum", "other")
-    outputs = (Port("severity", "um", "step of the converter"),)
     equations = (Equation("effect", r"z\to q\lfloor z/q+\tfrac12\rfloor", "not in the text"),)
 
     class Params(FaultParams):
@@ -39,4 +26,18 @@ class SensorQuantisation(Fault):
 
         severity: float = parameter(0.0, "step of the converter", "um", ge=0, le=100)
 
-    step = sensor_quantisation_step
+    class Ports(BlockPorts):
+        """The step to which the measurement is rounded."""
+
+        sensor_quantum: float = effect("sensor_quantum")
+        other: float = effect("other")
+        severity: float = severity("um", "step of the converter")
+
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Ports) -> None:
+        """Round the measurement more coarsely; of two converters in a row the coarser one counts."""
+        width = severity_now(p, x.tick)
+        x.severity = width
+        if width != 0.0:
+            x.sensor_quantum = max(x.sensor_quantum, width)
+            x.other += 1.0

@@ -5,29 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
-from core.faults.fault import KIND, LENGTH, RAMP, START, Fault, FaultParams, channels, severity_at
+from core.block import Context, Equation, parameter
+from core.elementary import floor, sin
+from core.faults.fault import RAMP, Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
 STANDARD_GRAVITY = 9.80665
 """um/ms^2, the same number as m/s^2."""
-TICKS, AXIS = 5, 6
-
-
-def shock_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Accelerate the frame over the sample that begins, by the value in its middle."""
-    severity = severity_at(p, w[0])
-    since = w[0] - p[START] + 0.5
-    if p[KIND] > RAMP:
-        since -= p[LENGTH] * math.floor(since / p[LENGTH])
-    pulse = 0.0
-    if severity != 0.0 and since < p[TICKS]:
-        pulse = severity * math.sin(math.pi * since / p[TICKS])
-        at = 0 if p[AXIS] == 0.0 else 1
-        w[io[at]] += STANDARD_GRAVITY * pulse
-        w[io[2]] += 1.0
-    w[io[3]] = pulse
 
 
 class Shock(Fault):
@@ -44,8 +29,6 @@ class Shock(Fault):
         "planar plants"
     )
     suggested = 20.0
-    inputs = channels("acceleration", "acceleration_side", "other")
-    outputs = (Port("severity", "g", "acceleration of the frame now"),)
     equations = (Equation("pulse", r"a=a_0\sin(\pi t/T),\quad m\ddot x=\dots-ma", "1.3.1"),)
 
     class Params(FaultParams):
@@ -55,10 +38,41 @@ class Shock(Fault):
         pulse_ms: float = parameter(1.0, "length of the half sine", "ms", gt=0, le=1e4)
         axis: Literal["x", "y"] = parameter("x", "direction: x is the drive, y sideways in the plane")
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack severity, profile, length in ticks and axis."""
-        own = [max(1.0, params.pulse_ms / context.dt_ms), float(params.axis == "y")]
-        return np.array([*super().pack(params, context).tolist(), *own])
+    class Packed(PackedFault):
+        """Profile and severity, ticks of the half sine, and whether it is along y."""
 
-    step = shock_step
+        ticks: float
+        along_y: float
+
+    class Ports(BlockPorts):
+        """The frame."""
+
+        acceleration: float = effect("acceleration")
+        acceleration_side: float = effect("acceleration_side")
+        other: float = effect("other")
+        severity: float = severity("g", "acceleration of the frame now")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack severity, profile, length in ticks and axis."""
+        p: Shock.Packed = super().pack(params, context)
+        p.ticks = max(1.0, params.pulse_ms / context.dt_ms)
+        p.along_y = float(params.axis == "y")
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Accelerate the frame over the sample that begins, by the value in its middle."""
+        peak = severity_now(p, x.tick)
+        since = x.tick - p.start_tick + 0.5
+        if p.kind > RAMP:
+            since -= p.length * floor(since / p.length)
+        pulse = 0.0
+        if peak != 0.0 and since < p.ticks:
+            pulse = peak * sin(math.pi * since / p.ticks)
+            if p.along_y == 0.0:
+                x.acceleration += STANDARD_GRAVITY * pulse
+            else:
+                x.acceleration_side += STANDARD_GRAVITY * pulse
+            x.other += 1.0
+        x.severity = pulse

@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import TICK, Equation, Port, parameter
-from core.faults.fault import Fault, FaultParams, channels, severity_at
-
-STIFFNESS, ELASTICITY, SEVERITY = range(3)
-
-
-def stiffness_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Multiply the stiffness along x, and with it that of every beam."""
-    severity = severity_at(p, w[TICK])
-    w[io[SEVERITY]] = severity
-    if severity != 0.0:
-        w[io[STIFFNESS]] *= 1.0 + severity
-        w[io[ELASTICITY]] *= 1.0 + severity
+from core.block import Equation, parameter
+from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
 
 class Stiffness(Fault):
     r"""Young's modulus of all beams and trusses, :math:`E\to E(1+s)`.
 
-    The suspension is one film, so all of its stiffnesses go with it: along x, :math:`k\to k(1+s)`, sideways, in
+    The suspension is one film, so all of its stiffnesses change with it: along x, :math:`k\to k(1+s)`, sideways, in
     rotation and cubic. Pull-in by the bias moves by :math:`\sqrt{1+s}`.
     """
 
@@ -33,8 +22,6 @@ class Stiffness(Fault):
         "plant; resonance and displacement at rest both move"
     )
     suggested = 0.05
-    inputs = channels("stiffness_scale", "elasticity_scale")
-    outputs = (Port("severity", "1", "added stiffness, share of nominal"),)
     equations = (Equation("effect", r"k\to k\,(1+s),\quad k_y\to k_y(1+s),\quad k_\theta\to k_\theta(1+s)", "5.2.4"),)
 
     class Params(FaultParams):
@@ -42,4 +29,18 @@ class Stiffness(Fault):
 
         severity: float = parameter(0.0, "added stiffness, share of nominal", "1", gt=-0.95, le=20)
 
-    step = stiffness_step
+    class Ports(BlockPorts):
+        """The stiffness along x, and that of every beam."""
+
+        stiffness_scale: float = effect("stiffness_scale")
+        elasticity_scale: float = effect("elasticity_scale")
+        severity: float = severity("1", "added stiffness, share of nominal")
+
+    @staticmethod
+    def step(p: PackedFault, s: Record, x: Ports) -> None:
+        """Multiply the stiffness along x and that of every beam."""
+        now = severity_now(p, x.tick)
+        x.severity = now
+        if now != 0.0:
+            x.stiffness_scale *= 1.0 + now
+            x.elasticity_scale *= 1.0 + now

@@ -1,7 +1,7 @@
-"""What faults of the suspension share: their effect on the whole of its elasticity.
+"""Effect of faults of the suspension on its whole elasticity.
 
-The part that is linear in the displacement comes from a frame of beams with the drawing of the device; what bends with
-the travel was fitted to the frame of LCR-350 at large displacements, for the named places.
+The part that is linear in the displacement comes from a frame of beams with the drawing of the device. The part that
+changes with the travel was fitted to the frame of LCR-350 at large displacements, for the named places.
 """
 
 from __future__ import annotations
@@ -10,31 +10,35 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from core.block import FloatArray, Port
+from core.block import Context
 from core.device.frame import Damage, along_x, stiffness
 from core.device.geometry import Geometry
-from core.faults.fault import SEVERITY, channels, severity_at
+from core.faults.fault import Fault, PackedFault, effect, severity, severity_now
+from core.ports import BlockPorts
+from core.record import Record
 
-OWN = 5
-"""Where the effects begin in the packed parameters, after severity and profile."""
 
-STRUCTURE: tuple[Port, ...] = channels(
-    "stiffness_scale",
-    "lateral_scale",
-    "lateral_reach",
-    "rotation_scale",
-    "rotation_reach",
-    "cubic",
-    "sideways",
-    "turn",
-    "turn_cubic",
-)
-"""Five scales, then four sums."""
+class Effects(Record):
+    """Effect of a fault on each channel at full severity: added shares of five scales, then four sums themselves."""
+
+    stiffness: float
+    lateral: float
+    lateral_reach: float
+    rotation: float
+    rotation_reach: float
+    cubic: float
+    sideways: float
+    turn: float
+    turn_cubic: float
+
+    def scaled(self, factor: float) -> Effects:
+        """Return a share of the effects."""
+        return Effects(factor * self.array)
 
 
 @dataclass(frozen=True)
 class Bending:
-    """What grows with the travel: reaches over nominal, then cubic N/m^3, sideways 1/m, turn rad/m^3."""
+    """Effects that grow with the travel: reaches over nominal, then cubic N/m^3, sideways 1/m, turn rad/m^3."""
 
     reach_y: float = 1.0
     reach_t: float = 1.0
@@ -43,7 +47,7 @@ class Bending:
     turn_cubic: float = 0.0
 
     def scaled(self, factor: float) -> Bending:
-        """Return a share of it."""
+        """Return a share of the effects."""
         return Bending(
             1.0 + factor * (self.reach_y - 1.0),
             1.0 + factor * (self.reach_t - 1.0),
@@ -57,7 +61,7 @@ class Bending:
 def linear(geometry: Geometry, damage: Damage) -> tuple[float, float, float, float]:
     """Return the stiffness along x, along y and against rotation over nominal, and the turn per travel, rad/um."""
     whole, hurt = stiffness(geometry), stiffness(geometry, damage)
-    # the turn that costs nothing at a travel, with the shuttle free sideways
+    # the turn without a torque at a travel, with the shuttle free sideways
     coupling = hurt[2, 0] - hurt[2, 1] * hurt[1, 0] / hurt[1, 1]
     turning = hurt[2, 2] - hurt[2, 1] * hurt[1, 2] / hurt[1, 1]
     return (
@@ -68,34 +72,69 @@ def linear(geometry: Geometry, damage: Damage) -> tuple[float, float, float, flo
     )
 
 
-def effects(geometry: Geometry, damage: Damage, bending: Bending) -> list[float]:
-    """Return what the whole fault does to each channel: added shares for scales, the sums themselves."""
+def effects(geometry: Geometry, damage: Damage, bending: Bending) -> Effects:
+    """Return the effect of the full fault on each channel: added shares for scales, the sums themselves."""
     along, sideways, turning, turn = linear(geometry, damage)
-    return [
-        along - 1.0,
-        sideways - 1.0,
-        bending.reach_y - 1.0,
-        turning - 1.0,
-        bending.reach_t - 1.0,
-        bending.cubic * 1e-12,
-        bending.sideways * 1e-6,
-        turn,
-        bending.turn_cubic * 1e-18,
-    ]
+    whole = Effects.zeros()
+    whole.stiffness = along - 1.0
+    whole.lateral = sideways - 1.0
+    whole.lateral_reach = bending.reach_y - 1.0
+    whole.rotation = turning - 1.0
+    whole.rotation_reach = bending.reach_t - 1.0
+    whole.cubic = bending.cubic * 1e-12
+    whole.sideways = bending.sideways * 1e-6
+    whole.turn = turn
+    whole.turn_cubic = bending.turn_cubic * 1e-18
+    return whole
 
 
-def packed(common: FloatArray, share: float, whole: list[float]) -> list[float]:
-    """Return severity and profile with the effects at full severity behind them."""
-    return [*common.tolist(), *(share * value for value in whole)]
+class StructureFault(Fault):
+    """A fault of the suspension; a subclass gives its effects at full severity."""
 
+    class Packed(PackedFault):
+        """Severity and profile with the effects at full severity behind them."""
 
-def structure_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Change the suspension by the share of the severity that is there now."""
-    severity = severity_at(p, w[0])
-    w[io[9]] = severity
-    if severity != 0.0:
-        share = severity / p[SEVERITY]
-        for i in range(5):
-            w[io[i]] *= 1.0 + share * p[OWN + i]
-        for i in range(5, 9):
-            w[io[i]] += share * p[OWN + i]
+        effects: Effects
+
+    class Ports(BlockPorts):
+        """The suspension: five scales, then four sums."""
+
+        stiffness_scale: float = effect("stiffness_scale")
+        lateral_scale: float = effect("lateral_scale")
+        lateral_reach: float = effect("lateral_reach")
+        rotation_scale: float = effect("rotation_scale")
+        rotation_reach: float = effect("rotation_reach")
+        cubic: float = effect("cubic")
+        sideways: float = effect("sideways")
+        turn: float = effect("turn")
+        turn_cubic: float = effect("turn_cubic")
+        severity: float = severity("1", "severity that is there now")
+
+    @classmethod
+    def whole(cls, params: Any, context: Context) -> Effects:
+        """Return the effects at full severity, which is not 0."""
+        raise NotImplementedError
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack severity, profile and effects."""
+        p: StructureFault.Packed = super().pack(params, context)
+        p.effects = cls.whole(params, context) if params.severity != 0.0 else Effects.zeros()
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Change the suspension by the present severity's share of the effects."""
+        now = severity_now(p, x.tick)
+        x.severity = now
+        if now != 0.0:
+            share = now / p.severity
+            x.stiffness_scale *= 1.0 + share * p.effects.stiffness
+            x.lateral_scale *= 1.0 + share * p.effects.lateral
+            x.lateral_reach *= 1.0 + share * p.effects.lateral_reach
+            x.rotation_scale *= 1.0 + share * p.effects.rotation
+            x.rotation_reach *= 1.0 + share * p.effects.rotation_reach
+            x.cubic += share * p.effects.cubic
+            x.sideways += share * p.effects.sideways
+            x.turn += share * p.effects.turn
+            x.turn_cubic += share * p.effects.turn_cubic

@@ -1,1 +1,1 @@
-"""Identifiers: what the device is, from voltage and displacement."""
+"""Identifiers: parameters of the device, from voltage and displacement."""

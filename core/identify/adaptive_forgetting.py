@@ -2,89 +2,62 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
-import numpy as np
+from core.block import Context, Equation, parameter
+from core.estimation import estimate
+from core.identify.discrete import Discrete, DiscreteParams, N, gather_voltage, nominal, observe, report
+from core.identify.identifier import between_updates
+from core.kernel import kernel
+from core.ports import tap
 
-from core.block import Context, Equation, FloatArray, Port, kernel, parameter
-from core.estimation import least_squares
-from core.identify.discrete import (
-    COVARIANCE,
-    LIMIT,
-    OWN_P,
-    OWN_S,
-    OWN_TAP,
-    PHI,
-    PRODUCT,
-    TAPS,
-    THETA,
-    Discrete,
-    DiscreteParams,
-    N,
-    gathers,
-    nominal,
-    observe,
-    report,
-)
-
-READING, VARIANCE, MEMORY, GATE, LEAST, STEP = range(OWN_P, OWN_P + 6)
+READINGS = ("direct", "step", "printed")
 DIRECT, STEPWISE, PRINTED = 0.0, 1.0, 2.0
-LAMBDA, RATIO, WEIGHT, OWN_SIZE = OWN_S, OWN_S + 1, OWN_S + 2, OWN_S + 3
-FORGETTING, INNOVATION = OWN_TAP, OWN_TAP + 1
+"""Readings of 5.4 as numbers."""
 HUGE = 1e30
-"""What a ratio that grows without end is kept below."""
+"""Bound of a ratio that would grow without end."""
 
 
 @kernel
-def spread(s: Any) -> float:
+def spread(s: Discrete.State) -> float:
     """Return h' eta h."""
     total = 0.0
     for i in range(N):
         for j in range(N):
             low, high = min(i, j), max(i, j)
-            total += s[PHI + i] * s[COVARIANCE + high * (high + 1) // 2 + low] * s[PHI + j]
+            total += s.phi[i] * s.covariance[high * (high + 1) // 2 + low] * s.phi[j]
     return total
 
 
 @kernel
-def follow(p: Any, s: Any, e: float) -> None:
+def adapt(p: AdaptiveForgetting.Packed, s: AdaptiveForgetting.State, e: float) -> None:
     r"""Choose the forgetting factor of this sample.
 
-    Innovations that are more than :math:`1+h^T\eta h/\lambda` times the variance of the noise mean that the estimate is
-    trusted too much; the factor that would explain them is :math:`\tilde\lambda=h^T\eta h/(R-1)`.
+    If the innovations exceed :math:`1+h^T\eta h/\lambda` times the variance of the noise, the law trusts its estimate
+    too much; the factor :math:`\tilde\lambda=h^T\eta h/(R-1)` would explain them.
     """
     square = e * e
-    before = s[LAMBDA]
-    memory = p[MEMORY] if p[READING] == DIRECT else before
-    if p[READING] == PRINTED:
-        weight = 1.0 + before * s[WEIGHT]
-        s[RATIO] = min((before * s[RATIO] + square) / (weight * p[VARIANCE]), HUGE)
+    before = s.forgetting
+    memory = p.memory if p.mode == DIRECT else before
+    if p.mode == PRINTED:
+        weight = 1.0 + before * s.weight
+        s.ratio = min((before * s.ratio + square) / (weight * p.variance), HUGE)
     else:
-        weight = 1.0 + memory * s[WEIGHT]
-        s[RATIO] = (memory * s[WEIGHT] * s[RATIO] + square / p[VARIANCE]) / weight
-    s[WEIGHT] = weight
+        weight = 1.0 + memory * s.weight
+        s.ratio = (memory * s.weight * s.ratio + square / p.variance) / weight
+    s.weight = weight
     information = spread(s)
-    if p[READING] == DIRECT:
-        s[LAMBDA] = 1.0
-        if s[RATIO] > p[GATE]:
-            s[LAMBDA] = min(max(information / (s[RATIO] - 1.0), p[LEAST]), 1.0)
+    if p.mode == DIRECT:
+        s.forgetting = 1.0
+        if s.ratio > p.gate:
+            s.forgetting = min(max(information / (s.ratio - 1.0), p.least_forgetting), 1.0)
         return
-    wanted = (before + information) / max(s[RATIO], 1.0 / HUGE)
-    moved = before + (p[STEP] if wanted > before else -p[STEP] if wanted < before else 0.0)
-    s[LAMBDA] = max(moved, p[LEAST]) if p[READING] == PRINTED else min(max(moved, p[LEAST]), 1.0)
-
-
-def adaptive_forgetting_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, compare, choose how much to forget, update estimate and covariance."""
-    if gathers(p, s, w, io):
-        return
-    use, e = observe(p, s, w, io)
-    if use:
-        follow(p, s, e)
-        least_squares(s, THETA, COVARIANCE, PHI, PRODUCT, N, e, s[LAMBDA], s[LAMBDA], p[LIMIT])
-    report(p, s, w, io, e)
-    w[io[FORGETTING]] = s[LAMBDA]
-    w[io[INNOVATION]] = s[RATIO]
+    wanted = (before + information) / max(s.ratio, 1.0 / HUGE)
+    moved = before + (p.step_size if wanted > before else -p.step_size if wanted < before else 0.0)
+    if p.mode == PRINTED:
+        s.forgetting = max(moved, p.least_forgetting)
+    else:
+        s.forgetting = min(max(moved, p.least_forgetting), 1.0)
 
 
 class AdaptiveForgetting(Discrete):
@@ -95,16 +68,11 @@ class AdaptiveForgetting(Discrete):
         \text{ while }R_i>R_{gate},\text{ else }1
 
     with :math:`w_i` the innovation and :math:`\sigma^2` the variance it would have with a perfect estimate. As printed
-    the scheme does not look at the data at all: its ratio goes to infinity where the noise is small in its units, or to
+    the scheme ignores the data: its ratio goes to infinity where the noise is small in its units, or to
     zero where it is large, and the factor just walks down or up by mu per sample.
     """
 
     title = "Least squares, adaptive forgetting"
-    taps: ClassVar[tuple[Port, ...]] = (
-        *TAPS,
-        Port("forgetting", "1", "forgetting factor of this sample"),
-        Port("innovation_ratio", "1", "mean squared innovation over what noise alone would give, R"),
-    )
     equations = (
         Equation(
             "innovation",
@@ -149,27 +117,62 @@ class AdaptiveForgetting(Discrete):
         least_forgetting: float = parameter(0.2, "smallest forgetting factor", "1", gt=0.01, le=1)
         step_size: float = parameter(1e-4, "step mu of the other readings", equation="5.4.7", gt=0, le=1)
 
+    class Packed(Discrete.Packed):
+        """Reading, variance of the innovation, memory of the ratio, and limits."""
+
+        mode: float
+        variance: float
+        memory: float
+        gate: float
+        least_forgetting: float
+        step_size: float
+
+    class State(Discrete.State):
+        """Forgetting factor, ratio R and the weight of the samples in it."""
+
+        forgetting: float
+        ratio: float
+        weight: float
+
+    class Ports(Discrete.Ports):
+        """How much it forgets, and why."""
+
+        forgetting: float = tap("1", "forgetting factor of this sample")
+        innovation_ratio: float = tap("1", "mean squared innovation over what noise alone would give, R")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         deviation = params.innovation_um
         if deviation is None:
-            # the noise of three samples meets in one residual
+            # one residual contains the noise of three samples
             *_, a1, a2 = nominal(context.device, context.dt_ms)
             deviation = max(context.sensor_noise_um, 1e-3) * (1.0 + a1 * a1 + a2 * a2) ** 0.5
-        own = [
-            {"direct": DIRECT, "step": STEPWISE, "printed": PRINTED}[params.reading],
-            deviation**2,
-            1.0 - 1.0 / params.memory_samples,
-            params.gate,
-            params.least_forgetting,
-            params.step_size,
-        ]
-        return np.array(cls.sampled(params, context) + own)
+        p = cls.Packed.blank()
+        cls.fill_sampled(p, params, context)
+        p.mode = float(READINGS.index(params.reading))
+        p.variance = deviation**2
+        p.memory = 1.0 - 1.0 / params.memory_samples
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Estimate and covariance at the start, factor 1, nothing seen."""
-        return np.concatenate([cls.begin(params, context), [1.0, 0.0, 0.0]])
+    def state(cls, params: Any, context: Context) -> State:
+        """Estimate and covariance at the start, factor 1, no samples yet."""
+        s = cls.State.zeros()
+        cls.fill_start(s, params, context)
+        s.forgetting = 1.0
+        return s
 
-    step = adaptive_forgetting_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict, compare, choose how much to forget, update estimate and covariance."""
+        gather_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        use, e = observe(p, s, x)
+        if use:
+            adapt(p, s, e)
+            estimate(s.theta, s.covariance, s.phi, s.product, N, e, s.forgetting, s.forgetting, p.covariance_limit)
+        report(p, s, x, e)
+        x.forgetting = s.forgetting
+        x.innovation_ratio = s.ratio

@@ -4,63 +4,32 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, ClassVar, Literal
-
-import numpy as np
+from typing import Any, Literal
 
 from core import voltage
-from core.block import Context, FloatArray, Oscillator, Port, kernel, parameter
+from core.block import Context, Oscillator, parameter
 from core.device.oscillator import held
-from core.estimation import diagonal, trace, triangle
+from core.elementary import log
+from core.estimation import diagonal, trace_of, triangle
 from core.identify.identifier import (
-    APPLIED,
-    DAMPING_SCALE,
-    DRIVE_GAIN,
-    ENABLED,
-    ERROR,
-    ESTIMATE,
-    EXCITATION,
-    MASS_SCALE,
-    MEASURED,
-    OWN_PARAMETER,
-    OWN_PORT,
-    STIFFNESS_SCALE,
-    TRUTH,
+    EstimatePorts,
     Identifier,
     IdentifierParams,
-    between_turns,
     excite,
-    room,
     show_truth,
     worst,
 )
+from core.kernel import kernel
+from core.ports import tap
+from core.record import Vector, vector
+from core.voltage import Gathered, Interval, gather, interval_of, weighed_voltages
 
 N = 4
-MASS, DAMPING, STIFFNESS, FORCE, DT, INITIAL, LIMIT, NOISE = range(OWN_PARAMETER, OWN_PARAMETER + 8)
-INTERVAL = NOISE + triangle(N)
-OWN_P = INTERVAL + voltage.INTERVAL_SIZE
-START, LAST_Y, OLDER_Y, LAST_U, LATER_U, OLDER_U, WAS_ENABLED = range(7)
-THETA, PHI, PRODUCT, COVARIANCE, TRUE, SCALES, GATHERED = 7, 11, 15, 19, 29, 33, 37
-GRAM = GATHERED + voltage.STATES
-OWN_S = GRAM + room(N)
-ESTIMATE_PORT, ERROR_PORT, TRUTH_PORT, COEFFICIENT, COEFFICIENT_TRUE, RESIDUAL, EXCITATION_PORT = range(
-    OWN_PORT, OWN_PORT + 7
-)
-TRACE = EXCITATION_PORT + 3
-OWN_TAP = TRACE + 1
 COEFFICIENTS = ("b0", "b1", "a1", "a2")
-TAPS = (
-    TRUTH,
-    Port("coefficient", "mixed", "estimated coefficients of the sampled plant", labels=COEFFICIENTS),
-    Port("coefficient_true", "mixed", "true coefficients of the sampled plant", labels=COEFFICIENTS),
-    Port("residual", "um", "measured minus predicted displacement"),
-    *EXCITATION,
-    Port("covariance_trace", "mixed", "trace of the covariance"),
-)
 
 
 class DiscreteParams(IdentifierParams):
-    """What every identifier of the sampled plant may be told."""
+    """Parameters of every identifier of the sampled plant."""
 
     initial_covariance: float = parameter(1e8, "covariance at the start, as a multiple of I", gt=0, le=1e15)
     covariance_limit: float = parameter(1e10, "largest trace of the covariance, 0 for none", ge=0, le=1e18)
@@ -73,41 +42,94 @@ class DiscreteParams(IdentifierParams):
 class Discrete(Identifier):
     """Base of the identifiers of the sampled plant."""
 
-    outputs: ClassVar[tuple[Port, ...]] = (ESTIMATE, ERROR)
-    taps: ClassVar[tuple[Port, ...]] = TAPS
+    class Packed(Identifier.Packed):
+        """Whether it is enabled, the nominal device, covariance at the start and its limit, mean noise of h h'."""
+
+        enabled: float
+        mass: float
+        damping: float
+        stiffness: float
+        force: float
+        dt_ms: float
+        initial_covariance: float
+        covariance_limit: float
+        noise: Vector = vector(triangle(N))
+        interval: Interval
+
+    class State(Identifier.State):
+        """Samples so far, counted up to three, and the last ones; estimate and covariance; the truth and its scales."""
+
+        samples: float
+        last_y: float
+        older_y: float
+        later_u: float
+        older_u: float
+        was_enabled: float
+        theta: Vector = vector(N)
+        phi: Vector = vector(N)
+        product: Vector = vector(N)
+        covariance: Vector = vector(triangle(N))
+        true: Vector = vector(N)
+        mass_scale: float
+        stiffness_scale: float
+        damping_scale: float
+        drive_gain: float
+        gathered: Gathered
+
+    class Ports(EstimatePorts):
+        """Estimate and truth as coefficients of the sampled plant, and the trace of the covariance."""
+
+        coefficient: Vector = tap("mixed", "estimated coefficients of the sampled plant", labels=COEFFICIENTS)
+        coefficient_true: Vector = tap("mixed", "true coefficients of the sampled plant", labels=COEFFICIENTS)
+        residual: float = tap("um", "measured minus predicted displacement")
+        covariance_trace: float = tap("mixed", "trace of the covariance")
 
     @classmethod
-    def sampled(cls, params: Any, context: Context) -> list[float]:
-        """Pack everything up to what the law itself needs."""
+    def fill_sampled(cls, p: Packed, params: Any, context: Context) -> None:
+        """Pack the numbers that every identifier of the sampled plant needs."""
         device = context.device
-        known = [device.mass, device.damping, device.stiffness, device.force, context.dt_ms]
-        noise = diagonal(N, context.sensor_noise_um**2)
-        noise[0] = noise[2] = 0.0  # the two voltages
-        limits = [params.initial_covariance, params.covariance_limit]
-        return [*cls.shared(params, context), *known, *limits, *noise, *voltage.pack_interval(context)]
+        cls.fill_shared(p, params, context)
+        p.mass, p.damping, p.stiffness, p.force = device.mass, device.damping, device.stiffness, device.force
+        p.dt_ms = context.dt_ms
+        p.noise[:] = diagonal(N, context.sensor_noise_um**2)
+        p.noise[0] = p.noise[2] = 0.0  # the two voltages
+        p.interval = interval_of(context)
 
     @classmethod
-    def begin(cls, params: Any, context: Context) -> FloatArray:
-        """Return the estimate and the covariance at the start."""
-        start = np.zeros(OWN_S)
-        start[COVARIANCE : COVARIANCE + 10] = diagonal(N, params.initial_covariance)
-        start[WAS_ENABLED] = 1.0
+    def fill_start(cls, s: State, params: Any, context: Context) -> None:
+        """Write the estimate and the covariance at the start."""
+        s.covariance[:] = diagonal(N, params.initial_covariance)
+        s.was_enabled = 1.0
         if params.start == "nominal":
-            start[THETA : THETA + N] = nominal(context.device, context.dt_ms)
-        return start
+            s.theta[:] = nominal(context.device, context.dt_ms)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p = cls.Packed.blank()
+        cls.fill_sampled(p, params, context)
+        return p
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """Estimate and covariance at the start."""
+        s = cls.State.zeros()
+        cls.fill_start(s, params, context)
+        return s
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:
-        """Tell what of the response to a tone is missed once a part of the device is another by a tenth."""
-        own = context.device
-        tenth = {part: replace(own, **{part: 1.1 * getattr(own, part)}) for part in ("mass", "stiffness", "damping")}
-        return voltage.caution(context, {f"1.1 times the {part}": device for part, device in tenth.items()}, hz)
+        """Say how much of the response to a tone is lost if mass, stiffness or damping is larger by a tenth."""
+        device = context.device
+        parts = ("mass", "stiffness", "damping")
+        tenth = {part: replace(device, **{part: 1.1 * getattr(device, part)}) for part in parts}
+        return voltage.caution(context, {f"1.1 times the {part}": other for part, other in tenth.items()}, hz)
 
 
 def nominal(device: Oscillator, dt_ms: float) -> tuple[float, float, float, float]:
     """Return b0, b1, a1 and a2 of a device whose voltage is held."""
-    found = sampled(device.mass, device.damping, device.stiffness, device.force, dt_ms)
-    return float(found[0]), float(found[1]), float(found[2]), float(found[3])
+    b0, b1, a1, a2 = sampled(device.mass, device.damping, device.stiffness, device.force, dt_ms)
+    return float(b0), float(b1), float(a1), float(a2)
 
 
 @kernel
@@ -120,84 +142,87 @@ def sampled(
 
 
 @kernel
-def gathers(p: Any, s: Any, w: Any, io: Any) -> bool:
-    """Take in the voltage of a tick; say whether it is between two turns."""
-    voltage.follow(p, INTERVAL, s, GATHERED, w[io[APPLIED]], w[io[APPLIED + 1]], w[io[APPLIED + 2]])
-    return between_turns(p, w)
+def gather_voltage(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> None:
+    """Add the voltage of a tick to the interval."""
+    gather(p.interval, s.gathered, x.applied, x.middle, x.end)
 
 
 @kernel
-def observe(p: Any, s: Any, w: Any, io: Any) -> tuple[bool, float]:
+def observe(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> tuple[bool, float]:
     """Form the regressor, and return whether there was a sample and its difference from the prediction."""
-    y = w[io[MEASURED]]
+    y = x.measured
     seen = math.isfinite(y)
     if not seen:
-        y = s[LAST_Y]
-    first = s[START] < 3.0
-    s[START] = min(s[START] + 1.0, 3.0)
-    s[OLDER_U] = s[LATER_U]
-    s[LAST_U], s[LATER_U] = voltage.weighed(p, INTERVAL, s, GATHERED)
-    s[PHI], s[PHI + 1], s[PHI + 2], s[PHI + 3] = s[LAST_U], s[OLDER_U], -s[LAST_Y], -s[OLDER_Y]
-    s[OLDER_Y] = s[LAST_Y]
-    s[LAST_Y] = y
+        y = s.last_y
+    first = s.samples < 3.0
+    s.samples = min(s.samples + 1.0, 3.0)
+    s.older_u = s.later_u
+    last_u, s.later_u = weighed_voltages(p.interval, s.gathered)
+    s.phi[0] = last_u
+    s.phi[1] = s.older_u
+    s.phi[2] = -s.last_y
+    s.phi[3] = -s.older_y
+    s.older_y = s.last_y
+    s.last_y = y
     e = y
     for i in range(N):
-        e -= s[THETA + i] * s[PHI + i]
-    if p[ENABLED] != 0.0 and s[WAS_ENABLED] == 0.0:
+        e -= s.theta[i] * s.phi[i]
+    if p.enabled != 0.0 and s.was_enabled == 0.0:
         restart(p, s)
-    s[WAS_ENABLED] = p[ENABLED]
-    return seen and not first and p[ENABLED] != 0.0, e
+    s.was_enabled = p.enabled
+    return seen and not first and p.enabled != 0.0, e
 
 
 @kernel
-def restart(p: Any, s: Any) -> None:
-    """Trust the estimate no more than at the start."""
+def restart(p: Discrete.Packed, s: Discrete.State) -> None:
+    """Reset the covariance to that at the start."""
     for i in range(10):
-        s[COVARIANCE + i] = 0.0
+        s.covariance[i] = 0.0
     for i in range(N):
-        s[COVARIANCE + i * (i + 3) // 2] = p[INITIAL]
+        s.covariance[i * (i + 3) // 2] = p.initial_covariance
 
 
 @kernel
-def report(p: Any, s: Any, w: Any, io: Any, residual: float) -> None:
+def follow_truth(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> None:
+    """Compute the true coefficients anew when the device has changed."""
+    mass, stiffness, damping, gain = x.mass_scale, x.stiffness_scale, x.damping_scale, x.drive_gain
+    if mass != s.mass_scale or stiffness != s.stiffness_scale or damping != s.damping_scale or gain != s.drive_gain:
+        s.mass_scale = mass
+        s.stiffness_scale = stiffness
+        s.damping_scale = damping
+        s.drive_gain = gain
+        s.true[0], s.true[1], s.true[2], s.true[3] = sampled(
+            p.mass * mass, p.damping * damping, p.stiffness * stiffness, p.force * gain, p.dt_ms
+        )
+
+
+@kernel
+def report(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports, residual: float) -> None:
     r"""Write estimate, truth, error and excitation.
 
-    Of the poles :math:`z=e^{(-\sigma\pm j\omega_d)h}` and the static gain g:
+    From the poles :math:`z=e^{(-\sigma\pm j\omega_d)h}` and the static gain g follow
     :math:`k=F/g,\;m=k/(\sigma^2+\omega_d^2),\;\beta=2\sigma m`. While the poles are not those of a damped plant, the
-    last values stay.
+    estimate keeps its last values.
     """
-    show_truth(w, io, TRUTH_PORT)
-    changed = False
+    show_truth(x)
+    follow_truth(p, s, x)
     for i in range(N):
-        value = w[io[(MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DRIVE_GAIN)[i]]]
-        changed = changed or value != s[SCALES + i]
-        s[SCALES + i] = value
-    if changed:
-        s[TRUE], s[TRUE + 1], s[TRUE + 2], s[TRUE + 3] = sampled(
-            p[MASS] * s[SCALES],
-            p[DAMPING] * s[SCALES + 2],
-            p[STIFFNESS] * s[SCALES + 1],
-            p[FORCE] * s[SCALES + 3],
-            p[DT],
-        )
-    at, true = io[COEFFICIENT], io[COEFFICIENT_TRUE]
-    for i in range(N):
-        w[at + i] = s[THETA + i]
-        w[true + i] = s[TRUE + i]
-    b0, b1, a1, a2 = s[THETA], s[THETA + 1], s[THETA + 2], s[THETA + 3]
+        x.coefficient[i] = s.theta[i]
+        x.coefficient_true[i] = s.true[i]
+    b0, b1, a1, a2 = s.theta[0], s.theta[1], s.theta[2], s.theta[3]
     whole = 1.0 + a1 + a2
     if 0.0 < a2 < 1.0 and whole > 0.0 and b0 + b1 != 0.0:
-        sigma = -0.5 * math.log(a2) / p[DT]
+        sigma = -0.5 * log(a2) / p.dt_ms
         turn = -0.5 * a1 / math.sqrt(a2)
         if turn > -1.0:
-            angle = (math.acos(turn) if turn <= 1.0 else math.acosh(turn)) / p[DT]
+            angle = (math.acos(turn) if turn <= 1.0 else math.acosh(turn)) / p.dt_ms
             square = sigma * sigma + (angle * angle if turn <= 1.0 else -angle * angle)
-            stiffness = p[FORCE] * whole / (b0 + b1)
+            stiffness = p.force * whole / (b0 + b1)
             mass = stiffness / square
-            w[io[ESTIMATE_PORT]] = mass / p[MASS]
-            w[io[ESTIMATE_PORT] + 1] = stiffness / p[STIFFNESS]
-            w[io[ESTIMATE_PORT] + 2] = 2.0 * sigma * mass / p[DAMPING]
-    w[io[RESIDUAL]] = residual
-    w[io[ERROR_PORT]] = worst(s, THETA, w, true, N)
-    excite(p, NOISE, s, GRAM, PHI, N, w, io, EXCITATION_PORT)
-    w[io[TRACE]] = trace(s, COVARIANCE, N)
+            x.estimate[0] = mass / p.mass
+            x.estimate[1] = stiffness / p.stiffness
+            x.estimate[2] = 2.0 * sigma * mass / p.damping
+    x.residual = residual
+    x.error_pct = worst(s.theta, x.coefficient_true, N)
+    excite(p, p.noise, s.gram, s.phi, N, x)
+    x.covariance_trace = trace_of(s.covariance, N)

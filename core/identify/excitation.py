@@ -2,23 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
-
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port
-from core.identify.filtered import GRAM, NOISE, PHI, Filtered, FilterParams, gathers, observe
-from core.identify.identifier import EXCITATION, OWN_PORT, excite
-
-FIRST = OWN_PORT
-
-
-def excitation_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Filter, and judge the regressor window by window."""
-    if gathers(p, s, w, io):
-        return
-    observe(p, s, w, io)
-    excite(p, NOISE, s, GRAM, PHI, 3, w, io, FIRST)
+from core.block import Equation
+from core.identify.filtered import Filtered, FilterParams, N, follow_voltage, observe
+from core.identify.identifier import ExcitationPorts, between_updates, excite
 
 
 class Excitation(Filtered):
@@ -29,12 +15,10 @@ class Excitation(Filtered):
 
     Three parameters need three directions: a constant gives one and a tone two, so a step and a single tone are
     flagged, two tones just pass and four pass well. A transient counts, so the first window after a change passes too.
-    Noise of the sensor does not: what it adds to the mean is taken out.
+    Sensor noise does not count: its contribution to the mean is taken out.
     """
 
     title = "Excitation monitor"
-    outputs: ClassVar[tuple[Port, ...]] = EXCITATION
-    taps: ClassVar[tuple[Port, ...]] = ()
     equations = (
         Equation(
             "persistent excitation",
@@ -46,14 +30,13 @@ class Excitation(Filtered):
     class Params(FilterParams):
         """Window, threshold and filters."""
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        return np.array(cls.filters(params, context))
+    Ports = ExcitationPorts
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Start with filters at rest."""
-        return cls.begin(params, context)
-
-    step = excitation_step
+    @staticmethod
+    def step(p: Filtered.Packed, s: Filtered.State, x: ExcitationPorts) -> None:
+        """Filter, and judge the regressor window by window."""
+        follow_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        observe(p, s, x)
+        excite(p, p.noise, s.gram, s.phi, N, x)

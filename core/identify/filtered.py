@@ -3,67 +3,40 @@ r"""Identifiers of the continuous plant: voltage and displacement filtered by :m
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
-from core.block import Context, FloatArray, Port, kernel, parameter
+from core.block import Context, FloatArray, parameter
 from core.estimation import (
-    DRIVEN_SIZE,
-    FILTER_SIZE,
-    advance_filter,
-    drive_filter,
-    driven_filter,
-    second_derivative,
-    state_filter,
+    DrivenFilter,
+    StateFilter,
+    driven_filter_of,
+    filter_input,
+    filter_of,
+    filter_voltage,
+    filtered_second_derivative,
     triangle,
 )
 from core.identify.identifier import (
-    APPLIED,
-    DAMPING_SCALE,
-    DRIVE_GAIN,
-    ERROR,
-    ESTIMATE,
-    EXCITATION,
-    MASS_SCALE,
-    MEASURED,
-    OWN_PARAMETER,
-    OWN_PORT,
-    STIFFNESS_SCALE,
-    TRUTH,
+    EstimatePorts,
     ExcitationParams,
     Identifier,
     IdentifierParams,
-    between_turns,
+    IdentifierPorts,
     coefficients,
     excite,
-    room,
     show_truth,
     worst,
 )
-from core.voltage import moved
+from core.kernel import kernel
+from core.ports import tap
+from core.record import Vector, vector
+from core.voltage import Motion, moves
 
-HELD, FILTER, VOLTAGE_FILTER, NOMINAL, RANGE = (
-    OWN_PARAMETER + n for n in (0, 1, 1 + FILTER_SIZE, 1 + FILTER_SIZE + DRIVEN_SIZE, 4 + FILTER_SIZE + DRIVEN_SIZE)
-)
-NOISE = RANGE + 1
-OWN_P = NOISE + triangle(3)
-START, LAST_Y, U_FILTER, Y_FILTER, PHI, THETA = 0, 1, 2, 4, 6, 9
-GRAM = THETA + 3
-OWN_S = GRAM + room(3)
-ESTIMATE_PORT, ERROR_PORT, TRUTH_PORT, COEFFICIENT, COEFFICIENT_TRUE, RESIDUAL, EXCITATION_PORT = range(
-    OWN_PORT, OWN_PORT + 7
-)
-OWN_TAP = EXCITATION_PORT + 3
+N = 3
 COEFFICIENTS = ("gain", "a1", "a2")
-TAPS = (
-    TRUTH,
-    Port("coefficient", "mixed", "estimated kp, a1 and a2, in um, V and 1/w0", labels=COEFFICIENTS),
-    Port("coefficient_true", "mixed", "true kp, a1 and a2", labels=COEFFICIENTS),
-    Port("residual", "um", "filtered acceleration minus what the estimate says it is"),
-    *EXCITATION,
-)
 
 
 class FilterParams(ExcitationParams):
@@ -80,56 +53,105 @@ class FilterParams(ExcitationParams):
 
 
 class FilteredParams(FilterParams, IdentifierParams):
-    """What every identifier of kp, a1 and a2 may be told."""
+    """Parameters of every identifier of kp, a1 and a2."""
 
     start: Literal["nominal", "zero"] = parameter("nominal", "estimate at the start", equation="3.3.2.8", live=False)
     range_ratio: float = parameter(100.0, "largest coefficient over nominal (projection), 0 for none", ge=0, le=1e6)
 
 
 class Filtered(Identifier):
+    """Base of the blocks that filter voltage and displacement of the device."""
+
+    class Packed(Identifier.Packed):
+        """Whether the displacement is held between samples, the two filters, mean noise of phi phi'."""
+
+        held: float
+        displacement_filter: StateFilter
+        voltage_filter: DrivenFilter
+        noise: Vector = vector(triangle(N))
+
+    class State(Identifier.State):
+        """Whether it has run, last displacement, the filtered signals, and the regressor built from them."""
+
+        started: float
+        last_y: float
+        voltage: Motion
+        displacement: Motion
+        phi: Vector = vector(N)
+
+    @classmethod
+    def fill_filters(cls, p: Packed, params: Any, context: Context) -> None:
+        """Pack the filters, and the mean of phi phi' that sensor noise causes behind them."""
+        h = context.dt_ms * context.device.natural_frequency
+        cls.fill_shared(p, params, context)
+        p.held = float(params.between == "held")
+        p.displacement_filter = filter_of(params.filter_pole, h)
+        p.voltage_filter = driven_filter_of(params.filter_pole, h / context.every, context.analogue)
+        p.noise[:] = noise_gram(params.filter_pole, h, p.held, context.sensor_noise_um)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p = cls.Packed.blank()
+        cls.fill_filters(p, params, context)
+        return p
+
+
+class FilteredEstimator(Filtered):
     """Base of the identifiers of kp, a1 and a2."""
 
-    outputs: ClassVar[tuple[Port, ...]] = (ESTIMATE, ERROR)
-    taps: ClassVar[tuple[Port, ...]] = TAPS
+    class Packed(Filtered.Packed):
+        """Whether it is enabled, largest coefficient over nominal, the nominal coefficients."""
+
+        enabled: float
+        range_ratio: float
+        nominal: Vector = vector(N)
+
+    class State(Filtered.State):
+        """The estimate."""
+
+        theta: Vector = vector(N)
+
+    class Ports(EstimatePorts):
+        """Estimate and truth, as kp, a1 and a2."""
+
+        coefficient: Vector = tap("mixed", "estimated kp, a1 and a2, in um, V and 1/w0", labels=COEFFICIENTS)
+        coefficient_true: Vector = tap("mixed", "true kp, a1 and a2", labels=COEFFICIENTS)
+        residual: float = tap("um", "filtered acceleration minus what the estimate says it is")
 
     @classmethod
-    def filters(cls, params: Any, context: Context) -> list[float]:
-        """Pack everything up to what the law itself needs."""
-        h = context.dt_ms * context.device.natural_frequency
-        held = float(params.between == "held")
-        filters = state_filter(params.filter_pole, h)
-        return [
-            *cls.shared(params, context),
-            held,
-            *filters,
-            *driven_filter(params.filter_pole, h / context.every, context.analogue),
-            *coefficients(context.device),
-            getattr(params, "range_ratio", 0.0),
-            *noise_gram(params.filter_pole, h, held, context.sensor_noise_um),
-        ]
+    def fill_nominal(cls, p: Packed, params: Any, context: Context) -> None:
+        """Pack the numbers that every identifier of kp, a1 and a2 needs."""
+        cls.fill_filters(p, params, context)
+        p.nominal[:] = coefficients(context.device)
 
     @classmethod
-    def begin(cls, params: Any, context: Context) -> FloatArray:
-        """Return filters at rest and the estimate at the start."""
-        start = np.zeros(OWN_S)
-        if getattr(params, "start", "nominal") == "nominal":
-            start[THETA : THETA + 3] = coefficients(context.device)
-        return start
+    def fill_start(cls, s: State, params: Any, context: Context) -> None:
+        """Write the estimate at the start; the filters are at rest."""
+        if params.start == "nominal":
+            s.theta[:] = coefficients(context.device)
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """Start with filters at rest, and the estimate at the start."""
+        s = cls.State.zeros()
+        cls.fill_start(s, params, context)
+        return s
 
 
 def noise_gram(pole: float, h: float, held: float, noise_um: float) -> list[float]:
-    r"""Return the lower triangle of the mean of :math:`\varphi\varphi^T` that white noise of the measurement makes.
+    r"""Return the lower triangle of the mean of :math:`\varphi\varphi^T` that white noise of the measurement causes.
 
-    A sample takes part twice, at the end of an interval and at the start of the next:
-    :math:`q_{i+1}=\Phi q_i+b_0n_i+b_1n_{i+1}`, whose covariance is the solution of a Lyapunov equation in
+    Each sample acts twice, at the end of an interval and at the start of the next:
+    :math:`q_{i+1}=\Phi q_i+b_0n_i+b_1n_{i+1}`; its covariance is the solution of a Lyapunov equation in
     :math:`[q,n]`.
     """
-    packed = np.array(state_filter(pole, h))
+    packed = filter_of(pole, h)
 
     def advanced(q: tuple[float, float], before: float, now: float) -> FloatArray:
-        s = np.array(q)
-        advance_filter(packed, 0, s, 0, before, now)
-        return s
+        motion = Motion(np.array(q))
+        filter_input(packed, motion, before, now)
+        return np.asarray(motion.array)
 
     whole = np.zeros((3, 3))
     whole[:2] = np.column_stack(
@@ -141,61 +163,61 @@ def noise_gram(pole: float, h: float, held: float, noise_um: float) -> list[floa
 
 
 @kernel
-def gathers(p: Any, s: Any, w: Any, io: Any) -> bool:
-    """Let the filter of the voltage follow a tick; say whether it is between two turns."""
-    if s[START] != 0.0:
-        u, middle, end = moved(w, io, APPLIED)
-        drive_filter(p, VOLTAGE_FILTER, s, U_FILTER, u, middle, end)
-    return between_turns(p, w)
+def follow_voltage(p: Filtered.Packed, s: Filtered.State, x: IdentifierPorts) -> None:
+    """Advance the filter of the voltage over a tick."""
+    if s.started != 0.0:
+        u, middle, end = moves(x)
+        filter_voltage(p.voltage_filter, s.voltage, u, middle, end)
 
 
 @kernel
-def observe(p: Any, s: Any, w: Any, io: Any) -> tuple[bool, float]:
-    r"""Filter the displacement, and return whether there was a sample and :math:`z-\theta^T\varphi` (3.3.2.6-7)."""
-    y = w[io[MEASURED]]
+def observe(p: Filtered.Packed, s: Filtered.State, x: IdentifierPorts) -> tuple[bool, float]:
+    r"""Filter the displacement; return whether there was a sample, and the :math:`z` it gives (3.3.2.6-7)."""
+    y = x.measured
     seen = math.isfinite(y)
     if not seen:
-        y = s[LAST_Y]
-    if s[START] == 0.0:
-        s[START] = 1.0
-        s[LAST_Y] = y
+        y = s.last_y
+    if s.started == 0.0:
+        s.started = 1.0
+        s.last_y = y
         return False, 0.0
-    advance_filter(p, FILTER, s, Y_FILTER, s[LAST_Y], s[LAST_Y] if p[HELD] != 0.0 else y)
-    s[LAST_Y] = y
-    s[PHI], s[PHI + 1], s[PHI + 2] = s[U_FILTER], -s[Y_FILTER + 1], -s[Y_FILTER]
-    return seen, second_derivative(p, FILTER, s, Y_FILTER, y) - prediction(s)
+    filter_input(p.displacement_filter, s.displacement, s.last_y, s.last_y if p.held != 0.0 else y)
+    s.last_y = y
+    s.phi[0] = s.voltage.x
+    s.phi[1] = -s.displacement.v
+    s.phi[2] = -s.displacement.x
+    return seen, filtered_second_derivative(p.displacement_filter, s.displacement, y)
 
 
 @kernel
-def prediction(s: Any) -> float:
+def prediction(s: FilteredEstimator.State) -> float:
     """Return theta' phi."""
-    return float(s[THETA] * s[PHI] + s[THETA + 1] * s[PHI + 1] + s[THETA + 2] * s[PHI + 2])
+    return float(s.theta[0] * s.phi[0] + s.theta[1] * s.phi[1] + s.theta[2] * s.phi[2])
 
 
 @kernel
-def bounds(p: Any, i: int) -> tuple[float, float]:
-    """Return the interval of a coefficient: its nominal value over and times the range."""
-    near, far = p[NOMINAL + i] / p[RANGE], p[NOMINAL + i] * p[RANGE]
+def bounds(p: FilteredEstimator.Packed, i: int) -> tuple[float, float]:
+    """Return the bounds of a coefficient: its nominal value divided by the range, and times the range."""
+    near, far = p.nominal[i] / p.range_ratio, p.nominal[i] * p.range_ratio
     return min(near, far), max(near, far)
 
 
 @kernel
-def report(p: Any, s: Any, w: Any, io: Any, residual: float) -> None:
+def report(
+    p: FilteredEstimator.Packed, s: FilteredEstimator.State, x: FilteredEstimator.Ports, residual: float
+) -> None:
     """Write estimate, truth, error and excitation."""
-    show_truth(w, io, TRUTH_PORT)
-    mass = w[io[MASS_SCALE]]
-    true = io[COEFFICIENT_TRUE]
-    w[true] = p[NOMINAL] * w[io[DRIVE_GAIN]] / mass
-    w[true + 1] = p[NOMINAL + 1] * w[io[DAMPING_SCALE]] / mass
-    w[true + 2] = p[NOMINAL + 2] * w[io[STIFFNESS_SCALE]] / mass
-    at = io[COEFFICIENT]
-    for i in range(3):
-        w[at + i] = s[THETA + i]
-    if s[THETA] != 0.0:
-        heavier = p[NOMINAL] / s[THETA]
-        w[io[ESTIMATE_PORT]] = heavier
-        w[io[ESTIMATE_PORT] + 1] = heavier * s[THETA + 2] / p[NOMINAL + 2]
-        w[io[ESTIMATE_PORT] + 2] = heavier * s[THETA + 1] / p[NOMINAL + 1]
-    w[io[RESIDUAL]] = residual
-    w[io[ERROR_PORT]] = worst(s, THETA, w, true, 3)
-    excite(p, NOISE, s, GRAM, PHI, 3, w, io, EXCITATION_PORT)
+    show_truth(x)
+    x.coefficient_true[0] = p.nominal[0] * x.drive_gain / x.mass_scale
+    x.coefficient_true[1] = p.nominal[1] * x.damping_scale / x.mass_scale
+    x.coefficient_true[2] = p.nominal[2] * x.stiffness_scale / x.mass_scale
+    for i in range(N):
+        x.coefficient[i] = s.theta[i]
+    if s.theta[0] != 0.0:
+        heavier = p.nominal[0] / s.theta[0]
+        x.estimate[0] = heavier
+        x.estimate[1] = heavier * s.theta[2] / p.nominal[2]
+        x.estimate[2] = heavier * s.theta[1] / p.nominal[1]
+    x.residual = residual
+    x.error_pct = worst(s.theta, x.coefficient_true, N)
+    excite(p, p.noise, s.gram, s.phi, N, x)

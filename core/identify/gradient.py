@@ -4,47 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, parameter
+from core.block import Context, Equation, parameter
 from core.identify.filtered import (
-    OWN_P,
-    PHI,
-    RANGE,
-    THETA,
-    Filtered,
+    FilteredEstimator,
     FilteredParams,
+    N,
     bounds,
-    gathers,
+    follow_voltage,
     observe,
+    prediction,
     report,
 )
-from core.identify.identifier import ENABLED, H, coefficients
-
-GAIN, OUTPUT_WEIGHT, NORMALISE = range(OWN_P, OWN_P + 3)
+from core.identify.identifier import between_updates, coefficients
 
 
-def gradient_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Filter, compare, move down the gradient."""
-    if gathers(p, s, w, io):
-        return
-    seen, e = observe(p, s, w, io)
-    if seen and p[ENABLED] != 0.0:
-        den = 1.0
-        if p[NORMALISE] != 0.0:
-            for i in range(3):
-                den += (1.0 if i == 0 else p[OUTPUT_WEIGHT]) * s[PHI + i] * s[PHI + i]
-        rate = p[H] * p[GAIN] * e / den
-        for i in range(3):
-            theta = s[THETA + i] + (1.0 if i == 0 else p[OUTPUT_WEIGHT]) * rate * s[PHI + i]
-            if p[RANGE] > 0.0:
-                low, high = bounds(p, i)
-                theta = min(max(theta, low), high)
-            s[THETA + i] = theta
-    report(p, s, w, io, e)
-
-
-class Gradient(Filtered):
+class Gradient(FilteredEstimator):
     r"""Gradient identifier of :math:`\theta=[k_p,a_1,a_2]` (3.2.3.2-7).
 
     .. math:: \dot{\hat\theta}=-\frac{g\,\Gamma\varphi e_1}{1+\varphi^T\Gamma\varphi},\quad
@@ -83,17 +57,40 @@ class Gradient(Filtered):
         )
         normalise: bool = parameter(True, "divide by 1 + phi'G phi; off as printed")
 
+    class Packed(FilteredEstimator.Packed):
+        """Adaptation gain, weight of a1 and a2 in Gamma, whether the law is normalised."""
+
+        adaptation_gain: float
+        output_weight: float
+        normalise: float
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         gain = coefficients(context.device)[0]
-        weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
-        own = [params.adaptation_gain, weight, float(params.normalise)]
-        return np.array(cls.filters(params, context) + own)
+        p = cls.Packed.blank()
+        cls.fill_nominal(p, params, context)
+        p.output_weight = 1.0 / gain**2 if params.output_weight is None else params.output_weight
+        return p
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Start with filters at rest, and the estimate at the start."""
-        return cls.begin(params, context)
-
-    step = gradient_step
+    @staticmethod
+    def step(p: Packed, s: FilteredEstimator.State, x: FilteredEstimator.Ports) -> None:
+        """Filter, compare, move down the gradient."""
+        follow_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        seen, z = observe(p, s, x)
+        e = z - prediction(s)
+        if seen and p.enabled != 0.0:
+            den = 1.0
+            if p.normalise != 0.0:
+                for i in range(N):
+                    den += (1.0 if i == 0 else p.output_weight) * s.phi[i] * s.phi[i]
+            rate = p.h * p.adaptation_gain * e / den
+            for i in range(N):
+                theta = s.theta[i] + (1.0 if i == 0 else p.output_weight) * rate * s.phi[i]
+                if p.range_ratio > 0.0:
+                    low, high = bounds(p, i)
+                    theta = min(max(theta, low), high)
+                s.theta[i] = theta
+        report(p, s, x, e)

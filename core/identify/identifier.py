@@ -1,8 +1,8 @@
-r"""What every identifier shares: ports, the truth beside the estimate, excitation.
+r"""Ports, parameters and excitation that all identifiers share.
 
 Displacement is in um, voltage in V and time in units of :math:`1/\omega_0`, the unit of :math:`\theta=[k_p,a_1,a_2]` of
-:math:`\ddot y+a_1\dot y+a_2y=k_pu`. Outputs are mass, stiffness and damping over their nominal values, the force per
-volt taken as known.
+:math:`\ddot y+a_1\dot y+a_2y=k_pu`. Outputs are mass, stiffness and damping over their nominal values; the force per
+volt is taken as known.
 """
 
 from __future__ import annotations
@@ -10,33 +10,22 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from core.block import TICK, Block, BlockParams, Context, Oscillator, Port, kernel, parameter
-from core.theory.persistency import gather, smallest_eigenvalue
-from core.voltage import APPLIED_PORTS
+from core.block import Block, BlockParams, Context, Oscillator, parameter
+from core.estimation import triangle
+from core.kernel import kernel
+from core.ports import output, reads, tap
+from core.record import Record, Vector, vector
+from core.theory.persistency import add_outer_product, smallest_eigenvalue
+from core.voltage import ObservedPorts
 
-MEASURED, APPLIED = range(2)
-MASS_SCALE, STIFFNESS_SCALE, DAMPING_SCALE, DRIVE_GAIN, OWN_PORT = (APPLIED + len(APPLIED_PORTS) + n for n in range(5))
-INPUTS = (
-    Port("measured", "um", "measured displacement", source="sensor.displacement"),
-    *APPLIED_PORTS,
-    Port("mass_scale", "1", "true mass over nominal", source="effects.mass_scale"),
-    Port("stiffness_scale", "1", "true stiffness over nominal", source="effects.stiffness_scale"),
-    Port("damping_scale", "1", "true damping over nominal", source="effects.damping_scale"),
-    Port("drive_gain", "1", "voltage at the comb over voltage applied", source="effects.drive_gain"),
-)
 PHYSICAL = ("mass", "stiffness", "damping")
-ESTIMATE = Port("estimate", "1", "estimated mass, stiffness and damping over nominal", labels=PHYSICAL)
-TRUTH = Port("truth", "1", "true mass, stiffness and damping over nominal", labels=PHYSICAL)
-ERROR = Port("error_pct", "%", "largest relative error of the estimated coefficients")
-EXCITATION = (
-    Port("excitation", "mixed", "smallest eigenvalue of the mean of phi phi' over the last window, less noise"),
-    Port("excitation_relative", "1", "the same with every component of phi scaled to a unit mean square"),
-    Port("identifiable", "1", "1 while this input tells all parameters apart"),
-)
+EXCITATION = "smallest eigenvalue of the mean of phi phi' over the last window, less noise"
+EXCITATION_RELATIVE = "the same with every component of phi scaled to a unit mean square"
+IDENTIFIABLE = "1 while this input tells all parameters apart"
+"""Meanings of the excitation taps, for all identifiers and for the monitor."""
 
-WINDOW, LEAST, H, EVERY, ENABLED, OWN_PARAMETER = range(6)
-"""Packed parameters of every identifier: ticks of a window, least relative excitation, interval in 1/w0, ticks."""
-
+MOST = 4
+"""Largest number of parameters of an identifier."""
 BAD_PCT = 1e4
 """Error shown for an estimate that makes no sense."""
 
@@ -58,11 +47,66 @@ class IdentifierParams(ExcitationParams):
     enabled: bool = parameter(True, "go on estimating; off holds the estimate, and on again trusts it no longer")
 
 
+class Gram(Record):
+    """Samples of the window so far, the sum of their phi phi' (a lower triangle), scratch, and the last verdict."""
+
+    samples: float
+    products: Vector = vector(triangle(MOST))
+    scratch: Vector = vector(MOST * MOST)
+    smallest: float
+    relative: float
+
+
+class IdentifierPorts(ObservedPorts):
+    """The voltage and displacement an identifier is given, and the truth its estimate is compared with."""
+
+    mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal")
+    stiffness_scale: float = reads("effects.stiffness_scale", "1", "true stiffness over nominal")
+    damping_scale: float = reads("effects.damping_scale", "1", "true damping over nominal")
+    drive_gain: float = reads("effects.drive_gain", "1", "voltage at the comb over voltage applied")
+
+
+class EstimatePorts(IdentifierPorts):
+    """Estimate and truth; each kind of identifier names its own coefficients."""
+
+    estimate: Vector = output("1", "estimated mass, stiffness and damping over nominal", labels=PHYSICAL)
+    error_pct: float = output("%", "largest relative error of the estimated coefficients")
+    truth: Vector = tap("1", "true mass, stiffness and damping over nominal", labels=PHYSICAL)
+    coefficient: Vector = tap("mixed", "estimated coefficients")
+    coefficient_true: Vector = tap("mixed", "true coefficients")
+    residual: float = tap("um", "what the estimate does not say")
+    excitation: float = tap("mixed", EXCITATION)
+    excitation_relative: float = tap("1", EXCITATION_RELATIVE)
+    identifiable: float = tap("1", IDENTIFIABLE)
+
+
+class ExcitationPorts(IdentifierPorts):
+    """The excitation alone."""
+
+    excitation: float = output("mixed", EXCITATION)
+    excitation_relative: float = output("1", EXCITATION_RELATIVE)
+    identifiable: float = output("1", IDENTIFIABLE)
+
+
 class Identifier(Block):
     """Base of every identifier."""
 
-    inputs: ClassVar[tuple[Port, ...]] = INPUTS
     every_tick: ClassVar[bool] = True
+
+    class Packed(Record):
+        """Samples of a window, least relative excitation, interval in 1/w0, ticks between two updates."""
+
+        window: float
+        least_excitation: float
+        h: float
+        every: float
+
+    class State(Record):
+        """The window of the excitation."""
+
+        gram: Gram
+
+    Ports = IdentifierPorts
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
@@ -71,15 +115,11 @@ class Identifier(Block):
         return "" if whole else "needs a device with mass, damping and spring"
 
     @classmethod
-    def shared(cls, params: Any, context: Context) -> list[float]:
-        """Pack what every identifier needs."""
-        return [
-            float(max(1, round(params.excitation_window_ms / context.dt_ms))),
-            params.least_excitation,
-            context.dt_ms * context.device.natural_frequency,
-            float(context.every),
-            float(getattr(params, "enabled", True)),
-        ]
+    def fill_shared(cls, p: Packed, params: Any, context: Context) -> None:
+        """Pack the numbers that every identifier needs."""
+        p.window = max(1, round(params.excitation_window_ms / context.dt_ms))
+        p.h = context.dt_ms * context.device.natural_frequency
+        p.every = context.every
 
 
 def coefficients(device: Oscillator) -> tuple[float, float, float]:
@@ -90,56 +130,55 @@ def coefficients(device: Oscillator) -> tuple[float, float, float]:
 
 
 @kernel
-def between_turns(p: Any, w: Any) -> bool:
-    """Say whether an identifier that runs every N ticks only takes in the voltage of this one."""
-    return bool(p[EVERY] != 1.0 and w[TICK] % p[EVERY] != 0.0)
+def between_updates(p: Identifier.Packed, x: IdentifierPorts) -> bool:
+    """Say whether an identifier that runs every N ticks only gathers the voltage of this tick."""
+    return bool(p.every != 1.0 and x.tick % p.every != 0.0)
 
 
 @kernel
-def excite(p: Any, noise: int, s: Any, gram: int, regressor: int, n: int, w: Any, io: Any, first: int) -> None:
-    """Gather the Gram matrix and judge it at the end of each window, less twice what noise of the sensor adds to it.
+def excite(
+    p: Identifier.Packed,
+    noise: Vector,
+    gram: Gram,
+    regressor: Vector,
+    n: int,
+    x: EstimatePorts | ExcitationPorts,
+) -> None:
+    """Gather the Gram matrix, and at the end of each window judge it less twice the share that sensor noise adds.
 
-    Noise turns the regressor in every direction and tells nothing; taken away once, half of the windows would still
-    show some of it. A count, the lower triangle, n^2 scratch numbers and the last verdict stand from ``gram`` on, the
-    lower triangle of the mean noise from ``noise`` on. The three ports of ``EXCITATION`` begin at ``first``.
+    Noise moves the regressor in every direction without telling anything about the device. If its mean were taken out
+    only once, half of the windows would still show some of it. ``noise`` is the lower triangle of the mean noise.
     """
-    gather(s, gram + 1, regressor, n)
-    s[gram] += 1.0
+    add_outer_product(gram.products, regressor, n)
+    gram.samples += 1.0
     size = n * (n + 1) // 2
-    scratch = gram + 1 + size
-    judged = scratch + n * n
-    if s[gram] >= p[WINDOW]:
+    if gram.samples >= p.window:
         for i in range(size):
-            s[gram + 1 + i] -= 2.0 * s[gram] * p[noise + i]
-        s[judged] = smallest_eigenvalue(s, gram + 1, scratch, n, False) / s[gram]
-        s[judged + 1] = smallest_eigenvalue(s, gram + 1, scratch, n, True)
-        for i in range(size + 1):
-            s[gram + i] = 0.0
-    w[io[first]] = s[judged]
-    w[io[first + 1]] = s[judged + 1]
-    w[io[first + 2]] = 1.0 if s[judged + 1] > p[LEAST] else 0.0
-
-
-def room(n: int) -> int:
-    """Return the numbers ``excite`` needs."""
-    return 1 + n * (n + 1) // 2 + n * n + 2
+            gram.products[i] -= 2.0 * gram.samples * noise[i]
+        gram.smallest = smallest_eigenvalue(gram.products, gram.scratch, n, False) / gram.samples
+        gram.relative = smallest_eigenvalue(gram.products, gram.scratch, n, True)
+        gram.samples = 0.0
+        for i in range(size):
+            gram.products[i] = 0.0
+    x.excitation = gram.smallest
+    x.excitation_relative = gram.relative
+    x.identifiable = 1.0 if gram.relative > p.least_excitation else 0.0
 
 
 @kernel
-def show_truth(w: Any, io: Any, port: int) -> None:
-    """Write mass, stiffness and damping as they are."""
-    at = io[port]
-    w[at] = w[io[MASS_SCALE]]
-    w[at + 1] = w[io[STIFFNESS_SCALE]]
-    w[at + 2] = w[io[DAMPING_SCALE]]
+def show_truth(x: EstimatePorts) -> None:
+    """Write the true mass, stiffness and damping."""
+    x.truth[0] = x.mass_scale
+    x.truth[1] = x.stiffness_scale
+    x.truth[2] = x.damping_scale
 
 
 @kernel
-def worst(s: Any, theta: int, w: Any, true: int, n: int) -> float:
+def worst(theta: Vector, true: Vector, n: int) -> float:
     """Return the largest relative error of n coefficients, %."""
     largest = 0.0
     for i in range(n):
-        value = abs(s[theta + i] / w[true + i] - 1.0)
+        value = abs(theta[i] / true[i] - 1.0)
         if not math.isfinite(value):
             return BAD_PCT
         largest = max(largest, value)

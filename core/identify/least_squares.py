@@ -3,57 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
-from core.estimation import diagonal, least_squares, project, trace
+from core.block import Context, Equation, parameter
+from core.estimation import diagonal, estimate, project_onto, trace_of, triangle
 from core.identify.filtered import (
-    OWN_P,
-    OWN_S,
-    OWN_TAP,
-    PHI,
-    RANGE,
-    TAPS,
-    THETA,
-    Filtered,
+    FilteredEstimator,
     FilteredParams,
+    N,
     bounds,
-    gathers,
+    follow_voltage,
     observe,
+    prediction,
     report,
 )
-from core.identify.identifier import ENABLED, H
-
-DECAY, NORMALISER, LIMIT, INITIAL = range(OWN_P, OWN_P + 4)
-COVARIANCE, PRODUCT, WAS_ENABLED = OWN_S, OWN_S + 6, OWN_S + 9
-TRACE = OWN_TAP
+from core.identify.identifier import between_updates
+from core.ports import tap
+from core.record import Vector, vector
 
 
-def least_squares_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Filter, compare, update estimate and covariance."""
-    if gathers(p, s, w, io):
-        return
-    seen, e = observe(p, s, w, io)
-    if p[ENABLED] != 0.0:
-        if s[WAS_ENABLED] == 0.0:
-            for i in range(6):
-                s[COVARIANCE + i] = p[INITIAL] if i == 0 or i == 2 or i == 5 else 0.0
-        if seen:
-            square = s[PHI] * s[PHI] + s[PHI + 1] * s[PHI + 1] + s[PHI + 2] * s[PHI + 2]
-            noise = (1.0 + p[NORMALISER] * square) * p[DECAY] / p[H]
-            least_squares(s, THETA, COVARIANCE, PHI, PRODUCT, 3, e, noise, p[DECAY], p[LIMIT])
-            if p[RANGE] > 0.0:
-                for i in range(3):
-                    low, high = bounds(p, i)
-                    project(s, THETA, COVARIANCE, 3, i, low, high)
-    s[WAS_ENABLED] = p[ENABLED]
-    report(p, s, w, io, e)
-    w[io[TRACE]] = trace(s, COVARIANCE, 3)
-
-
-class LeastSquares(Filtered):
+class LeastSquares(FilteredEstimator):
     r"""Least squares with continuous forgetting, sampled exactly (3.3.2.8-11).
 
     .. math:: \dot{\hat\theta}=\frac{P\varphi e}{m^2},\quad
@@ -62,12 +31,11 @@ class LeastSquares(Filtered):
     .. math:: P^{-1}\leftarrow e^{-Bh}P^{-1}+\frac{h}{m^2}\varphi\varphi^T,\quad
         P_i^{-1}\tilde\theta_i=e^{-Bhi}P_0^{-1}\tilde\theta_0
 
-    So the weight of the start is forgotten at the rate B whatever alpha. A greater rate is quicker while the initial
-    covariance is small; once it is large the data alone decide and the rate makes no difference.
+    So the weight of the start is forgotten at the rate B, independent of alpha. A greater rate is quicker while the
+    initial covariance is small; if it is large the data alone decide and the rate makes no difference.
     """
 
     title = "Least squares, continuous forgetting"
-    taps: ClassVar[tuple[Port, ...]] = (*TAPS, Port("covariance_trace", "mixed", "trace of the covariance"))
     equations = (
         Equation(
             "model",
@@ -97,17 +65,63 @@ class LeastSquares(Filtered):
         initial_covariance: float = parameter(1e3, "P0, as a multiple of I", equation="3.3.2.10", gt=0, le=1e12)
         covariance_limit: float = parameter(1e5, "largest trace of the covariance, 0 for none", ge=0, le=1e15)
 
+    class Packed(FilteredEstimator.Packed):
+        """Share kept from sample to sample, normaliser, limit of the covariance and its value at the start."""
+
+        decay: float
+        normaliser: float
+        covariance_limit: float
+        initial_covariance: float
+
+    class State(FilteredEstimator.State):
+        """Covariance, scratch, whether it was enabled."""
+
+        covariance: Vector = vector(triangle(N))
+        product: Vector = vector(N)
+        was_enabled: float
+
+    class Ports(FilteredEstimator.Ports):
+        """The trace of the covariance."""
+
+        covariance_trace: float = tap("mixed", "trace of the covariance")
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        decay = math.exp(-params.forgetting_rate * 1e-3 * context.dt_ms)
-        own = [decay, params.normaliser, params.covariance_limit, params.initial_covariance]
-        return np.array(cls.filters(params, context) + own)
+        p = cls.Packed.blank()
+        cls.fill_nominal(p, params, context)
+        p.decay = math.exp(-params.forgetting_rate * 1e-3 * context.dt_ms)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Start with filters at rest, the estimate and its covariance, scratch, and whether it was enabled."""
-        own = [*diagonal(3, params.initial_covariance), 0.0, 0.0, 0.0, 1.0]
-        return np.concatenate([cls.begin(params, context), own])
+        s = cls.State.zeros()
+        cls.fill_start(s, params, context)
+        s.covariance[:] = diagonal(N, params.initial_covariance)
+        s.was_enabled = 1.0
+        return s
 
-    step = least_squares_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Filter, compare, update estimate and covariance."""
+        follow_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        seen, z = observe(p, s, x)
+        e = z - prediction(s)
+        if p.enabled != 0.0:
+            if s.was_enabled == 0.0:
+                for i in range(6):
+                    s.covariance[i] = p.initial_covariance if i == 0 or i == 2 or i == 5 else 0.0
+            if seen:
+                square = s.phi[0] * s.phi[0] + s.phi[1] * s.phi[1] + s.phi[2] * s.phi[2]
+                noise = (1.0 + p.normaliser * square) * p.decay / p.h
+                estimate(s.theta, s.covariance, s.phi, s.product, N, e, noise, p.decay, p.covariance_limit)
+                if p.range_ratio > 0.0:
+                    for i in range(N):
+                        low, high = bounds(p, i)
+                        project_onto(s.theta, s.covariance, N, i, low, high)
+        s.was_enabled = p.enabled
+        report(p, s, x, e)
+        x.covariance_trace = trace_of(s.covariance, N)

@@ -2,41 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, parameter
-from core.estimation import least_squares, trace
-from core.identify.discrete import (
-    COVARIANCE,
-    LIMIT,
-    OWN_P,
-    PHI,
-    PRODUCT,
-    THETA,
-    Discrete,
-    DiscreteParams,
-    N,
-    gathers,
-    observe,
-    report,
-    restart,
-)
-
-FORGETTING, DEAD_ZONE, RESET_BELOW = range(OWN_P, OWN_P + 3)
-
-
-def recursive_least_squares_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, compare, update estimate and covariance."""
-    if gathers(p, s, w, io):
-        return
-    use, e = observe(p, s, w, io)
-    if use and abs(e) >= p[DEAD_ZONE]:
-        least_squares(s, THETA, COVARIANCE, PHI, PRODUCT, N, e, p[FORGETTING], p[FORGETTING], p[LIMIT])
-        if p[RESET_BELOW] > 0.0 and trace(s, COVARIANCE, N) < p[RESET_BELOW]:
-            restart(p, s)
-    report(p, s, w, io, e)
+from core.block import Equation, parameter
+from core.estimation import estimate, trace_of
+from core.identify.discrete import Discrete, DiscreteParams, N, gather_voltage, observe, report, restart
+from core.identify.identifier import between_updates
 
 
 class RecursiveLeastSquares(Discrete):
@@ -45,10 +14,10 @@ class RecursiveLeastSquares(Discrete):
     .. math:: K=\frac{\eta h}{\lambda+h^T\eta h},\quad\hat\theta\leftarrow\hat\theta+K(z-h^T\hat\theta),\quad
         \eta\leftarrow\frac{\eta-Kh^T\eta}{\lambda},\quad h=[u_{i-1},u_{i-2},-z_{i-1},-z_{i-2}]
 
-    It minimises :math:`\sum\lambda^{n-i}(z_i-h_i^T\theta)^2`: a memory of about :math:`1/(1-\lambda)` samples. Of the
-    covariance only a triangle is kept, since the antisymmetric part of its rounding would grow as
-    :math:`\lambda^{-i}`; and its trace is limited, since without excitation it grows so itself. Noise of the sensor
-    stands in the regressor and biases the estimate, the more so the faster it samples: run it at 10 to 20 kHz.
+    It minimises :math:`\sum\lambda^{n-i}(z_i-h_i^T\theta)^2`: a memory of about :math:`1/(1-\lambda)` samples. Only a
+    triangle of the covariance is kept, since the antisymmetric part of its rounding would grow as :math:`\lambda^{-i}`.
+    Its trace is limited, since it grows in the same way without excitation. Sensor noise
+    in the regressor biases the estimate, the more so the faster it samples: run it at 10 to 20 kHz.
     """
 
     title = "Recursive least squares (FFRLS)"
@@ -78,15 +47,22 @@ class RecursiveLeastSquares(Discrete):
         dead_zone_um: float = parameter(0.0, "residual below which nothing is learnt", "um", ge=0, le=100)
         reset_below: float = parameter(0.0, "trace below which the covariance starts anew, 0 for never", ge=0, le=1e15)
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        own = [params.forgetting, params.dead_zone_um, params.reset_below]
-        return np.array(cls.sampled(params, context) + own)
+    class Packed(Discrete.Packed):
+        """Forgetting factor, dead zone, trace below which the covariance starts anew."""
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Estimate and covariance at the start."""
-        return cls.begin(params, context)
+        forgetting: float
+        dead_zone_um: float
+        reset_below: float
 
-    step = recursive_least_squares_step
+    @staticmethod
+    def step(p: Packed, s: Discrete.State, x: Discrete.Ports) -> None:
+        """Predict, compare, update estimate and covariance."""
+        gather_voltage(p, s, x)
+        if between_updates(p, x):
+            return
+        use, e = observe(p, s, x)
+        if use and abs(e) >= p.dead_zone_um:
+            estimate(s.theta, s.covariance, s.phi, s.product, N, e, p.forgetting, p.forgetting, p.covariance_limit)
+            if p.reset_below > 0.0 and trace_of(s.covariance, N) < p.reset_below:
+                restart(p, s)
+        report(p, s, x, e)

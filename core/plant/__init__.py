@@ -1,1 +1,1 @@
-"""Plants: what the voltage does to the shuttle."""
+"""Plants: the motion of the shuttle under the voltage."""

@@ -7,16 +7,16 @@ from :math:`X_s` (stator tip) to :math:`X_r` (rotor tip), and with a rotation :m
 .. math:: C=n\varepsilon_0t\int_{X_s}^{X_r+x}\frac{2g\,d\xi}{g^2-\eta(\xi)^2},\quad
     \eta=y+\theta\xi,\quad W=\tfrac12V^2C
 
-by five Gauss points, or three where they do. All forces are the derivatives of this very sum, so energy is kept
-whatever its error. Beyond a limit the integrand goes on as a straight line: the true one has no bound where fingers
-touch.
+by five Gauss points, or three where they suffice. All forces are the derivatives of this very sum, so energy is
+conserved exactly, even where the sum has an error. Beyond a limit the integrand continues as a straight line, because
+the true one has no bound where fingers touch.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from core.block import inlined, kernel
+from core.kernel import inlined, kernel
 
 Z1, Z2 = 0.538469310105683091, 0.906179845938663993
 W0, W1, W2 = 0.568888888888888889, 0.478628670499366468, 0.236926885056189088
@@ -24,7 +24,7 @@ W0, W1, W2 = 0.568888888888888889, 0.478628670499366468, 0.236926885056189088
 Z = 0.774596669241483377
 V0, V1 = 0.888888888888888889, 0.555555555555555556
 TILT = 0.05
-"""The same with three, good for 1e-9 while a finger tilts by less than this share of what is left of the gap."""
+"""The same with three, accurate to 1e-9 while a finger tilts by less than this share of the remaining gap."""
 
 
 @kernel
@@ -88,7 +88,7 @@ def sums(
 
 @kernel
 def co_energy(strength: float, square: float, limit: float, tips: Any, x: float, y: float, theta: float) -> float:
-    r"""Return the co-energy of both combs, uN um: for checks, the loop needs only its derivatives.
+    r"""Return the co-energy of both combs, uN um, for checks: the loop needs only its derivatives.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def co_energy(strength: float, square: float, limit: float, tips: Any, x: float,
     tips : tuple of float
         Stator and rotor tip, and the squared voltages across the combs at +x and at -x.
     x, y, theta : float
-        Where the shuttle is, misalignment included.
+        Position of the shuttle, misalignment included.
     """
     stator, rotor, right, left = tips
     a = 0.5 * (rotor - stator + x)

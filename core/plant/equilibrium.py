@@ -1,4 +1,4 @@
-"""Where a plant comes to rest, and where it can no longer: static equilibria, their folds, and pull-in."""
+"""Static equilibria of a plant, their folds, and pull-in."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.block import FloatArray
-from core.plant import contact, plane, slaved_lateral
+from core.kernel import kernel
+from core.plant import slaved_lateral
 from core.plant.electrostatics import comb
-from core.plant.shuttle import FIRST_V, SECOND_V
-from core.plant.suspension import elastic_force
+from core.plant.plane import Plane
+from core.plant.shuttle import Shuttle
+from core.plant.slaved_lateral import SlavedLateral
+from core.plant.suspension import Suspension, elastic_force
 
 Force = Callable[[FloatArray, float, float], FloatArray]
 """Generalised force at a place under two squared voltages."""
@@ -26,27 +29,38 @@ class Fold:
     lateral_um: float
 
 
-def planar_force(p: FloatArray, suspension: FloatArray) -> Force:
+def planar_force(p: Plane.Packed, suspension: Suspension) -> Force:
     """Return the static force of a planar plant."""
-    square, limit, stator, strength = p[plane.GAP_SQUARED], p[contact.LIMIT], p[plane.STATOR], p[plane.STRENGTH]
-    overlap = p[plane.ROTOR] - stator
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
-        x, y, theta = float(q[0]), float(q[1]), float(q[2])
-        yy, tt = y + p[plane.Y_MISS], theta + p[plane.T_MISS]
-        first = comb(square, limit, stator, 0.5 * (overlap + x), 1.0, yy, tt)
-        second = comb(square, limit, stator, 0.5 * (overlap - x), -1.0, yy, tt)
-        pulled = strength * (right * np.array(first[:3]) + left * np.array(second[:3]))
-        return np.asarray(np.array(elastic_force(suspension, x, y, theta)) + pulled)
+        return np.array(static_force(p, suspension, q[0], q[1], q[2], right, left))
 
     return force
 
 
-def slaved_force(p: FloatArray, stiffness: float) -> Force:
+@kernel
+def static_force(
+    p: Plane.Packed, suspension: Suspension, x: float, y: float, theta: float, right: float, left: float
+) -> tuple[float, float, float]:
+    """Return the static forces, uN, and torque, uN um, of a planar plant under two squared voltages."""
+    overlap = p.rotor_tip - p.stator_tip
+    yy = y + p.misalignment_um
+    tt = theta + p.misalignment_rad
+    fx, fy, mz = elastic_force(suspension, x, y, theta)
+    x1, y1, t1, _, _ = comb(p.gap_squared, p.limit, p.stator_tip, 0.5 * (overlap + x), 1.0, yy, tt)
+    x2, y2, t2, _, _ = comb(p.gap_squared, p.limit, p.stator_tip, 0.5 * (overlap - x), -1.0, yy, tt)
+    return (
+        fx + p.strength * (right * x1 + left * x2),
+        fy + p.strength * (right * y1 + left * y2),
+        mz + p.strength * (right * t1 + left * t2),
+    )
+
+
+def slaved_force(p: SlavedLateral.Packed, stiffness: float) -> Force:
     """Return the static force of the slaved plant, a place of one number."""
 
     def force(q: FloatArray, right: float, left: float) -> FloatArray:
-        x = float(q[0])
+        x = q.item(0)
         return np.array([slaved_lateral.slaved_force(p, x, right, left) - stiffness * x])
 
     return force
@@ -58,8 +72,9 @@ SCALES = np.array([1e-5, 1e-6, 1e-8])
 
 def jacobian(function: Callable[[FloatArray], FloatArray], at: FloatArray, scales: FloatArray) -> FloatArray:
     """Return the Jacobian of a function, by central differences over the steps given."""
-    steps = np.diag(scales[: len(at)])
-    return np.column_stack([(function(at + h) - function(at - h)) / (2.0 * h.sum()) for h in steps])
+    sizes = scales[: len(at)]
+    steps = zip(np.diag(sizes), sizes, strict=True)
+    return np.array([(function(at + h) - function(at - h)) / (2.0 * size) for h, size in steps]).T
 
 
 def stiffness(force: Force, q: FloatArray, right: float, left: float) -> FloatArray:
@@ -68,7 +83,7 @@ def stiffness(force: Force, q: FloatArray, right: float, left: float) -> FloatAr
 
 
 def is_minimum(k: FloatArray) -> bool:
-    """Say whether a stiffness holds in every direction: its least eigenvalue, scaled by its diagonal, is positive."""
+    """Say whether a stiffness is positive in every direction: its least eigenvalue, scaled by its diagonal, is."""
     size = np.sqrt(np.abs(np.diag(k))) + 1e-300
     return bool(np.linalg.eigvalsh(0.5 * (k + k.T) / np.outer(size, size))[0] > 0.0)
 
@@ -132,7 +147,7 @@ def fold(
     farthest: float = 20.0,
     step: float = 0.05,
 ) -> Fold | None:
-    """Return the first place, to either side, where the equilibrium stops being stable as the drive rises.
+    """Return the first place, to either side, where the equilibrium becomes unstable as the drive rises.
 
     Parameters
     ----------
@@ -145,13 +160,13 @@ def fold(
     size : int
         Coordinates of a place, 1 or 3.
     farthest, step : float
-        Largest travel looked at, and how finely, um.
+        Largest travel searched, and the step of the search, um.
 
     Returns
     -------
     Fold or None
-        Of the two sides the one that needs less voltage; none when both are stable as far as was looked. A device that
-        is unstable without any drive has its fold at 0 V.
+        The fold of the side that needs less voltage; None if both sides are stable over the travel searched. A device
+        that is unstable without any drive has its fold at 0 V.
     """
     ends = folds(force, stators, lateral, size, farthest, step)
     return min(ends, key=lambda entry: abs(entry.volts)) if ends else None
@@ -165,12 +180,12 @@ def folds(
     farthest: float = 20.0,
     step: float = 0.05,
 ) -> list[Fold]:
-    """Return the folds to either side, as far as there are any; arguments as for `fold`."""
+    """Return the folds to either side that exist; arguments as for `fold`."""
     rest = rest_at(force, np.zeros(size), *squared(stators, 0.0))
     if rest is None or not is_stable(force, rest, *squared(stators, 0.0)):
         return [Fold(0.0, 0.0, 0.0)]
-    found = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
-    return [entry for entry in found if entry is not None]
+    folds = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
+    return [entry for entry in folds if entry is not None]
 
 
 def _one_side(
@@ -202,7 +217,7 @@ def _one_side(
     return Fold(x, float(last[-1]), lateral(last[:-1]))
 
 
-def bias_pull_in(p: FloatArray, suspension: FloatArray, highest: float = 400.0) -> float | None:
+def bias_pull_in(p: Plane.Packed, suspension: Suspension, highest: float = 400.0) -> float | None:
     """Return the bias, V on both stators with opposite signs, beyond which a planar plant has no stable rest."""
     force = planar_force(p, suspension)
 
@@ -212,16 +227,16 @@ def bias_pull_in(p: FloatArray, suspension: FloatArray, highest: float = 400.0) 
 
     volts, step, place = 0.0, 1.0, np.zeros(3)
     while step > 1e-6:
-        found = at(volts + step, place)
-        if found is None:
+        rest = at(volts + step, place)
+        if rest is None:
             step *= 0.5
         else:
-            volts, place = volts + step, found
+            volts, place = volts + step, rest
             if volts > highest:
                 return None
     return volts
 
 
-def stators_of(p: FloatArray) -> tuple[float, float]:
+def stators_of(p: Shuttle.Packed) -> tuple[float, float]:
     """Return the voltages of the stators in packed parameters of a plant."""
-    return float(p[FIRST_V]), float(p[SECOND_V])
+    return float(p.first_v), float(p.second_v)

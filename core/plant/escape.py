@@ -1,4 +1,4 @@
-"""How fast the shuttle may be anywhere without leaving for its stators: the map of the unstable region."""
+"""Map of the unstable region: the speed at which the shuttle may pass each place without being pulled in."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from core.plant.equilibrium import SCALES, Force, is_minimum, rest_at, stiffness
 
 @dataclass(frozen=True)
 class Boundary:
-    """Places along x, and the speed beyond which the energy suffices to get over the barrier, um and um/ms."""
+    """Places along x, um, and the speeds beyond which the energy suffices to cross the barrier, um/ms."""
 
     x_um: FloatArray
     speed_um_ms: FloatArray
@@ -22,15 +22,15 @@ class Boundary:
 def boundary(
     force: Force, mass: float, right: float, left: float, size: int, farthest: float = 20.0, step: float = 0.05
 ) -> Boundary | None:
-    r"""Return the boundary of what cannot pull in, under a voltage that is held.
+    r"""Return the boundary of the motions that cannot pull in, under a held voltage.
 
-    Along x the other coordinates are where they rest. With the energy :math:`U(x)=-\int F_x\,dx` of that path and its
-    lower barrier :math:`U_b`, damping or none,
+    Along x the other coordinates are taken at rest. With the energy :math:`U(x)=-\int F_x\,dx` of that path and its
+    lower barrier :math:`U_b`, with or without damping, a motion with
 
     .. math:: \tfrac12mv^2+U(x)<U_b
 
     cannot leave. The barrier is where the force turns outwards, or where the other coordinates lose their rest.
-    Outside the shuttle may leave, and without damping it does if that barrier lies ahead of it.
+    Outside the boundary the shuttle may leave, and without damping it does if that barrier lies ahead of it.
 
     Parameters
     ----------
@@ -43,12 +43,12 @@ def boundary(
     size : int
         Coordinates of a place, 1 or 3.
     farthest, step : float
-        Largest travel looked at, and how finely, um.
+        Largest travel searched, and the step of the search, um.
 
     Returns
     -------
     Boundary or None
-        None when there is no barrier within the travel, or no stable rest at all (then the boundary is one point).
+        None if there is no barrier within the travel. Without any stable rest the boundary is one point.
     """
     rest = rest_at(force, np.zeros(size), right, left)
     if rest is None or _along(force, float(rest[0]), rest, right, left) is None:
@@ -93,11 +93,11 @@ def _climb(
         x = places[-1] + side * pace
         if abs(x) > farthest:
             return np.array(places), np.array(energies), False
-        found = _along(force, x, q, right, left)
-        if found is None or side * found[1] > 0.0:
+        reached = _along(force, x, q, right, left)
+        if reached is None or side * reached[1] > 0.0:
             pace *= 0.5
             continue
         places.append(x)
-        energies.append(energies[-1] - 0.5 * (before + found[1]) * side * pace)
-        q, before = found
+        energies.append(energies[-1] - 0.5 * (before + reached[1]) * side * pace)
+        q, before = reached
     return np.array(places), np.array(energies), math.isfinite(energies[-1])

@@ -2,28 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, settled
+from core.block import Equation
 from core.device.oscillator import transition
+from core.kernel import flush_tiny
 from core.plant.shuttle import (
-    ACCELERATION,
-    DISPLACEMENT,
-    DRIVE_GAIN,
-    DRIVE_OFFSET,
-    DT,
-    END,
-    FIRST_OWN_INPUT,
-    FRICTION,
-    MIDDLE,
-    SHORT,
-    SHORTED,
-    V0,
-    VELOCITY,
-    VOLTAGE,
-    X0,
     Shuttle,
     ShuttleParams,
     at_rest_sideways,
@@ -34,64 +16,15 @@ from core.plant.shuttle import (
     joined,
     thermal_force,
 )
-
-X_OUT, V_OUT, SHORT_OUT = FIRST_OWN_INPUT + DISPLACEMENT, FIRST_OWN_INPUT + VELOCITY, FIRST_OWN_INPUT + SHORT
-
-
-def linear_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance over the interval that ends now; the first tick only sets the start."""
-    short = joined(w[io[SHORT_OUT]], w[io[SHORTED]])
-    at_rest_sideways(w, io, FIRST_OWN_INPUT, short)
-    if w[TICK] == 0.0:
-        w[io[X_OUT]] = p[X0]
-        w[io[V_OUT]] = p[V0]
-        return
-    m, b, k = coefficients(p, w, io)
-    if m != s[0] or b != s[1] or k != s[2] or p[DT] != s[3]:
-        s[0], s[1], s[2], s[3] = m, b, k, p[DT]
-        s[4], s[5], s[6], s[7] = transition(m, b, k, p[DT])
-    tick = w[TICK] - 1.0
-    noise = drive_noise(p, tick)
-    gain = w[io[DRIVE_GAIN]]
-    u0 = gain * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
-    f0 = comb_force(p, u0 + noise, short) + thermal_force(p, b, tick) - m * w[io[ACCELERATION]]
-    x = w[io[X_OUT]]
-    v = w[io[V_OUT]]
-    rubbing = w[io[FRICTION]] > 0.0
-    if rubbing:
-        net = f0 - k * x
-        if v == 0.0 and abs(net) <= w[io[FRICTION]]:
-            return
-        f0 += dry_friction(w[io[FRICTION]], v, net)
-    if w[io[MIDDLE]] == w[io[VOLTAGE]] and w[io[END]] == w[io[VOLTAGE]]:
-        # a held drive: the particular solution is the static displacement
-        rest = f0 / k
-        w[io[X_OUT]] = settled(s[4] * (x - rest) + s[5] * v + rest)
-        w[io[V_OUT]] = settled(s[6] * (x - rest) + s[7] * v)
-    else:
-        # an analogue drive: a parabola through the start, middle and end of the interval
-        h = p[DT]
-        at_start = comb_force(p, u0, short)
-        d1 = comb_force(p, gain * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]], short) - at_start
-        d2 = comb_force(p, gain * w[io[END]] + w[io[DRIVE_OFFSET]], short) - at_start
-        f1 = (4.0 * d1 - d2) / h
-        f2 = (2.0 * d2 - 4.0 * d1) / (h * h)
-        c2 = f2 / k
-        c1 = (f1 - 2.0 * b * c2) / k
-        c0 = (f0 - b * c1 - 2.0 * m * c2) / k
-        w[io[X_OUT]] = s[4] * (x - c0) + s[5] * (v - c1) + c0 + c1 * h + c2 * h * h
-        w[io[V_OUT]] = s[6] * (x - c0) + s[7] * (v - c1) + c1 + 2.0 * c2 * h
-    if rubbing and v * w[io[V_OUT]] < 0.0:
-        # friction brings the shuttle to rest where it would turn
-        w[io[V_OUT]] = 0.0
+from core.record import Record
 
 
 class Linear(Shuttle):
     r"""Mass, damper and spring, :math:`m\ddot x+\beta\dot x+kx=F_e` (1.3.1, with :math:`k=2k_s`).
 
     Exact for a held drive. A continuous drive is a parabola over each sample, exact to
-    :math:`O((\omega\,dt)^4)`; holding a 2 kHz sine at 100 kHz instead is off by 6.6 % of the peak, which is
-    the truth about a DAC and wrong about a generator. Friction stops the shuttle in the sample in which it turns.
+    :math:`O((\omega\,dt)^4)`. Holding a 2 kHz sine at 100 kHz instead is off by 6.6 % of the peak, which is
+    right for a DAC and wrong for a generator. Friction stops the shuttle in the sample in which it turns.
     """
 
     title = "Linear plant"
@@ -111,14 +44,62 @@ class Linear(Shuttle):
     class Params(ShuttleParams):
         """Parameters of the linear plant."""
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        return np.array(cls.shared(params, context), dtype=np.float64)
-
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    class State(Record):
         """Mass, damping, stiffness and interval of the transition kept, and the transition."""
-        return np.zeros(8)
 
-    step = linear_step
+        mass: float
+        damping: float
+        stiffness: float
+        dt_ms: float
+        phi11: float
+        phi12: float
+        phi21: float
+        phi22: float
+
+    @staticmethod
+    def step(p: Shuttle.Packed, s: State, x: Shuttle.Ports) -> None:
+        """Advance over the interval that ends now; the first tick only sets the start."""
+        short = joined(x.short, x.shorted)
+        at_rest_sideways(x, short)
+        if x.tick == 0.0:
+            x.displacement = p.initial_displacement_um
+            x.velocity = p.initial_velocity_um_ms
+            return
+        m, b, k = coefficients(p, x)
+        if m != s.mass or b != s.damping or k != s.stiffness or p.dt_ms != s.dt_ms:
+            s.mass, s.damping, s.stiffness, s.dt_ms = m, b, k, p.dt_ms
+            s.phi11, s.phi12, s.phi21, s.phi22 = transition(m, b, k, p.dt_ms)
+        tick = x.tick - 1.0
+        noise = drive_noise(p, tick)
+        gain = x.drive_gain
+        u0 = gain * x.voltage + x.drive_offset
+        f0 = comb_force(p, u0 + noise, short) + thermal_force(p, b, tick) - m * x.acceleration
+        q = x.displacement
+        v = x.velocity
+        rubbing = x.friction > 0.0
+        if rubbing:
+            net = f0 - k * q
+            if v == 0.0 and abs(net) <= x.friction:
+                return
+            f0 += dry_friction(x.friction, v, net)
+        if x.middle == x.voltage and x.end == x.voltage:
+            # a held drive: the particular solution is the static displacement
+            rest = f0 / k
+            x.displacement = flush_tiny(s.phi11 * (q - rest) + s.phi12 * v + rest)
+            x.velocity = flush_tiny(s.phi21 * (q - rest) + s.phi22 * v)
+        else:
+            # an analogue drive: a parabola through the start, middle and end of the interval
+            h = p.dt_ms
+            at_start = comb_force(p, u0, short)
+            d1 = comb_force(p, gain * x.middle + x.drive_offset, short) - at_start
+            d2 = comb_force(p, gain * x.end + x.drive_offset, short) - at_start
+            f1 = (4.0 * d1 - d2) / h
+            f2 = (2.0 * d2 - 4.0 * d1) / (h * h)
+            c2 = f2 / k
+            c1 = (f1 - 2.0 * b * c2) / k
+            c0 = (f0 - b * c1 - 2.0 * m * c2) / k
+            x.displacement = s.phi11 * (q - c0) + s.phi12 * (v - c1) + c0 + c1 * h + c2 * h * h
+            x.velocity = s.phi21 * (q - c0) + s.phi22 * (v - c1) + c1 + 2.0 * c2 * h
+        if rubbing and v * x.velocity < 0.0:
+            # friction brings the shuttle to rest where it would turn
+            x.velocity = 0.0

@@ -5,22 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter, settled
+from core.block import Context, Equation, parameter
+from core.elementary import tanh
+from core.kernel import flush_tiny, kernel
 from core.plant.shuttle import (
-    ACCELERATION,
-    DISPLACEMENT,
-    DT,
-    ELASTICITY_PORT,
-    FIRST_OWN_INPUT,
-    FRICTION,
-    OWN,
-    SHORT,
-    SHORTED,
-    V0,
-    VELOCITY,
-    X0,
+    ELASTICITY,
     Shuttle,
     ShuttleParams,
     at_rest_sideways,
@@ -33,85 +22,19 @@ from core.plant.shuttle import (
     thermal_force,
     wall,
 )
+from core.ports import reads
+from core.record import Record
 
-CUBIC, SMOOTHED, SLIP, STOP, STOP_STIFFNESS, STOP_DAMPING, SUBSTEPS, FINE, NEAR, SLOW = range(OWN, OWN + 10)
-CUBIC_IN, ELASTICITY_IN, FIRST_OUTPUT = range(FIRST_OWN_INPUT, FIRST_OWN_INPUT + 3)
-X_OUT, V_OUT, SHORT_OUT = FIRST_OUTPUT + DISPLACEMENT, FIRST_OUTPUT + VELOCITY, FIRST_OUTPUT + SHORT
 RESOLVED = 0.2
 """Longest step at a stop or in smoothed friction, in units of one over the fastest rate there.
 
-A few rebounds are then good to 3 % of the travel, against an adaptive solver; with 0.5 to 10 %, and 2.8 is unstable.
+A few rebounds are then accurate to 3 % of the travel, compared with an adaptive solver; with 0.5 the error is 10 %, and
+2.8 is unstable.
 """
 MOST_PARTS = 1000
-"""Most parts of a substep, so that a sample ends."""
+"""Largest number of parts of a substep, so that a sample takes a finite number of them."""
 SMOOTH = 4.0
-"""Where smoothed friction is as good as constant, in slip velocities."""
-
-
-@kernel
-def acceleration(p: Any, m: float, b: float, k: float, cubic: float, x: float, v: float, force: float) -> float:
-    """Return the acceleration at one point, um/ms^2."""
-    total = force - b * v - k * x - cubic * x * x * x - p[SMOOTHED] * math.tanh(v / p[SLIP])
-    return float((total + wall(p[STOP], p[STOP_STIFFNESS], p[STOP_DAMPING], x, v)) / m)
-
-
-def nonlinear_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance over the interval that ends now by Runge-Kutta substeps."""
-    short = joined(w[io[SHORT_OUT]], w[io[SHORTED]])
-    at_rest_sideways(w, io, FIRST_OUTPUT, short)
-    if w[TICK] == 0.0:
-        w[io[X_OUT]] = p[X0]
-        w[io[V_OUT]] = p[V0]
-        return
-    m, b, k = coefficients(p, w, io)
-    cubic = w[io[ELASTICITY_IN]] * (p[CUBIC] + w[io[CUBIC_IN]])
-    tick = w[TICK] - 1.0
-    u0, rise, bend = comb_voltage_parabola(w, io)
-    noise = drive_noise(p, tick)
-    other = thermal_force(p, b, tick) - m * w[io[ACCELERATION]]
-    rubbing = w[io[FRICTION]]
-    whole = p[DT] / p[SUBSTEPS]
-    fine = int(p[FINE])
-    total = int(p[SUBSTEPS]) * fine
-    x = w[io[X_OUT]]
-    v = w[io[V_OUT]]
-    done = 0
-    while done < total:
-        stride = fine if done % fine == 0 else 1
-        a0 = done / total
-        fa = comb_force(p, u0 + noise + a0 * (rise + a0 * bend), short) + other
-        drag = 0.0
-        if rubbing > 0.0:
-            net = m * acceleration(p, m, b, k, cubic, x, 0.0, fa)
-            if v == 0.0 and abs(net) <= rubbing:
-                done += stride
-                continue
-            drag = dry_friction(rubbing, v, net)
-            fa += drag
-        k1 = acceleration(p, m, b, k, cubic, x, v, fa)
-        # a whole substep, or one of its parts where the next might meet a stop or friction that turns
-        gain = whole * abs(k1)
-        if abs(x) + whole * (abs(v) + gain) > p[NEAR] or abs(v) - gain < p[SLOW]:
-            stride = 1
-        h = whole if stride == fine else whole / fine
-        a1 = (done + 0.5 * stride) / total
-        done += stride
-        a2 = done / total
-        fb = comb_force(p, u0 + noise + a1 * (rise + a1 * bend), short) + other + drag
-        fc = comb_force(p, u0 + noise + a2 * (rise + a2 * bend), short) + other + drag
-        before = v
-        v2 = v + 0.5 * h * k1
-        k2 = acceleration(p, m, b, k, cubic, x + 0.5 * h * v, v2, fb)
-        v3 = v + 0.5 * h * k2
-        k3 = acceleration(p, m, b, k, cubic, x + 0.5 * h * v2, v3, fb)
-        v4 = v + h * k3
-        k4 = acceleration(p, m, b, k, cubic, x + h * v3, v4, fc)
-        x += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
-        v += h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
-        if rubbing > 0.0 and before * v < 0.0:
-            v = 0.0  # friction brings the shuttle to rest where it would turn
-    w[io[X_OUT]] = settled(x)
-    w[io[V_OUT]] = settled(v)
+"""Speed beyond which smoothed friction is practically constant, in slip velocities."""
 
 
 class Nonlinear(Shuttle):
@@ -125,11 +48,6 @@ class Nonlinear(Shuttle):
     """
 
     title = "Nonlinear plant"
-    inputs = (
-        *Shuttle.inputs,
-        Port("cubic", "uN/um^3", "added cubic stiffness", source="effects.cubic"),
-        ELASTICITY_PORT,
-    )
     equations = (
         Equation(
             "motion",
@@ -150,26 +68,107 @@ class Nonlinear(Shuttle):
         stop_damping_ns_m: float = parameter(2e-5, "damping of a stop", "N s/m", ge=0, le=1e-3)
         substeps: int = parameter(4, "Runge-Kutta steps in a sample", ge=1, le=64)
 
+    class Packed(Shuttle.Packed):
+        """Spring, friction and stops, the division of a sample, and the places that need a finer one."""
+
+        cubic: float
+        smoothed_friction: float
+        slip_velocity_um_ms: float
+        stop_um: float
+        stop_stiffness_n_m: float
+        stop_damping: float
+        substeps: float
+        parts: float
+        near_stop_um: float
+        slow_um_ms: float
+
+    class Ports(Shuttle.Ports):
+        """Effects that change its elasticity."""
+
+        cubic: float = reads("effects.cubic", "uN/um^3", "added cubic stiffness")
+        elasticity_scale: float = ELASTICITY
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step: uN/um^3 is 1e-12 N/m^3, nN is 1e-3 uN."""
         substep = context.dt_ms / params.substeps
         mass = context.device.mass
         damping = params.stop_damping_ns_m * 1e3
         wall = max(math.sqrt(params.stop_stiffness_n_m / mass), damping / mass) * substep
         slope = params.friction_nn * 1e-3 / (params.slip_velocity_um_ms * mass) * substep
-        own = [
-            params.cubic_n_m3 * 1e-12,
-            params.friction_nn * 1e-3,
-            params.slip_velocity_um_ms,
-            params.stop_um,
-            params.stop_stiffness_n_m,
-            damping,
-            float(params.substeps),
-            float(min(math.ceil(max(wall, slope, RESOLVED) / RESOLVED), MOST_PARTS)),
-            params.stop_um if wall > RESOLVED else math.inf,
-            SMOOTH * params.slip_velocity_um_ms if slope > RESOLVED else -math.inf,
-        ]
-        return np.array(cls.shared(params, context) + own, dtype=np.float64)
+        p: Nonlinear.Packed = super().pack(params, context)
+        p.cubic = params.cubic_n_m3 * 1e-12
+        p.smoothed_friction = params.friction_nn * 1e-3
+        p.stop_damping = damping
+        p.parts = float(min(math.ceil(max(wall, slope, RESOLVED) / RESOLVED), MOST_PARTS))
+        p.near_stop_um = params.stop_um if wall > RESOLVED else math.inf
+        p.slow_um_ms = SMOOTH * params.slip_velocity_um_ms if slope > RESOLVED else -math.inf
+        return p
 
-    step = nonlinear_step
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Advance over the interval that ends now by Runge-Kutta substeps."""
+        short = joined(x.short, x.shorted)
+        at_rest_sideways(x, short)
+        if x.tick == 0.0:
+            x.displacement = p.initial_displacement_um
+            x.velocity = p.initial_velocity_um_ms
+            return
+        m, b, k = coefficients(p, x)
+        cubic = x.elasticity_scale * (p.cubic + x.cubic)
+        tick = x.tick - 1.0
+        u0, rise, bend = comb_voltage_parabola(x)
+        noise = drive_noise(p, tick)
+        outside = thermal_force(p, b, tick) - m * x.acceleration
+        rubbing = x.friction
+        whole = p.dt_ms / p.substeps
+        fine = int(p.parts)
+        total = int(p.substeps) * fine
+        q = x.displacement
+        v = x.velocity
+        done = 0
+        while done < total:
+            stride = fine if done % fine == 0 else 1
+            a0 = done / total
+            fa = comb_force(p, u0 + noise + a0 * (rise + a0 * bend), short) + outside
+            drag = 0.0
+            if rubbing > 0.0:
+                net = m * acceleration(p, m, b, k, cubic, q, 0.0, fa)
+                if v == 0.0 and abs(net) <= rubbing:
+                    done += stride
+                    continue
+                drag = dry_friction(rubbing, v, net)
+                fa += drag
+            k1 = acceleration(p, m, b, k, cubic, q, v, fa)
+            # a whole substep, or one of its parts if the whole might meet a stop or a turn of the friction
+            gain = whole * abs(k1)
+            if abs(q) + whole * (abs(v) + gain) > p.near_stop_um or abs(v) - gain < p.slow_um_ms:
+                stride = 1
+            h = whole if stride == fine else whole / fine
+            a1 = (done + 0.5 * stride) / total
+            done += stride
+            a2 = done / total
+            fb = comb_force(p, u0 + noise + a1 * (rise + a1 * bend), short) + outside + drag
+            fc = comb_force(p, u0 + noise + a2 * (rise + a2 * bend), short) + outside + drag
+            before = v
+            v2 = v + 0.5 * h * k1
+            k2 = acceleration(p, m, b, k, cubic, q + 0.5 * h * v, v2, fb)
+            v3 = v + 0.5 * h * k2
+            k3 = acceleration(p, m, b, k, cubic, q + 0.5 * h * v2, v3, fb)
+            v4 = v + h * k3
+            k4 = acceleration(p, m, b, k, cubic, q + h * v3, v4, fc)
+            q += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
+            v += h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
+            if rubbing > 0.0 and before * v < 0.0:
+                v = 0.0  # friction brings the shuttle to rest where it would turn
+        x.displacement = flush_tiny(q)
+        x.velocity = flush_tiny(v)
+
+
+@kernel
+def acceleration(
+    p: Nonlinear.Packed, m: float, b: float, k: float, cubic: float, x: float, v: float, force: float
+) -> float:
+    """Return the acceleration at one point, um/ms^2."""
+    total = force - b * v - k * x - cubic * x * x * x - p.smoothed_friction * tanh(v / p.slip_velocity_um_ms)
+    return float((total + wall(p.stop_um, p.stop_stiffness_n_m, p.stop_damping, x, v)) / m)

@@ -2,62 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, Port, settled
+from core.block import Equation
+from core.kernel import flush_tiny
 from core.noise import normal
-from core.plant.body import (
-    ACCELERATION_SIDE,
-    BETA,
-    F_X,
-    F_Y,
-    FIRST_OUTPUT,
-    PER_MASS,
-    TOUCHED_MS,
-    acceleration,
-    noise_of,
-    prepare,
-    worst,
-)
-from core.plant.contact import SHORTS, TOUCH
-from core.plant.plane import (
-    COARSE,
-    FINE,
-    NEAR,
-    PER_INERTIA,
-    ROTOR,
-    SIDE_KEY,
-    T_MISS,
-    THERMAL_COARSE,
-    THERMAL_FINE,
-    TURN_KEY,
-    Y_MISS,
-    PlaneParams,
-)
+from core.plant.body import acceleration, noise_of, prepare, worst
+from core.plant.plane import Plane, PlaneParams
 from core.plant.shuttle import (
-    ACCELERATION,
-    CONTACT,
-    DISPLACEMENT,
-    DT,
-    ELASTICITY_PORT,
-    FIRST_V,
-    FRICTION,
-    LATERAL,
     LEFT,
     RIGHT,
-    ROTATION,
-    ROTATION_VELOCITY,
-    SECOND_V,
-    SHIFT,
-    SHIFT_VELOCITY,
-    SHORT,
-    SHORTED,
-    V0,
-    VELOCITY,
-    X0,
-    Shuttle,
     comb_voltage,
     comb_voltage_parabola,
     drive_noise,
@@ -67,113 +19,7 @@ from core.plant.shuttle import (
 )
 
 
-def planar_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance over the interval that ends now by Runge-Kutta substeps."""
-    out = FIRST_OUTPUT
-    short = joined(w[io[out + SHORT]], w[io[SHORTED]])
-    w[io[out + CONTACT]] = 0.0
-    x = w[io[out + DISPLACEMENT]]
-    y = w[io[out + SHIFT]]
-    theta = 1e-3 * w[io[out + ROTATION]]
-    vx = w[io[out + VELOCITY]]
-    vy = w[io[out + SHIFT_VELOCITY]]
-    omega = 1e-3 * w[io[out + ROTATION_VELOCITY]]
-    if w[TICK] == 0.0:
-        x, vx, y, vy, theta, omega = p[X0], p[V0], 0.0, 0.0, 0.0, 0.0
-    prepare(p, s, w, io)
-    m = 1.0 / s[PER_MASS]
-    tick = w[TICK] - 1.0
-    rest_x = -m * w[io[ACCELERATION]]
-    rest_y = -m * w[io[ACCELERATION_SIDE]]
-    l11, l21, l22 = 0.0, 0.0, 0.0
-    if p[THERMAL_COARSE] > 0.0 and tick >= 0.0:
-        rest_x += thermal_force(p, s[BETA], tick)
-        l11, l21, l22 = noise_of(p, s, y, theta)
-    u0, rise, bend = comb_voltage_parabola(w, io)
-    if tick >= 0.0:
-        u0 += drive_noise(p, tick)
-    rubbing = w[io[FRICTION]]
-    fine = int(p[FINE])
-    total = int(p[COARSE]) * fine if tick >= 0.0 else 0
-    done = 0
-    while done < total:
-        # one coarse substep, or a fine one of its parts while fingers are far off centre
-        stride = fine if done % fine == 0 and abs(worst(p, y, theta)) < p[NEAR] else 1
-        h = p[DT] * stride / total
-        a0 = done / total
-        a1 = (done + 0.5 * stride) / total
-        done_next = done + stride
-        a2 = done_next / total
-        s[F_X] = rest_x
-        s[F_Y] = rest_y
-        kick = 0.0
-        if p[THERMAL_COARSE] > 0.0:
-            scale = p[THERMAL_COARSE] if stride == fine else p[THERMAL_FINE]
-            count = tick * total + done
-            n1 = scale * normal(p[SIDE_KEY], count)
-            s[F_Y] = rest_y + l11 * n1
-            kick = (l21 * n1 + l22 * scale * normal(p[TURN_KEY], count)) * p[PER_INERTIA]
-        u = u0 + a0 * (rise + a0 * bend)
-        r0 = comb_voltage(p[FIRST_V] - u, short, RIGHT)
-        l0 = comb_voltage(p[SECOND_V] - u, short, LEFT)
-        u = u0 + a1 * (rise + a1 * bend)
-        r1 = comb_voltage(p[FIRST_V] - u, short, RIGHT)
-        l1 = comb_voltage(p[SECOND_V] - u, short, LEFT)
-        u = u0 + a2 * (rise + a2 * bend)
-        r2 = comb_voltage(p[FIRST_V] - u, short, RIGHT)
-        l2 = comb_voltage(p[SECOND_V] - u, short, LEFT)
-        r0, l0, r1, l1, r2, l2 = r0 * r0, l0 * l0, r1 * r1, l1 * l1, r2 * r2, l2 * l2
-        held = False
-        if rubbing > 0.0:
-            net = m * acceleration(p, s, x, y, theta, 0.0, vy, omega, r0, l0)[0]
-            held = vx == 0.0 and abs(net) <= rubbing
-            s[F_X] += dry_friction(rubbing, vx, net)
-        g = 0.5 * h
-        ax1, ay1, at1 = acceleration(p, s, x, y, theta, vx, vy, omega, r0, l0)
-        at1 += kick
-        vx2, vy2, om2 = vx + g * ax1, vy + g * ay1, omega + g * at1
-        ax2, ay2, at2 = acceleration(p, s, x + g * vx, y + g * vy, theta + g * omega, vx2, vy2, om2, r1, l1)
-        at2 += kick
-        vx3, vy3, om3 = vx + g * ax2, vy + g * ay2, omega + g * at2
-        ax3, ay3, at3 = acceleration(p, s, x + g * vx2, y + g * vy2, theta + g * om2, vx3, vy3, om3, r1, l1)
-        at3 += kick
-        vx4, vy4, om4 = vx + h * ax3, vy + h * ay3, omega + h * at3
-        ax4, ay4, at4 = acceleration(p, s, x + h * vx3, y + h * vy3, theta + h * om3, vx4, vy4, om4, r2, l2)
-        at4 += kick
-        g = h / 6.0
-        before = vx
-        if not held:
-            x += g * (vx + 2.0 * (vx2 + vx3) + vx4)
-            vx += g * (ax1 + 2.0 * (ax2 + ax3) + ax4)
-            if rubbing > 0.0 and before * vx < 0.0:
-                vx = 0.0  # friction brings the shuttle to rest where it would turn
-        y += g * (vy + 2.0 * (vy2 + vy3) + vy4)
-        theta += g * (omega + 2.0 * (om2 + om3) + om4)
-        vy += g * (ay1 + 2.0 * (ay2 + ay3) + ay4)
-        omega += g * (at1 + 2.0 * (at2 + at3) + at4)
-        done = done_next
-        if abs(worst(p, y, theta)) > p[TOUCH]:
-            w[io[out + CONTACT]] = 1.0
-            if s[TOUCHED_MS] < 0.0:
-                s[TOUCHED_MS] = (tick + a2) * p[DT]
-            if p[SHORTS] != 0.0:
-                yy = y + p[Y_MISS]
-                lever = (theta + p[T_MISS]) * p[ROTOR]
-                if abs(yy + lever) > p[TOUCH]:
-                    short = joined(short, RIGHT)
-                if abs(yy - lever) > p[TOUCH]:
-                    short = joined(short, LEFT)
-    w[io[out + DISPLACEMENT]] = settled(x)
-    w[io[out + VELOCITY]] = settled(vx)
-    w[io[out + LATERAL]] = worst(p, y, theta)
-    w[io[out + SHIFT]] = settled(y)
-    w[io[out + SHIFT_VELOCITY]] = settled(vy)
-    w[io[out + ROTATION]] = settled(1e3 * theta)
-    w[io[out + ROTATION_VELOCITY]] = settled(1e3 * omega)
-    w[io[out + SHORT]] = short
-
-
-class Planar(Shuttle):
+class Planar(Plane):
     r"""Rigid shuttle in the plane: along x, sideways and in rotation, with pull-in, contact and short circuit.
 
     .. math:: m\ddot x=F_{e,x}-\partial U/\partial x-\beta\dot x,\quad
@@ -186,20 +32,6 @@ class Planar(Shuttle):
     """
 
     title = "Planar plant"
-    inputs = (
-        *Shuttle.inputs,
-        Port("acceleration_side", "um/ms^2", "acceleration of the frame along y", source="effects.acceleration_side"),
-        Port("cubic", "uN/um^3", "added cubic stiffness", source="effects.cubic"),
-        Port("lateral_scale", "1", "stiffness along y over nominal", source="effects.lateral_scale"),
-        Port("lateral_reach", "1", "reach of the stiffness along y over nominal", source="effects.lateral_reach"),
-        Port("rotation_scale", "1", "stiffness against rotation over nominal", source="effects.rotation_scale"),
-        Port("rotation_reach", "1", "reach of the same over nominal", source="effects.rotation_reach"),
-        Port("sideways", "1/um", "added sideways shift per squared travel", source="effects.sideways"),
-        Port("turn", "rad/um", "added rotation per travel", source="effects.turn"),
-        Port("turn_cubic", "rad/um^3", "added rotation per cubed travel", source="effects.turn_cubic"),
-        Port("squeeze_scale", "1", "squeeze film over continuous, over the damping", source="effects.squeeze_scale"),
-        ELASTICITY_PORT,
-    )
     equations = (
         Equation(
             "co-energy",
@@ -241,16 +73,107 @@ class Planar(Shuttle):
     class Params(PlaneParams):
         """Mechanics across the drive; what is not given follows from the drawing of the device."""
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        return np.array(cls.shared(params, context) + params.packed(context), dtype=np.float64)
-
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Return room for the suspension and forces of a sample, and the time of the first contact."""
-        start = np.zeros(17)
-        start[TOUCHED_MS] = -1.0
-        return start
-
-    step = planar_step
+    @staticmethod
+    def step(p: Plane.Packed, s: Plane.State, x: Plane.Ports) -> None:
+        """Advance over the interval that ends now by Runge-Kutta substeps."""
+        short = joined(x.short, x.shorted)
+        x.contact = 0.0
+        qx = x.displacement
+        qy = x.shift
+        theta = 1e-3 * x.rotation
+        vx = x.velocity
+        vy = x.shift_velocity
+        omega = 1e-3 * x.rotation_velocity
+        if x.tick == 0.0:
+            qx, vx, qy, vy, theta, omega = p.initial_displacement_um, p.initial_velocity_um_ms, 0.0, 0.0, 0.0, 0.0
+        prepare(p, s, x)
+        m = 1.0 / s.per_mass
+        tick = x.tick - 1.0
+        rest_x = -m * x.acceleration
+        rest_y = -m * x.acceleration_side
+        l11, l21, l22 = 0.0, 0.0, 0.0
+        if p.thermal_coarse > 0.0 and tick >= 0.0:
+            rest_x += thermal_force(p, s.damping, tick)
+            l11, l21, l22 = noise_of(p, s, qy, theta)
+        u0, rise, bend = comb_voltage_parabola(x)
+        if tick >= 0.0:
+            u0 += drive_noise(p, tick)
+        rubbing = x.friction
+        fine = int(p.fine_steps)
+        total = int(p.coarse_steps) * fine if tick >= 0.0 else 0
+        done = 0
+        while done < total:
+            # one coarse substep, or a fine one of its parts while fingers are far off centre
+            stride = fine if done % fine == 0 and abs(worst(p, qy, theta)) < p.near_um else 1
+            h = p.dt_ms * stride / total
+            a0 = done / total
+            a1 = (done + 0.5 * stride) / total
+            done_next = done + stride
+            a2 = done_next / total
+            s.force_x = rest_x
+            s.force_y = rest_y
+            kick = 0.0
+            if p.thermal_coarse > 0.0:
+                scale = p.thermal_coarse if stride == fine else p.thermal_fine
+                count = tick * total + done
+                n1 = scale * normal(p.side_key, count)
+                s.force_y = rest_y + l11 * n1
+                kick = (l21 * n1 + l22 * scale * normal(p.turn_key, count)) * p.per_inertia
+            u = u0 + a0 * (rise + a0 * bend)
+            r0 = comb_voltage(p.first_v - u, short, RIGHT)
+            l0 = comb_voltage(p.second_v - u, short, LEFT)
+            u = u0 + a1 * (rise + a1 * bend)
+            r1 = comb_voltage(p.first_v - u, short, RIGHT)
+            l1 = comb_voltage(p.second_v - u, short, LEFT)
+            u = u0 + a2 * (rise + a2 * bend)
+            r2 = comb_voltage(p.first_v - u, short, RIGHT)
+            l2 = comb_voltage(p.second_v - u, short, LEFT)
+            r0, l0, r1, l1, r2, l2 = r0 * r0, l0 * l0, r1 * r1, l1 * l1, r2 * r2, l2 * l2
+            held = False
+            if rubbing > 0.0:
+                net = m * acceleration(p, s, qx, qy, theta, 0.0, vy, omega, r0, l0)[0]
+                held = vx == 0.0 and abs(net) <= rubbing
+                s.force_x += dry_friction(rubbing, vx, net)
+            g = 0.5 * h
+            ax1, ay1, at1 = acceleration(p, s, qx, qy, theta, vx, vy, omega, r0, l0)
+            at1 += kick
+            vx2, vy2, om2 = vx + g * ax1, vy + g * ay1, omega + g * at1
+            ax2, ay2, at2 = acceleration(p, s, qx + g * vx, qy + g * vy, theta + g * omega, vx2, vy2, om2, r1, l1)
+            at2 += kick
+            vx3, vy3, om3 = vx + g * ax2, vy + g * ay2, omega + g * at2
+            ax3, ay3, at3 = acceleration(p, s, qx + g * vx2, qy + g * vy2, theta + g * om2, vx3, vy3, om3, r1, l1)
+            at3 += kick
+            vx4, vy4, om4 = vx + h * ax3, vy + h * ay3, omega + h * at3
+            ax4, ay4, at4 = acceleration(p, s, qx + h * vx3, qy + h * vy3, theta + h * om3, vx4, vy4, om4, r2, l2)
+            at4 += kick
+            g = h / 6.0
+            before = vx
+            if not held:
+                qx += g * (vx + 2.0 * (vx2 + vx3) + vx4)
+                vx += g * (ax1 + 2.0 * (ax2 + ax3) + ax4)
+                if rubbing > 0.0 and before * vx < 0.0:
+                    vx = 0.0  # friction brings the shuttle to rest where it would turn
+            qy += g * (vy + 2.0 * (vy2 + vy3) + vy4)
+            theta += g * (omega + 2.0 * (om2 + om3) + om4)
+            vy += g * (ay1 + 2.0 * (ay2 + ay3) + ay4)
+            omega += g * (at1 + 2.0 * (at2 + at3) + at4)
+            done = done_next
+            if abs(worst(p, qy, theta)) > p.touch_um:
+                x.contact = 1.0
+                if s.touched_ms < 0.0:
+                    s.touched_ms = (tick + a2) * p.dt_ms
+                if p.short_on_contact != 0.0:
+                    yy = qy + p.misalignment_um
+                    lever = (theta + p.misalignment_rad) * p.rotor_tip
+                    if abs(yy + lever) > p.touch_um:
+                        short = joined(short, RIGHT)
+                    if abs(yy - lever) > p.touch_um:
+                        short = joined(short, LEFT)
+        x.displacement = flush_tiny(qx)
+        x.velocity = flush_tiny(vx)
+        x.lateral = worst(p, qy, theta)
+        x.shift = flush_tiny(qy)
+        x.shift_velocity = flush_tiny(vy)
+        x.rotation = flush_tiny(1e3 * theta)
+        x.rotation_velocity = flush_tiny(1e3 * omega)
+        x.short = short

@@ -1,45 +1,21 @@
-"""Parameters of the plant in the plane, and where they stand when packed."""
+"""Parameters, packed numbers, state and ports of the plant in the plane."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import asdict
+from typing import Any
 
 from core.block import Context, parameter
 from core.device.geometry import drawn
 from core.device.lateral import lateral
 from core.noise import key
-from core.plant.contact import PLANT, ContactParams, resolved_us
+from core.plant.contact import ContactParams, TouchingShuttle, resolved_us
+from core.plant.shuttle import ELASTICITY
+from core.plant.suspension import Suspension
+from core.ports import reads
+from core.record import Record
 from core.units import UN_PER_N, thermal_force_un
-
-(
-    STRENGTH,
-    GAP_SQUARED,
-    PER_GAP,
-    STATOR,
-    ROTOR,
-    PER_INERTIA,
-    SIDE_DAMPING,
-    TURN_DAMPING,
-    SQUEEZE,
-    Y_MISS,
-    T_MISS,
-    CUBIC,
-    SIDE_STIFFNESS,
-    SIDE_REACH,
-    TURN_STIFFNESS,
-    TURN_REACH,
-    SIDEWAYS,
-    TURN,
-    TURN_CUBIC,
-    COARSE,
-    FINE,
-    NEAR,
-    THERMAL_COARSE,
-    THERMAL_FINE,
-    SIDE_KEY,
-    TURN_KEY,
-) = range(PLANT, PLANT + 26)
 
 
 class PlaneParams(ContactParams):
@@ -91,47 +67,117 @@ class PlaneParams(ContactParams):
     step_us: float = parameter(0.25, "longest substep", "us", gt=0.01, le=1.0)
     near_step_us: float = parameter(0.1, "longest substep beyond 0.4 of the gap", "us", gt=0.01, le=0.25)
 
-    def packed(self, context: Context) -> list[float]:
-        """Pack what the plant in the plane has beyond what all plants share: uN um is 1e12 N m, and so on."""
+
+class Plane(TouchingShuttle):
+    """A rigid shuttle in the plane."""
+
+    class Packed(TouchingShuttle.Packed):
+        """Comb, inertia, dampings and suspension; substeps of a sample, and noise of each."""
+
+        strength: float
+        gap_squared: float
+        per_gap: float
+        stator_tip: float
+        rotor_tip: float
+        per_inertia: float
+        lateral_damping: float
+        rotation_damping: float
+        squeeze: float
+        misalignment_um: float
+        misalignment_rad: float
+        cubic: float
+        lateral_stiffness: float
+        lateral_reach: float
+        rotation_stiffness: float
+        rotation_reach: float
+        sideways: float
+        turn: float
+        turn_cubic: float
+        coarse_steps: float
+        fine_steps: float
+        near_um: float
+        thermal_coarse: float
+        thermal_fine: float
+        side_key: float
+        turn_key: float
+
+    class State(Record):
+        """Suspension of this sample, one over its mass, dampings, outer forces; time of the first contact."""
+
+        suspension: Suspension
+        per_mass: float
+        damping: float
+        lateral_damping: float
+        rotation_damping: float
+        squeeze: float
+        force_x: float
+        force_y: float
+        touched_ms: float
+
+    class Ports(TouchingShuttle.Ports):
+        """Effects that change its suspension and its squeeze film, and its sideways acceleration."""
+
+        acceleration_side: float = reads("effects.acceleration_side", "um/ms^2", "acceleration of the frame along y")
+        cubic: float = reads("effects.cubic", "uN/um^3", "added cubic stiffness")
+        lateral_scale: float = reads("effects.lateral_scale", "1", "stiffness along y over nominal")
+        lateral_reach: float = reads("effects.lateral_reach", "1", "reach of the stiffness along y over nominal")
+        rotation_scale: float = reads("effects.rotation_scale", "1", "stiffness against rotation over nominal")
+        rotation_reach: float = reads("effects.rotation_reach", "1", "reach of the same over nominal")
+        sideways: float = reads("effects.sideways", "1/um", "added sideways shift per squared travel")
+        turn: float = reads("effects.turn", "rad/um", "added rotation per travel")
+        turn_cubic: float = reads("effects.turn_cubic", "rad/um^3", "added rotation per cubed travel")
+        squeeze_scale: float = reads("effects.squeeze_scale", "1", "squeeze film over continuous, over the damping")
+        elasticity_scale: float = ELASTICITY
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Any:
+        """Pack the numbers of the plant in the plane that other plants do not have: uN um is 1e12 N m, and so on."""
         known = asdict(lateral(drawn(context)))
         gap = known.pop("gap_um")
-        own = {name: known[name] if getattr(self, name) is None else getattr(self, name) for name in known}
+        given = {name: known[name] if getattr(params, name) is None else getattr(params, name) for name in known}
         mass = context.device.mass
-        step = self.stop_step_us(self.step_us, mass)
+        step = params.stop_step_us(params.step_us, mass)
         coarse = math.ceil(context.dt_ms * 1e3 / step - 1e-9)
-        # all corners may touch at once, which moves the shuttle or turns it
-        stator, rotor = own["stator_tip_um"], own["stator_tip_um"] + own["overlap_um"]
-        inertia = own["inertia_kg_m2"] * 1e18
+        # all corners may touch at once and move or turn the shuttle
+        stator, rotor = given["stator_tip_um"], given["stator_tip_um"] + given["overlap_um"]
+        inertia = given["inertia_kg_m2"] * 1e18
         touching = min(0.25 * mass, 0.5 * inertia / (stator * stator + rotor * rotor))
-        near = resolved_us(self.near_step_us, self.contact_stiffness_n_m, self.contact_damping_ns_m * 1e3, touching)
+        near = resolved_us(
+            params.near_step_us, params.contact_stiffness_n_m, params.contact_damping_ns_m * 1e3, touching
+        )
         fine = max(1, math.ceil(context.dt_ms * 1e3 / coarse / near - 1e-9))
-        noisy = 1.0 if self.thermal_noise else 0.0
-        return [
-            *super().packed(context),
-            0.5 * context.capacitance_gradient * UN_PER_N * gap * gap,
-            gap * gap,
-            1.0 / gap,
-            stator,
-            rotor,
-            1e-18 / own["inertia_kg_m2"],
-            own["lateral_damping_ns_m"] * 1e3,
-            own["rotation_damping_nms"] * 1e15,
-            0.5 * own["squeeze_ns_m"] * 1e3,
-            self.misalignment_um,
-            self.misalignment_mrad * 1e-3,
-            self.cubic_n_m3 * 1e-12,
-            own["lateral_stiffness_n_m"],
-            own["lateral_reach_um"],
-            own["rotation_stiffness_nm"] * 1e12,
-            own["rotation_reach_um"],
-            self.sideways_per_m * 1e-6,
-            self.turn_rad_m * 1e-6,
-            self.turn_cubic_rad_m3 * 1e-18,
-            float(coarse),
-            float(fine),
-            0.4 * gap,
-            noisy * thermal_force_un(context.temperature_k, context.dt_ms / coarse),
-            noisy * thermal_force_un(context.temperature_k, context.dt_ms / coarse / fine),
-            key(context.seed, "plant.thermal.side"),
-            key(context.seed, "plant.thermal.turn"),
-        ]
+        noisy = 1.0 if params.thermal_noise else 0.0
+        p: Any = super().pack(params, context)
+        p.strength = 0.5 * context.capacitance_gradient * UN_PER_N * gap * gap
+        p.gap_squared = gap * gap
+        p.per_gap = 1.0 / gap
+        p.stator_tip = stator
+        p.rotor_tip = rotor
+        p.per_inertia = 1e-18 / given["inertia_kg_m2"]
+        p.lateral_damping = given["lateral_damping_ns_m"] * 1e3
+        p.rotation_damping = given["rotation_damping_nms"] * 1e15
+        p.squeeze = 0.5 * given["squeeze_ns_m"] * 1e3
+        p.misalignment_rad = params.misalignment_mrad * 1e-3
+        p.cubic = params.cubic_n_m3 * 1e-12
+        p.lateral_stiffness = given["lateral_stiffness_n_m"]
+        p.lateral_reach = given["lateral_reach_um"]
+        p.rotation_stiffness = given["rotation_stiffness_nm"] * 1e12
+        p.rotation_reach = given["rotation_reach_um"]
+        p.sideways = params.sideways_per_m * 1e-6
+        p.turn = params.turn_rad_m * 1e-6
+        p.turn_cubic = params.turn_cubic_rad_m3 * 1e-18
+        p.coarse_steps = float(coarse)
+        p.fine_steps = float(fine)
+        p.near_um = 0.4 * gap
+        p.thermal_coarse = noisy * thermal_force_un(context.temperature_k, context.dt_ms / coarse)
+        p.thermal_fine = noisy * thermal_force_un(context.temperature_k, context.dt_ms / coarse / fine)
+        p.side_key = key(context.seed, "plant.thermal.side")
+        p.turn_key = key(context.seed, "plant.thermal.turn")
+        return p
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """Return room for the suspension and forces of a sample, and the time of the first contact."""
+        s = cls.State.zeros()
+        s.touched_ms = -1.0
+        return s

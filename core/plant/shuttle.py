@@ -1,56 +1,34 @@
-"""What every plant along x shares: ports, noise, comb force."""
+"""Ports, noise and comb force of the plants along x."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
-from core.block import Block, BlockParams, Context, Oscillator, Port, inlined, kernel, parameter
+from core.block import Block, BlockParams, Context, Oscillator, parameter
+from core.kernel import inlined, kernel
 from core.noise import key, normal
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record
 from core.units import UN_PER_N, thermal_force_un
 
-(
-    MASS,
-    DAMPING,
-    STIFFNESS,
-    DT,
-    X0,
-    V0,
-    COMB,
-    FIRST_V,
-    SECOND_V,
-    DRIVE_NOISE,
-    DRIVE_KEY,
-    THERMAL,
-    THERMAL_KEY,
-    OWN,
-) = range(14)
-"""Packed parameters of every plant; a plant's own start at ``OWN``."""
-
-(
-    VOLTAGE,
-    MIDDLE,
-    END,
-    MASS_SCALE,
-    STIFFNESS_SCALE,
-    DAMPING_SCALE,
-    DRIVE_GAIN,
-    DRIVE_OFFSET,
-    ACCELERATION,
-    FRICTION,
-    SHORTED,
-    FIRST_OWN_INPUT,
-) = range(12)
-"""Input ports of every plant; a plant's own follow, then come the outputs and taps of ``STATE``."""
-
-DISPLACEMENT, VELOCITY, LATERAL, SHIFT, SHIFT_VELOCITY, ROTATION, ROTATION_VELOCITY, CONTACT, SHORT = range(9)
-"""Outputs and taps of every plant, counted from the first output."""
-ELASTICITY_PORT = Port(
-    "elasticity_scale", "1", "stiffness of all beams alike over nominal", source="effects.elasticity_scale"
-)
+ELASTICITY = reads("effects.elasticity_scale", "1", "stiffness of all beams alike over nominal")
 """Input of a plant with more elasticity than that along x."""
 RIGHT, LEFT = 1, 2
-"""Bits of ``SHORT``: the comb at +x, whose stator carries the first voltage, and the one at -x."""
+"""Bits of ``short``: the comb at +x, whose stator carries the first voltage, and the one at -x."""
+
+
+class PackedMotion(Record):
+    """Mass, damping, stiffness, interval, start and noise of the drive, for every plant along x."""
+
+    mass: float
+    damping: float
+    stiffness: float
+    dt_ms: float
+    initial_displacement_um: float
+    initial_velocity_um_ms: float
+    drive_noise_v: float
+    drive_key: float
 
 
 class ShuttleParams(BlockParams):
@@ -74,94 +52,96 @@ class ShuttleParams(BlockParams):
 class Shuttle(Block):
     """A plant along x; its state is its own output signals, so one plant can replace another while running."""
 
-    inputs: ClassVar[tuple[Port, ...]] = (
-        Port("voltage", "V", "applied voltage", source="drive.voltage"),
-        Port("middle", "V", "applied voltage half a sample later", source="drive.middle"),
-        Port("end", "V", "applied voltage one sample later", source="drive.end"),
-        Port("mass_scale", "1", "mass over nominal mass", source="effects.mass_scale"),
-        Port("stiffness_scale", "1", "stiffness over nominal", source="effects.stiffness_scale"),
-        Port("damping_scale", "1", "damping over nominal", source="effects.damping_scale"),
-        Port("drive_gain", "1", "voltage at the comb over voltage applied", source="effects.drive_gain"),
-        Port("drive_offset", "V", "voltage at the comb that nobody applied", source="effects.drive_offset"),
-        Port("acceleration", "um/ms^2", "acceleration of the frame along x", source="effects.acceleration"),
-        Port("friction", "uN", "Coulomb friction", source="effects.friction"),
-        Port("shorted", "1", "combs shorted from outside", source="effects.short"),
-    )
-    outputs: ClassVar[tuple[Port, ...]] = (
-        Port("displacement", "um", "true displacement of the shuttle"),
-        Port("velocity", "um/ms", "true velocity of the shuttle (1 um/ms = 1 mm/s)"),
-    )
-    taps: ClassVar[tuple[Port, ...]] = (
-        Port("lateral", "um", "sideways displacement of the fingers where it is largest"),
-        Port("shift", "um", "sideways displacement of the centre"),
-        Port("shift_velocity", "um/ms", "sideways velocity of the centre"),
-        Port("rotation", "mrad", "rotation of the shuttle"),
-        Port("rotation_velocity", "mrad/ms", "rate of rotation of the shuttle"),
-        Port("contact", "1", "1 while fingers touch a stator"),
-        Port("short", "1", "shorted combs, until the board is reset: 1 at +x, 2 at -x, 3 both"),
-    )
+    class Packed(PackedMotion):
+        """In addition the comb (capacitance gradient in uN/V^2, voltages of the stators) and thermal noise."""
+
+        capacitance_gradient: float
+        first_v: float
+        second_v: float
+        thermal: float
+        thermal_key: float
+
+    class Ports(BlockPorts):
+        """Inputs of every plant, followed by those of one kind of plant; then the motion and state it writes."""
+
+        voltage: float = reads("drive.voltage", "V", "applied voltage")
+        middle: float = reads("drive.middle", "V", "applied voltage half a sample later")
+        end: float = reads("drive.end", "V", "applied voltage one sample later")
+        mass_scale: float = reads("effects.mass_scale", "1", "mass over nominal mass")
+        stiffness_scale: float = reads("effects.stiffness_scale", "1", "stiffness over nominal")
+        damping_scale: float = reads("effects.damping_scale", "1", "damping over nominal")
+        drive_gain: float = reads("effects.drive_gain", "1", "voltage at the comb over voltage applied")
+        drive_offset: float = reads("effects.drive_offset", "V", "voltage at the comb that nobody applied")
+        acceleration: float = reads("effects.acceleration", "um/ms^2", "acceleration of the frame along x")
+        friction: float = reads("effects.friction", "uN", "Coulomb friction")
+        shorted: float = reads("effects.short", "1", "combs shorted from outside")
+        displacement: float = output("um", "true displacement of the shuttle")
+        velocity: float = output("um/ms", "true velocity of the shuttle (1 um/ms = 1 mm/s)")
+        lateral: float = tap("um", "sideways displacement of the fingers where it is largest")
+        shift: float = tap("um", "sideways displacement of the centre")
+        shift_velocity: float = tap("um/ms", "sideways velocity of the centre")
+        rotation: float = tap("mrad", "rotation of the shuttle")
+        rotation_velocity: float = tap("mrad/ms", "rate of rotation of the shuttle")
+        contact: float = tap("1", "1 while fingers touch a stator")
+        short: float = tap("1", "shorted combs, until the board is reset: 1 at +x, 2 at -x, 3 both")
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what is no resonator."""
+        """Refuse devices that are not resonators."""
         return "" if device.time_unit_ms == 0.0 else "this device is no resonator; choose transfer_function"
 
     @classmethod
-    def shared(cls, params: Any, context: Context) -> list[float]:
-        """Pack what every plant needs."""
+    def pack(cls, params: Any, context: Context) -> Any:
+        """Pack the numbers that every plant needs."""
         device = context.device
-        thermal = thermal_force_un(context.temperature_k, context.dt_ms) if params.thermal_noise else 0.0
-        return [
-            device.mass,
-            device.damping,
-            device.stiffness,
-            context.dt_ms,
-            params.initial_displacement_um,
-            params.initial_velocity_um_ms,
-            context.capacitance_gradient * UN_PER_N,
-            *context.stator_voltages,
-            params.drive_noise_v,
-            key(context.seed, "plant.drive"),
-            thermal,
-            key(context.seed, "plant.thermal"),
-        ]
+        p = cls.Packed.blank()
+        p.mass = device.mass
+        p.damping = device.damping
+        p.stiffness = device.stiffness
+        p.dt_ms = context.dt_ms
+        p.capacitance_gradient = context.capacitance_gradient * UN_PER_N
+        p.first_v, p.second_v = context.stator_voltages
+        p.drive_key = key(context.seed, "plant.drive")
+        p.thermal = thermal_force_un(context.temperature_k, context.dt_ms) if params.thermal_noise else 0.0
+        p.thermal_key = key(context.seed, "plant.thermal")
+        return p
 
 
 @inlined
-def comb_voltage_parabola(w: Any, io: Any) -> tuple[float, float, float]:
+def comb_voltage_parabola(x: Shuttle.Ports) -> tuple[float, float, float]:
     r"""Return the voltage that reaches the comb over a sample, :math:`u_0+a(r+ab)` at the share :math:`a` of it.
 
-    Through its start, middle and end; exactly constant when the drive holds it.
+    The parabola runs through the start, middle and end, and is exactly constant when the drive holds the voltage.
     """
-    u0 = w[io[DRIVE_GAIN]] * w[io[VOLTAGE]] + w[io[DRIVE_OFFSET]]
-    d1 = w[io[DRIVE_GAIN]] * w[io[MIDDLE]] + w[io[DRIVE_OFFSET]] - u0
-    d2 = w[io[DRIVE_GAIN]] * w[io[END]] + w[io[DRIVE_OFFSET]] - u0
+    u0 = x.drive_gain * x.voltage + x.drive_offset
+    d1 = x.drive_gain * x.middle + x.drive_offset - u0
+    d2 = x.drive_gain * x.end + x.drive_offset - u0
     return u0, 4.0 * d1 - d2, 2.0 * d2 - 4.0 * d1
 
 
 @kernel
-def comb_force(p: Any, v: float, short: float) -> float:
+def comb_force(p: Shuttle.Packed, v: float, short: float) -> float:
     r"""Force of the push-pull comb, :math:`\tfrac12 C'[(V_{b1}-v)^2-(V_{b2}-v)^2]`, uN; a shorted comb has none.
 
     Written as the product of difference and sum, so that identical stators give exactly nothing.
     """
     if short != 0.0:
-        right = comb_voltage(p[FIRST_V] - v, short, RIGHT)
-        left = comb_voltage(p[SECOND_V] - v, short, LEFT)
-        return float(0.5 * p[COMB] * (right * right - left * left))
-    return float(0.5 * p[COMB] * (p[FIRST_V] - p[SECOND_V]) * (p[FIRST_V] + p[SECOND_V] - 2.0 * v))
+        right = comb_voltage(p.first_v - v, short, RIGHT)
+        left = comb_voltage(p.second_v - v, short, LEFT)
+        return float(0.5 * p.capacitance_gradient * (right * right - left * left))
+    return float(0.5 * p.capacitance_gradient * (p.first_v - p.second_v) * (p.first_v + p.second_v - 2.0 * v))
 
 
 @kernel
 def comb_voltage(v: float, short: float, comb: int) -> float:
-    """Voltage across a comb: none once it is shorted, for its supply is behind a resistor."""
+    """Voltage across a comb: 0 once it is shorted, because its supply is behind a resistor."""
     return 0.0 if int(short) & comb else v
 
 
 @inlined
-def coefficients(p: Any, w: Any, io: Any) -> tuple[float, float, float]:
-    """Return mass, damping and stiffness as faults and environment have made them."""
-    return p[MASS] * w[io[MASS_SCALE]], p[DAMPING] * w[io[DAMPING_SCALE]], p[STIFFNESS] * w[io[STIFFNESS_SCALE]]
+def coefficients(p: PackedMotion, x: Shuttle.Ports) -> tuple[float, float, float]:
+    """Return mass, damping and stiffness with the effects of faults and environment."""
+    return p.mass * x.mass_scale, p.damping * x.damping_scale, p.stiffness * x.stiffness_scale
 
 
 @kernel
@@ -176,7 +156,7 @@ def wall(at: float, stiffness: float, damping: float, x: float, v: float) -> flo
 
 @kernel
 def joined(first: float, second: float) -> float:
-    """Return the combs that are shorted by one or the other."""
+    """Return the combs that either of two effects has shorted."""
     return float(int(first) | int(second))
 
 
@@ -191,24 +171,24 @@ def dry_friction(limit: float, velocity: float, net: float) -> float:
 
 
 @kernel
-def at_rest_sideways(w: Any, io: Any, first: int, short: float) -> None:
-    """Write the taps of a plant that only moves along x, whose ports of state begin at ``first``."""
-    w[io[first + LATERAL]] = 0.0
-    w[io[first + SHIFT]] = 0.0
-    w[io[first + SHIFT_VELOCITY]] = 0.0
-    w[io[first + ROTATION]] = 0.0
-    w[io[first + ROTATION_VELOCITY]] = 0.0
-    w[io[first + CONTACT]] = 0.0
-    w[io[first + SHORT]] = short
+def at_rest_sideways(x: Shuttle.Ports, short: float) -> None:
+    """Write the taps of a plant that only moves along x."""
+    x.lateral = 0.0
+    x.shift = 0.0
+    x.shift_velocity = 0.0
+    x.rotation = 0.0
+    x.rotation_velocity = 0.0
+    x.contact = 0.0
+    x.short = short
 
 
 @kernel
-def drive_noise(p: Any, tick: float) -> float:
+def drive_noise(p: PackedMotion, tick: float) -> float:
     """Voltage noise held over the interval that starts at ``tick``."""
-    return p[DRIVE_NOISE] * normal(p[DRIVE_KEY], tick) if p[DRIVE_NOISE] > 0.0 else 0.0
+    return p.drive_noise_v * normal(p.drive_key, tick) if p.drive_noise_v > 0.0 else 0.0
 
 
 @kernel
-def thermal_force(p: Any, damping: float, tick: float) -> float:
+def thermal_force(p: Shuttle.Packed, damping: float, tick: float) -> float:
     """Thermomechanical force held over the interval that starts at ``tick``, uN."""
-    return p[THERMAL] * math.sqrt(damping) * normal(p[THERMAL_KEY], tick) if p[THERMAL] > 0.0 else 0.0
+    return p.thermal * math.sqrt(damping) * normal(p.thermal_key, tick) if p.thermal > 0.0 else 0.0

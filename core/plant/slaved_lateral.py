@@ -5,35 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, kernel, parameter, settled
-from core.plant.contact import GAP, LIMIT, PLANT, SHORTS, TOUCH, ContactParams, resolved_us, stop, touch
+from core.block import Context, Equation, parameter
+from core.kernel import flush_tiny, kernel
+from core.plant.contact import ContactParams, TouchingShuttle, resolved_us, stop, touch
 from core.plant.shuttle import (
-    ACCELERATION,
-    COMB,
-    CONTACT,
-    DAMPING,
-    DAMPING_SCALE,
-    DISPLACEMENT,
-    DT,
-    FIRST_OWN_INPUT,
-    FIRST_V,
-    FRICTION,
-    LATERAL,
     LEFT,
-    MASS,
-    MASS_SCALE,
     RIGHT,
-    SECOND_V,
-    SHIFT,
-    SHIFT_VELOCITY,
-    SHORT,
-    SHORTED,
-    STIFFNESS_SCALE,
-    V0,
-    VELOCITY,
-    X0,
     Shuttle,
     at_rest_sideways,
     comb_voltage,
@@ -43,105 +20,19 @@ from core.plant.shuttle import (
     joined,
     thermal_force,
 )
-
-SPRING, KAPPA, OVERLAP, SUBSTEPS = range(PLANT, PLANT + 4)
-FIRST_OUTPUT = FIRST_OWN_INPUT
+from core.record import Record
 
 
-@kernel
-def slaved_force(p: Any, x: float, right: float, left: float) -> float:
-    r"""Return the electrostatic force, uN; ``right`` and ``left`` are squared voltages.
-
-    .. math:: \tfrac12n\varepsilon_0t\{V_1^2[G+\kappa G'(L+x)]+V_2^2[-G+\kappa G'(L-x)]\},\quad
-        G=\frac{2g}{g^2-\eta^2},\quad G'=\frac{4g\eta}{(g^2-\eta^2)^2},\quad\eta=\kappa x
-    """
-    eta = p[KAPPA] * x
-    inside = min(max(eta, -p[LIMIT]), p[LIMIT])
-    r = 1.0 / (p[GAP] * p[GAP] - inside * inside)
-    slope = 4.0 * p[GAP] * inside * r * r
-    whole = 2.0 * p[GAP] * r + slope * (eta - inside)
-    tied = p[KAPPA] * slope
-    strength = 0.25 * p[COMB] * p[GAP]
-    pulled = right * (whole + tied * max(p[OVERLAP] + x, 0.0)) + left * (tied * max(p[OVERLAP] - x, 0.0) - whole)
-    return float(strength * pulled)
-
-
-@kernel
-def push(p: Any, x: float, v: float) -> float:
-    """Return the force of the stops and of touching fingers, uN."""
-    return float(stop(p, x, v) + p[KAPPA] * touch(p, p[KAPPA] * x, p[KAPPA] * v))
-
-
-def slaved_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance over the interval that ends now by Runge-Kutta substeps."""
-    out = FIRST_OUTPUT
-    short = joined(w[io[out + SHORT]], w[io[SHORTED]])
-    at_rest_sideways(w, io, out, short)
-    x = w[io[out + DISPLACEMENT]]
-    v = w[io[out + VELOCITY]]
-    n = int(p[SUBSTEPS])
-    if w[TICK] == 0.0:
-        x, v, n = p[X0], p[V0], 0
-    m = p[MASS] * w[io[MASS_SCALE]]
-    b = p[DAMPING] * w[io[DAMPING_SCALE]]
-    k = p[SPRING] * w[io[STIFFNESS_SCALE]]
-    u0, rise, bend = comb_voltage_parabola(w, io)
-    other = -m * w[io[ACCELERATION]]
-    if n > 0:
-        u0 += drive_noise(p, w[TICK] - 1.0)
-        other += thermal_force(p, b, w[TICK] - 1.0)
-    rubbing = w[io[FRICTION]]
-    for i in range(n):
-        h = p[DT] / n
-        # the voltage of the middle of the substep: it changes little over a quarter of a microsecond
-        a = (i + 0.5) / n
-        u = u0 + a * (rise + a * bend)
-        right = comb_voltage(p[FIRST_V] - u, short, RIGHT)
-        left = comb_voltage(p[SECOND_V] - u, short, LEFT)
-        right, left = right * right, left * left
-        drag = 0.0
-        if rubbing > 0.0:
-            net = slaved_force(p, x, right, left) + push(p, x, 0.0) - k * x + other
-            if v == 0.0 and abs(net) <= rubbing:
-                continue
-            drag = dry_friction(rubbing, v, net)
-        before = v
-        held = other + drag
-        a1 = (slaved_force(p, x, right, left) + push(p, x, v) - k * x - b * v + held) / m
-        x2, v2 = x + 0.5 * h * v, v + 0.5 * h * a1
-        a2 = (slaved_force(p, x2, right, left) + push(p, x2, v2) - k * x2 - b * v2 + held) / m
-        x3, v3 = x + 0.5 * h * v2, v + 0.5 * h * a2
-        a3 = (slaved_force(p, x3, right, left) + push(p, x3, v3) - k * x3 - b * v3 + held) / m
-        x4, v4 = x + h * v3, v + h * a3
-        a4 = (slaved_force(p, x4, right, left) + push(p, x4, v4) - k * x4 - b * v4 + held) / m
-        x += h * (v + 2.0 * (v2 + v3) + v4) / 6.0
-        v += h * (a1 + 2.0 * (a2 + a3) + a4) / 6.0
-        if rubbing > 0.0 and before * v < 0.0:
-            v = 0.0
-        if abs(p[KAPPA] * x) > p[TOUCH]:
-            w[io[out + CONTACT]] = 1.0
-            if s[0] < 0.0:
-                s[0] = (w[TICK] - 1.0) * p[DT] + (i + 1) * h
-            if p[SHORTS] != 0.0:
-                short = joined(short, RIGHT + LEFT)
-    w[io[out + DISPLACEMENT]] = settled(x)
-    w[io[out + VELOCITY]] = settled(v)
-    w[io[out + LATERAL]] = p[KAPPA] * x
-    w[io[out + SHIFT]] = p[KAPPA] * x
-    w[io[out + SHIFT_VELOCITY]] = p[KAPPA] * v
-    w[io[out + SHORT]] = short
-
-
-class SlavedLateral(Shuttle):
+class SlavedLateral(TouchingShuttle):
     r"""Sideways motion tied to the travel, :math:`\eta=\kappa x`: a calibration to the text's 1.67 um, not physics.
 
     .. math:: m\ddot x=-k_1x-\beta\dot x+\tfrac12n\varepsilon_0t\left\{V_1^2[G+\kappa G'(L+x)]
         +V_2^2[-G+\kappa G'(L-x)]\right\}
 
-    The text turns the shuttle about the point of adhesion as about a rigid pivot and loses stability at a third of the
-    gap. Elasticity gives a hundredth of that rotation (see the planar plant); with the overlap shortened to 5 um this
-    plant folds where the text has it, so that its controllers can be tried on it. With the whole overlap of 40 um
-    the same kinematics would be unstable at rest beyond 4.1 V of bias.
+    The text turns the shuttle about the point of adhesion as about a rigid pivot, and it loses stability at a third of
+    the gap. Elasticity gives a hundredth of that rotation (see the planar plant); with the overlap shortened to 5 um
+    this plant folds where the text says, so that the text's controllers can be tried on it. With the whole overlap of
+    40 um the same kinematics would be unstable at rest beyond 4.1 V of bias.
     """
 
     title = "Slaved lateral plant (calibration)"
@@ -170,27 +61,120 @@ class SlavedLateral(Shuttle):
         effective_overlap_um: float = parameter(5.0, "overlap that pulls sideways", "um", ge=0, le=200)
         step_us: float = parameter(0.25, "longest substep", "us", gt=0.01, le=0.5)
 
+    class Packed(TouchingShuttle.Packed):
+        """Spring, lateral displacement over travel, overlap, substeps of a sample."""
+
+        stiffness_n_m: float
+        ratio: float
+        effective_overlap_um: float
+        substeps: float
+
+    class State(Record):
+        """Time of the first contact."""
+
+        touched_ms: float
+
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         mass = context.device.mass
         step = params.stop_step_us(params.step_us, mass)
         if params.ratio > 0.0:
-            # fingers feel the shuttle through the lever of their motion
+            # the lever of their sideways motion scales the forces of the fingers on the shuttle
             felt = mass / (params.ratio * params.ratio)
             step = resolved_us(step, params.contact_stiffness_n_m, params.contact_damping_ns_m * 1e3, felt)
-        own = [
-            *params.packed(context),
-            params.stiffness_n_m,
-            params.ratio,
-            params.effective_overlap_um,
-            float(math.ceil(context.dt_ms * 1e3 / step - 1e-9)),
-        ]
-        return np.array(cls.shared(params, context) + own, dtype=np.float64)
+        p: SlavedLateral.Packed = super().pack(params, context)
+        p.substeps = float(math.ceil(context.dt_ms * 1e3 / step - 1e-9))
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Time of the first contact."""
-        return np.full(1, -1.0)
+        s = cls.State.zeros()
+        s.touched_ms = -1.0
+        return s
 
-    step = slaved_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Shuttle.Ports) -> None:
+        """Advance over the interval that ends now by Runge-Kutta substeps."""
+        short = joined(x.short, x.shorted)
+        at_rest_sideways(x, short)
+        q = x.displacement
+        v = x.velocity
+        n = int(p.substeps)
+        if x.tick == 0.0:
+            q, v, n = p.initial_displacement_um, p.initial_velocity_um_ms, 0
+        m = p.mass * x.mass_scale
+        b = p.damping * x.damping_scale
+        k = p.stiffness_n_m * x.stiffness_scale
+        u0, rise, bend = comb_voltage_parabola(x)
+        outside = -m * x.acceleration
+        if n > 0:
+            u0 += drive_noise(p, x.tick - 1.0)
+            outside += thermal_force(p, b, x.tick - 1.0)
+        rubbing = x.friction
+        for i in range(n):
+            h = p.dt_ms / n
+            # the voltage in the middle of the substep, since it changes little over a quarter of a microsecond
+            a = (i + 0.5) / n
+            u = u0 + a * (rise + a * bend)
+            right = comb_voltage(p.first_v - u, short, RIGHT)
+            left = comb_voltage(p.second_v - u, short, LEFT)
+            right, left = right * right, left * left
+            drag = 0.0
+            if rubbing > 0.0:
+                net = slaved_force(p, q, right, left) + push(p, q, 0.0) - k * q + outside
+                if v == 0.0 and abs(net) <= rubbing:
+                    continue
+                drag = dry_friction(rubbing, v, net)
+            before = v
+            held = outside + drag
+            a1 = (slaved_force(p, q, right, left) + push(p, q, v) - k * q - b * v + held) / m
+            q2, v2 = q + 0.5 * h * v, v + 0.5 * h * a1
+            a2 = (slaved_force(p, q2, right, left) + push(p, q2, v2) - k * q2 - b * v2 + held) / m
+            q3, v3 = q + 0.5 * h * v2, v + 0.5 * h * a2
+            a3 = (slaved_force(p, q3, right, left) + push(p, q3, v3) - k * q3 - b * v3 + held) / m
+            q4, v4 = q + h * v3, v + h * a3
+            a4 = (slaved_force(p, q4, right, left) + push(p, q4, v4) - k * q4 - b * v4 + held) / m
+            q += h * (v + 2.0 * (v2 + v3) + v4) / 6.0
+            v += h * (a1 + 2.0 * (a2 + a3) + a4) / 6.0
+            if rubbing > 0.0 and before * v < 0.0:
+                v = 0.0
+            if abs(p.ratio * q) > p.touch_um:
+                x.contact = 1.0
+                if s.touched_ms < 0.0:
+                    s.touched_ms = (x.tick - 1.0) * p.dt_ms + (i + 1) * h
+                if p.short_on_contact != 0.0:
+                    short = joined(short, RIGHT + LEFT)
+        x.displacement = flush_tiny(q)
+        x.velocity = flush_tiny(v)
+        x.lateral = p.ratio * q
+        x.shift = p.ratio * q
+        x.shift_velocity = p.ratio * v
+        x.short = short
+
+
+@kernel
+def slaved_force(p: SlavedLateral.Packed, x: float, right: float, left: float) -> float:
+    r"""Return the electrostatic force, uN; ``right`` and ``left`` are squared voltages.
+
+    .. math:: \tfrac12n\varepsilon_0t\{V_1^2[G+\kappa G'(L+x)]+V_2^2[-G+\kappa G'(L-x)]\},\quad
+        G=\frac{2g}{g^2-\eta^2},\quad G'=\frac{4g\eta}{(g^2-\eta^2)^2},\quad\eta=\kappa x
+    """
+    eta = p.ratio * x
+    inside = min(max(eta, -p.limit), p.limit)
+    r = 1.0 / (p.gap * p.gap - inside * inside)
+    slope = 4.0 * p.gap * inside * r * r
+    whole = 2.0 * p.gap * r + slope * (eta - inside)
+    tied = p.ratio * slope
+    strength = 0.25 * p.capacitance_gradient * p.gap
+    pulled = right * (whole + tied * max(p.effective_overlap_um + x, 0.0)) + left * (
+        tied * max(p.effective_overlap_um - x, 0.0) - whole
+    )
+    return float(strength * pulled)
+
+
+@kernel
+def push(p: SlavedLateral.Packed, x: float, v: float) -> float:
+    """Return the force of the stops and of touching fingers, uN."""
+    return float(stop(p, x, v) + p.ratio * touch(p, p.ratio * x, p.ratio * v))

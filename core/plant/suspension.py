@@ -5,44 +5,59 @@ r"""Elastic energy of the suspension in x, y and theta, and all its derivatives.
 .. math:: k_y=\frac{k_{y0}}{1+(x/x_y)^2},\quad k_\theta=\frac{k_{\theta0}}{1+(x/x_\theta)^2},\quad
     y_s=y_2x^2,\quad \theta_s=\theta_1x+\theta_3x^3
 
-The stiffness sideways falls with the travel because bent beams give way along their length. Since the force along x is
-the derivative of the whole of it, energy is kept.
+The stiffness sideways falls with the travel because bent beams give way along their length. The force along x is the
+derivative of the whole energy, so energy is conserved.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from core.kernel import inlined, kernel
+from core.record import Record
 
-from core.block import inlined, kernel
 
-K1, K3, KY, XY, KT, XT, Y2, T1, T3 = range(9)
-"""Where they stand in the array: uN/um, uN/um^3, uN/um, 1/um^2 (1/xy^2), uN um, 1/um^2, 1/um, rad/um, rad/um^3."""
+class Suspension(Record):
+    r"""Stiffnesses, their fall with the travel, and the rest position of the shuttle across it.
+
+    In the order of the fields :math:`k_1`, uN/um, :math:`k_3`, uN/um^3; :math:`k_{y0}`, uN/um, :math:`1/x_y^2`, 1/um^2;
+    :math:`k_{\theta0}`, uN um, :math:`1/x_\theta^2`, 1/um^2; :math:`y_2`, 1/um, :math:`\theta_1`, rad/um,
+    :math:`\theta_3`, rad/um^3.
+    """
+
+    stiffness: float
+    cubic: float
+    lateral_stiffness: float
+    lateral_softening: float
+    rotation_stiffness: float
+    rotation_softening: float
+    sideways: float
+    turn: float
+    turn_cubic: float
 
 
 @kernel
-def elastic_energy(k: Any, x: float, y: float, theta: float) -> float:
-    """Return the energy, uN um: for checks, the loop needs only its derivatives."""
-    off = y - k[Y2] * x * x
-    turned = theta - (k[T1] + k[T3] * x * x) * x
-    sideways = k[KY] * off * off / (1.0 + x * x * k[XY])
-    turning = k[KT] * turned * turned / (1.0 + x * x * k[XT])
-    return float(0.5 * (k[K1] * x * x + 0.5 * k[K3] * x * x * x * x + sideways + turning))
+def elastic_energy(k: Suspension, x: float, y: float, theta: float) -> float:
+    """Return the energy, uN um, for checks: the loop needs only its derivatives."""
+    off = y - k.sideways * x * x
+    turned = theta - (k.turn + k.turn_cubic * x * x) * x
+    sideways = k.lateral_stiffness * off * off / (1.0 + x * x * k.lateral_softening)
+    turning = k.rotation_stiffness * turned * turned / (1.0 + x * x * k.rotation_softening)
+    return float(0.5 * (k.stiffness * x * x + 0.5 * k.cubic * x * x * x * x + sideways + turning))
 
 
 @inlined
-def elastic_force(k: Any, x: float, y: float, theta: float) -> tuple[float, float, float]:
+def elastic_force(k: Suspension, x: float, y: float, theta: float) -> tuple[float, float, float]:
     """Return minus the gradient of the energy: two forces, uN, and a torque, uN um."""
     squared = x * x
-    dy = 1.0 + squared * k[XY]
-    dt = 1.0 + squared * k[XT]
+    dy = 1.0 + squared * k.lateral_softening
+    dt = 1.0 + squared * k.rotation_softening
     both = 1.0 / (dy * dt)
     softer_y = both * dt
     softer_t = both * dy
-    off = y - k[Y2] * squared
-    turned = theta - (k[T1] + k[T3] * squared) * x
-    fy = k[KY] * softer_y * off
-    mz = k[KT] * softer_t * turned
-    fx = (k[K1] + k[K3] * squared) * x
-    fx -= fy * (off * softer_y * k[XY] * x + 2.0 * k[Y2] * x)
-    fx -= mz * (turned * softer_t * k[XT] * x + k[T1] + 3.0 * k[T3] * squared)
+    off = y - k.sideways * squared
+    turned = theta - (k.turn + k.turn_cubic * squared) * x
+    fy = k.lateral_stiffness * softer_y * off
+    mz = k.rotation_stiffness * softer_t * turned
+    fx = (k.stiffness + k.cubic * squared) * x
+    fx -= fy * (off * softer_y * k.lateral_softening * x + 2.0 * k.sideways * x)
+    fx -= mz * (turned * softer_t * k.rotation_softening * x + k.turn + 3.0 * k.turn_cubic * squared)
     return -fx, -fy, -mz

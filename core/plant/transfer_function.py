@@ -4,60 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, BlockParams, Context, Equation, FloatArray, Oscillator, parameter, settled
+from core.block import BlockParams, Context, Equation, Oscillator, parameter
 from core.device.oscillator import held
+from core.kernel import flush_tiny
 from core.noise import key, normal
-from core.plant.shuttle import (
-    ACCELERATION,
-    DISPLACEMENT,
-    DRIVE_GAIN,
-    DRIVE_OFFSET,
-    END,
-    FIRST_OWN_INPUT,
-    MIDDLE,
-    STIFFNESS,
-    VELOCITY,
-    VOLTAGE,
-    Shuttle,
-    at_rest_sideways,
-    coefficients,
-)
-
-FORCE, DT, X0, V0, NOISE, NOISE_KEY = range(STIFFNESS + 1, STIFFNESS + 7)
-"""Packed parameters behind mass, damping and stiffness."""
-X_OUT, V_OUT = FIRST_OWN_INPUT + DISPLACEMENT, FIRST_OWN_INPUT + VELOCITY
-KEPT, PHI11, PHI12, PHI21, PHI22, REACH, PUSH = 0, 3, 4, 5, 6, 7, 8
-
-
-def transfer_function_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Advance over the interval that ends now; the first tick only sets the start."""
-    at_rest_sideways(w, io, FIRST_OWN_INPUT, 0.0)
-    if w[TICK] == 0.0:
-        w[io[X_OUT]] = p[X0]
-        w[io[V_OUT]] = p[V0]
-        return
-    m, b, k = coefficients(p, w, io)
-    if m != s[KEPT] or b != s[KEPT + 1] or k != s[KEPT + 2]:
-        s[KEPT], s[KEPT + 1], s[KEPT + 2] = m, b, k
-        s[PHI11], s[PHI12], s[PHI21], s[PHI22], s[REACH], s[PUSH] = held(m, b, k, p[DT])
-    # what an analogue generator does within a sample counts with its mean
-    u = (w[io[VOLTAGE]] + 4.0 * w[io[MIDDLE]] + w[io[END]]) / 6.0
-    if w[io[MIDDLE]] == w[io[VOLTAGE]] and w[io[END]] == w[io[VOLTAGE]]:
-        u = w[io[VOLTAGE]]
-    u = w[io[DRIVE_GAIN]] * u + w[io[DRIVE_OFFSET]]
-    if p[NOISE] > 0.0:
-        u += p[NOISE] * normal(p[NOISE_KEY], w[TICK] - 1.0)
-    f = p[FORCE] * u - m * w[io[ACCELERATION]]
-    x = w[io[X_OUT]]
-    v = w[io[V_OUT]]
-    w[io[X_OUT]] = settled(s[PHI11] * x + s[PHI12] * v + s[REACH] * f)
-    if m == 0.0:
-        v = (f - k * w[io[X_OUT]]) / b
-    else:
-        v = s[PHI21] * x + s[PHI22] * v + s[PUSH] * f
-    w[io[V_OUT]] = settled(v)
+from core.plant.shuttle import PackedMotion, Shuttle, at_rest_sideways, coefficients
+from core.record import Record
 
 
 class TransferFunction(Shuttle):
@@ -82,32 +34,67 @@ class TransferFunction(Shuttle):
         initial_velocity_um_ms: float = parameter(0.0, "velocity at the start", "um/ms", live=False)
         drive_noise_v: float = parameter(0.0, "white noise on the drive voltage, rms per sample", "V", ge=0)
 
+    class Packed(PackedMotion):
+        """The motion, and the force per volt."""
+
+        force: float
+
+    class State(Record):
+        """Coefficients of the transition kept, and the transition."""
+
+        mass: float
+        damping: float
+        stiffness: float
+        phi11: float
+        phi12: float
+        phi21: float
+        phi22: float
+        reach: float
+        push: float
+
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse resonators: their force is that of a comb."""
         return "" if device.time_unit_ms > 0.0 else "this device is a resonator; choose linear"
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         plant = context.device
-        return np.array(
-            [
-                plant.mass,
-                plant.damping,
-                plant.stiffness,
-                plant.force,
-                context.dt_ms,
-                params.initial_displacement_um,
-                params.initial_velocity_um_ms,
-                params.drive_noise_v,
-                key(context.seed, "plant.drive"),
-            ]
-        )
+        p = cls.Packed.blank()
+        p.mass = plant.mass
+        p.damping = plant.damping
+        p.stiffness = plant.stiffness
+        p.force = plant.force
+        p.dt_ms = context.dt_ms
+        p.drive_key = key(context.seed, "plant.drive")
+        return p
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Coefficients of the transition kept, and the transition."""
-        return np.zeros(9)
-
-    step = transfer_function_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Shuttle.Ports) -> None:
+        """Advance over the interval that ends now; the first tick only sets the start."""
+        at_rest_sideways(x, 0.0)
+        if x.tick == 0.0:
+            x.displacement = p.initial_displacement_um
+            x.velocity = p.initial_velocity_um_ms
+            return
+        m, b, k = coefficients(p, x)
+        if m != s.mass or b != s.damping or k != s.stiffness:
+            s.mass, s.damping, s.stiffness = m, b, k
+            s.phi11, s.phi12, s.phi21, s.phi22, s.reach, s.push = held(m, b, k, p.dt_ms)
+        # the voltage of an analogue generator counts with its mean over the sample
+        u = (x.voltage + 4.0 * x.middle + x.end) / 6.0
+        if x.middle == x.voltage and x.end == x.voltage:
+            u = x.voltage
+        u = x.drive_gain * u + x.drive_offset
+        if p.drive_noise_v > 0.0:
+            u += p.drive_noise_v * normal(p.drive_key, x.tick - 1.0)
+        f = p.force * u - m * x.acceleration
+        q = x.displacement
+        v = x.velocity
+        x.displacement = flush_tiny(s.phi11 * q + s.phi12 * v + s.reach * f)
+        if m == 0.0:
+            v = (f - k * x.displacement) / b
+        else:
+            v = s.phi21 * q + s.phi22 * v + s.push * f
+        x.velocity = flush_tiny(v)

@@ -1,1 +1,1 @@
-"""Reference voltages: what the generator plays."""
+"""Reference voltages, which the generator plays."""

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Self
 
 from pydantic import model_validator
 
-from core.block import Context, Equation, kernel, parameter
+from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing, sine_of
-
-
-@kernel
-def chirp(p: Any, t: float) -> float:
-    """Linear sweep over the duration, then again from the start."""
-    sweep = p[FIRST + 2]
-    tau = t - sweep * math.floor(t / sweep)
-    return sine_of(p[FIRST] * tau + 0.5 * (p[FIRST + 1] - p[FIRST]) * tau * tau / sweep)
+from core.elementary import floor
+from core.kernel import kernel
+from core.reference.waveform import ReferenceParams, Waveform, sine_of
 
 
 class Chirp(Waveform):
@@ -41,9 +34,25 @@ class Chirp(Waveform):
                 raise ValueError("start_hz and stop_hz must differ; use sine for one tone")
             return self
 
-    @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
+    class Packed(Waveform.Packed):
         """Both frequencies in cycles per ms, and the duration."""
-        return [params.start_hz / 1e3, params.stop_hz / 1e3, params.duration_ms]
 
-    step = playing(chirp)
+        start_per_ms: float
+        stop_per_ms: float
+        duration_ms: float
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the frequencies."""
+        p: Chirp.Packed = super().pack(params, context)
+        p.start_per_ms, p.stop_per_ms = params.start_hz / 1e3, params.stop_hz / 1e3
+        return p
+
+    @staticmethod
+    @kernel
+    def shape(p: Packed, t: float) -> float:
+        """Linear sweep over the duration, then again from the start."""
+        f1 = p.start_per_ms
+        sweep = p.duration_ms
+        tau = t - sweep * floor(t / sweep)
+        return sine_of(f1 * tau + 0.5 * (p.stop_per_ms - f1) * tau * tau / sweep)

@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Context, Equation, kernel
-from core.reference.waveform import ReferenceParams, Waveform, playing
-
-
-@kernel
-def constant(p: Any, t: float) -> float:
-    """Return one at any time."""
-    return 1.0
+from core.block import Equation
+from core.kernel import kernel
+from core.reference.waveform import ReferenceParams, Waveform
 
 
 class Constant(Waveform):
@@ -24,13 +19,12 @@ class Constant(Waveform):
         """Parameters of a constant."""
 
     @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
-        """Nothing beyond the amplitude."""
-        return []
-
-    @classmethod
     def lines(cls, params: Any) -> list[tuple[float, float]]:
         """One line at rest."""
         return [(0.0, 1.0)]
 
-    step = playing(constant)
+    @staticmethod
+    @kernel
+    def shape(p: Waveform.Packed, t: float) -> float:
+        """Return one at any time."""
+        return 1.0

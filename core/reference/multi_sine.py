@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import BlockParams, Context, Equation, kernel, parameter
+from core.block import BlockParams, Context, Equation, parameter
 from core.device.ranges import Sized
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing, sine_of
+from core.kernel import kernel
+from core.record import Record, Records, tail
+from core.reference.waveform import ReferenceParams, Waveform, line, sine_of
 
 
 class Tone(BlockParams):
@@ -17,14 +19,12 @@ class Tone(BlockParams):
     phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
 
 
-@kernel
-def tones(p: Any, t: float) -> float:
-    """Sum over the tones."""
-    total = 0.0
-    for i in range(int(p[FIRST])):
-        base = FIRST + 1 + 3 * i
-        total += p[base + 1] * sine_of(p[base] * t + p[base + 2])
-    return total
+class PackedTone(Record):
+    """Cycles per ms, share of the amplitude, cycles at the start."""
+
+    frequency_per_ms: float
+    amplitude: float
+    phase: float
 
 
 class MultiSine(Waveform):
@@ -38,15 +38,38 @@ class MultiSine(Waveform):
 
         tones: list[Tone] = parameter([Tone(frequency_hz=159.155), Tone(frequency_hz=461.549)], "the tones", live=False)
 
+    class Packed(Waveform.Packed):
+        """How many tones, and each."""
+
+        count: float
+        tones: Records[PackedTone] = tail()
+
     @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
-        """Return the number of tones, then three numbers each."""
-        rows = [[tone.frequency_hz / 1e3, tone.amplitude, tone.phase_deg / 360.0] for tone in params.tones]
-        return [float(len(rows)), *(value for row in rows for value in row)]
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the number of tones and the tones."""
+        p: MultiSine.Packed = super().pack(params, context)
+        p.count = len(params.tones)
+        for tone, packed in zip(params.tones, p.tones, strict=True):
+            packed.frequency_per_ms, packed.phase = tone.frequency_hz / 1e3, tone.phase_deg / 360.0
+            packed.amplitude = tone.amplitude
+        return p
+
+    @classmethod
+    def tails(cls, params: Any) -> int:
+        """Return how many tones there are."""
+        return len(params.tones)
 
     @classmethod
     def lines(cls, params: Any) -> list[tuple[float, float]]:
         """Return a line for each tone."""
         return [line(tone.frequency_hz, tone.phase_deg, tone.amplitude) for tone in params.tones]
 
-    step = playing(tones)
+    @staticmethod
+    @kernel
+    def shape(p: Packed, t: float) -> float:
+        """Sum over the tones."""
+        total = 0.0
+        for i in range(int(p.count)):
+            tone = p.tones[i]
+            total += tone.amplitude * sine_of(tone.frequency_per_ms * t + tone.phase)
+        return total

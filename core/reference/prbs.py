@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-from core.block import Context, Equation, kernel, parameter
+from core.block import Context, Equation, parameter
+from core.elementary import floor
+from core.kernel import kernel
 from core.noise import key, uniform
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
-
-
-@kernel
-def chips(p: Any, t: float) -> float:
-    """Sign of the chip that is on now."""
-    return 1.0 if uniform(p[FIRST + 1], math.floor(t * p[FIRST])) < 0.5 else -1.0
+from core.reference.waveform import ReferenceParams, Waveform
 
 
 class Prbs(Waveform):
@@ -27,9 +22,22 @@ class Prbs(Waveform):
 
         chip_rate_hz: float = parameter(10000.0, "chips per second", "Hz", gt=0, le=1e6)
 
-    @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
+    class Packed(Waveform.Packed):
         """Chips per ms and the key of the sequence."""
-        return [params.chip_rate_hz / 1e3, key(context.seed, "reference.prbs")]
 
-    step = playing(chips)
+        chips_per_ms: float
+        key: float
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the rate of the chips and the key of the sequence."""
+        p: Prbs.Packed = super().pack(params, context)
+        p.chips_per_ms = params.chip_rate_hz / 1e3
+        p.key = key(context.seed, "reference.prbs")
+        return p
+
+    @staticmethod
+    @kernel
+    def shape(p: Packed, t: float) -> float:
+        """Sign of the chip that is on now."""
+        return 1.0 if uniform(p.key, floor(t * p.chips_per_ms)) < 0.5 else -1.0

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Context, Equation, kernel, parameter
+from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, line, playing, sine_of
-
-
-@kernel
-def sine(p: Any, t: float) -> float:
-    """Sine of frequency and phase."""
-    return sine_of(p[FIRST] * t + p[FIRST + 1])
+from core.kernel import kernel
+from core.reference.waveform import ReferenceParams, Waveform, line, sine_of
 
 
 class Sine(Waveform):
@@ -27,14 +22,31 @@ class Sine(Waveform):
         frequency_hz: Sized = parameter(1000.0, "frequency", "Hz", ge=0, le=1e6)
         phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
 
-    @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
+    class Packed(Waveform.Packed):
         """Cycles per ms and cycles at the start."""
-        return [params.frequency_hz / 1e3, params.phase_deg / 360.0]
+
+        frequency_per_ms: float
+        phase: float
+
+    @classmethod
+    def tone_hz(cls, params: Any) -> float:
+        """Return its frequency in Hz."""
+        return float(params.frequency_hz)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack frequency and phase."""
+        p: Sine.Packed = super().pack(params, context)
+        p.frequency_per_ms, p.phase = params.frequency_hz / 1e3, params.phase_deg / 360.0
+        return p
 
     @classmethod
     def lines(cls, params: Any) -> list[tuple[float, float]]:
         """One line."""
         return [line(params.frequency_hz, params.phase_deg)]
 
-    step = playing(sine)
+    @staticmethod
+    @kernel
+    def shape(p: Packed, t: float) -> float:
+        """Sine of frequency and phase."""
+        return sine_of(p.frequency_per_ms * t + p.phase)

@@ -5,16 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, kernel, parameter
+from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
-
-
-@kernel
-def square(p: Any, t: float) -> float:
-    """High for the duty share of each period, low for the rest."""
-    cycles = p[FIRST] * t
-    return 1.0 if cycles - math.floor(cycles) < p[FIRST + 1] else -1.0
+from core.elementary import floor
+from core.kernel import kernel
+from core.reference.waveform import ReferenceParams, Waveform
 
 
 class Square(Waveform):
@@ -29,10 +24,23 @@ class Square(Waveform):
         frequency_hz: Sized = parameter(200.0, "frequency", "Hz", ge=0, le=1e6)
         duty: float = parameter(0.5, "share of the period that is high", gt=0, le=1)
 
-    @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
+    class Packed(Waveform.Packed):
         """Cycles per ms and duty."""
-        return [params.frequency_hz / 1e3, params.duty]
+
+        frequency_per_ms: float
+        duty: float
+
+    @classmethod
+    def tone_hz(cls, params: Any) -> float:
+        """Return its frequency in Hz."""
+        return float(params.frequency_hz)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the frequency."""
+        p: Square.Packed = super().pack(params, context)
+        p.frequency_per_ms = params.frequency_hz / 1e3
+        return p
 
     @classmethod
     def lines(cls, params: Any) -> list[tuple[float, float]]:
@@ -43,4 +51,9 @@ class Square(Waveform):
         lines = [(n * params.frequency_hz, share) for n, share in harmonics if share > 1e-9]
         return [(0.0, 2.0 * params.duty - 1.0), *lines]
 
-    step = playing(square)
+    @staticmethod
+    @kernel
+    def shape(p: Packed, t: float) -> float:
+        """High for the duty share of each period, low for the rest."""
+        cycles = p.frequency_per_ms * t
+        return 1.0 if cycles - floor(cycles) < p.duty else -1.0

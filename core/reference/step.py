@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import Context, Equation, kernel, parameter
-from core.reference.waveform import FIRST, ReferenceParams, Waveform, playing
-
-
-@kernel
-def after(p: Any, t: float) -> float:
-    """Zero before the moment, one from it on."""
-    return 1.0 if t >= p[FIRST] else 0.0
+from core.block import Equation, parameter
+from core.kernel import kernel
+from core.reference.waveform import ReferenceParams, Waveform
 
 
 class StepReference(Waveform):
@@ -25,9 +18,13 @@ class StepReference(Waveform):
 
         start_ms: float = parameter(0.0, "moment of the step", "ms", ge=0)
 
-    @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
+    class Packed(Waveform.Packed):
         """Moment of the step."""
-        return [params.start_ms]
 
-    step = playing(after)
+        start_ms: float
+
+    @staticmethod
+    @kernel
+    def shape(p: Packed, t: float) -> float:
+        """Zero before the moment, one from it on."""
+        return 1.0 if t >= p.start_ms else 0.0

@@ -1,19 +1,19 @@
-"""What every reference shares: ports, amplitude in volts or micrometres, values between samples."""
+"""Base of the references: ports, amplitude in volts or micrometres, values between samples."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
-import numpy as np
 from pydantic import model_validator
 
-from core.block import TICK, Block, BlockParams, Context, FloatArray, Port, Step, kernel, parameter
+from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor, sin
 from core.errors import InputError
-
-DT, ANALOGUE, SCALE, OFFSET, FIRST = range(5)
-"""Packed parameters of every reference; those of the waveform start at ``FIRST``."""
+from core.kernel import kernel
+from core.ports import BlockPorts, output
+from core.record import Record
 
 
 class ReferenceParams(BlockParams):
@@ -33,7 +33,7 @@ class ReferenceParams(BlockParams):
         """Return the amplitude in volts."""
         if self.amplitude_v is not None:
             return self.amplitude_v
-        assert self.amplitude_um is not None  # _one_amplitude has seen to it
+        assert self.amplitude_um is not None  # _one_amplitude has checked it
         if context.device.static_gain == 0.0:
             raise InputError("needs a device that moves; these stators give no force", "reference.amplitude_um")
         return self.amplitude_um / context.device.static_gain
@@ -41,64 +41,90 @@ class ReferenceParams(BlockParams):
 
 @kernel
 def sine_of(cycles: float) -> float:
-    """Sine of a phase in cycles, kept below one, so that it is as exact after hours as at the start."""
-    return math.sin(2.0 * math.pi * (cycles - math.floor(cycles)))
+    """Sine of a phase in cycles; the phase is kept below one, so that it is as exact after hours as at the start."""
+    return sin(2.0 * math.pi * (cycles - floor(cycles)))
 
 
 class Waveform(Block):
     """A reference; a subclass gives ``shape(p, t_ms)`` of unit amplitude."""
 
-    inputs: ClassVar = ()
-    outputs: ClassVar = (
-        Port("voltage", "V", "reference voltage now"),
-        Port("middle", "V", "reference half a sample later", hidden=True),
-        Port("end", "V", "reference one sample later", hidden=True),
-    )
+    class Packed(Record):
+        """Every reference: ms of a tick, whether it also plays between ticks, amplitude and constant in V."""
+
+        dt_ms: float
+        analogue: float
+        scale: float
+        offset: float
+
+    class Ports(BlockPorts):
+        """The reference voltage."""
+
+        voltage: float = output("V", "reference voltage now")
+        middle: float = output("V", "reference half a sample later", hidden=True)
+        end: float = output("V", "reference one sample later", hidden=True)
+
+    def __init_subclass__(cls) -> None:
+        """Make the step play the shape of the subclass."""
+        super().__init_subclass__()
+        cls.step = playing(cls.shape)  # type: ignore[assignment]
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the shared parameters, then those of the waveform; what plays every N ticks is held over them."""
-        analogue = context.analogue and context.every == 1
-        shared = [context.dt_ms / context.every, float(analogue), params.volts(context), params.offset_v]
-        return np.array([*shared, *cls.shape_parameters(params, context)], dtype=np.float64)
+    def pack(cls, params: Any, context: Context) -> Any:
+        """Pack the shared parameters; a reference that runs every N ticks is held between them."""
+        p = cls.Packed.blank(cls.tails(params))
+        p.dt_ms = context.dt_ms / context.every
+        p.analogue = context.analogue and context.every == 1
+        p.scale, p.offset = params.volts(context), params.offset_v
+        return p
 
     @classmethod
-    def shape_parameters(cls, params: Any, context: Context) -> list[float]:
-        """Return the packed parameters of the waveform."""
+    def tails(cls, params: Any) -> int:
+        """Return the length of the packed record's tail."""
+        return 0
+
+    @staticmethod
+    def shape(p: Any, t: float) -> float:
+        """Return the waveform of unit amplitude at a time in ms."""
         raise NotImplementedError
 
     @classmethod
+    def tone_hz(cls, params: Any) -> float:
+        """Return the frequency of its one tone in Hz; 0 where there is none, or more than one."""
+        return 0.0
+
+    @classmethod
     def tones(cls, params: Any, context: Context) -> list[tuple[float, float]]:
-        """Return frequency in Hz and amplitude in V of its lines, a constant at 0 Hz; none when it is broad."""
-        own = [(hz, params.volts(context) * share) for hz, share in cls.lines(params)]
-        if not own:
+        """Return frequency in Hz and amplitude in V of its lines, a constant at 0 Hz; none if the spectrum is broad."""
+        lines = [(hz, params.volts(context) * share) for hz, share in cls.lines(params)]
+        if not lines:
             return []
-        constant = params.offset_v + sum(volts for hz, volts in own if hz == 0.0)
-        moving = [(hz, volts) for hz, volts in own if hz > 0.0 and volts != 0.0]
+        constant = params.offset_v + sum(volts for hz, volts in lines if hz == 0.0)
+        moving = [(hz, volts) for hz, volts in lines if hz > 0.0 and volts != 0.0]
         return [*moving, (0.0, constant)] if constant != 0.0 else moving
 
     @classmethod
     def lines(cls, params: Any) -> list[tuple[float, float]]:
-        """Return frequency in Hz and share of the amplitude of every line; none when there are no lines."""
+        """Return frequency in Hz and share of the amplitude of every line; none if there are no lines."""
         return []
 
 
 def line(hz: float, phase_deg: float, share: float = 1.0) -> tuple[float, float]:
-    """Return the line of a sine; at 0 Hz it is the constant its phase makes it."""
+    """Return the line of a sine; at 0 Hz it is a constant given by the phase."""
     return hz, share if hz > 0.0 else share * math.sin(math.radians(phase_deg))
 
 
-def playing(shape: Callable[[Any, float], float]) -> Step:
+def playing(shape: Callable[[Any, float], float]) -> Callable[[Any, Any, Any], None]:
     """Return the step that plays ``shape``; a DAC holds it, an analogue generator does not."""
 
-    def step(p: Any, s: Any, w: Any, io: Any) -> None:
-        t = w[TICK] * p[DT]
-        w[io[0]] = p[OFFSET] + p[SCALE] * shape(p, t)
-        if p[ANALOGUE] != 0.0:
-            w[io[1]] = p[OFFSET] + p[SCALE] * shape(p, t + 0.5 * p[DT])
-            w[io[2]] = p[OFFSET] + p[SCALE] * shape(p, t + p[DT])
+    def step(p: Waveform.Packed, s: Record, x: Waveform.Ports) -> None:
+        t = x.tick * p.dt_ms
+        now = p.offset + p.scale * shape(p, t)
+        x.voltage = now
+        if p.analogue != 0.0:
+            x.middle = p.offset + p.scale * shape(p, t + 0.5 * p.dt_ms)
+            x.end = p.offset + p.scale * shape(p, t + p.dt_ms)
         else:
-            w[io[1]] = w[io[0]]
-            w[io[2]] = w[io[0]]
+            x.middle = now
+            x.end = now
 
     return step

@@ -1,1 +1,1 @@
-"""Sensors: what the controllers are told of the shuttle."""
+"""Sensors: they measure the motion of the shuttle for controllers and diagnosers."""

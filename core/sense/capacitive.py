@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from core.block import TICK, Context, Equation, FloatArray, Port, kernel, parameter
+from core.block import Context, Equation, parameter
 from core.device.geometry import drawn
+from core.kernel import kernel
 from core.noise import key, normal
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record
 from core.sense.sensor import Sensor, SensorParams
 from core.units import FF_PER_F, UM_PER_M
-
-GRADIENT, OVERLAP, GAP, START, NOISE, FIRST_KEY, SECOND_KEY = range(7)
-TRUE, LATERAL, ROTATION, DISPLACEMENT, SUM, POSITIVE, NEGATIVE, ERROR = range(8)
 
 NODES = np.array([-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640])
 WEIGHTS = np.array([0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891])
 
 
 @kernel
-def squeezed(p: Any, side: float, overlap: float, y: float, theta: float) -> float:
+def squeezed(p: Capacitive.Packed, side: float, overlap: float, y: float, theta: float) -> float:
     r"""Return the overlap a straight comb would need for the capacitance of a shifted and turned one.
 
     :math:`\int\frac{d\xi}{1-(\eta/g)^2},\;\eta=y+\theta\xi`, five-point Gauss; contact counts as 0.999 of the gap.
@@ -31,51 +31,21 @@ def squeezed(p: Any, side: float, overlap: float, y: float, theta: float) -> flo
     half = 0.5 * overlap
     total = 0.0
     for i in range(5):
-        xi = side * (p[START] + half * (1.0 + NODES[i]))
-        u = (y + theta * xi) / p[GAP]
+        xi = side * (p.start + half * (1.0 + NODES[i]))
+        u = (y + theta * xi) / p.gap
         total += WEIGHTS[i] / (1.0 - min(u * u, 0.998))
     return half * total
-
-
-def capacitive_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Read both combs; displacement from the difference."""
-    x = w[io[TRUE]]
-    y = w[io[LATERAL]]
-    theta = 1e-3 * w[io[ROTATION]]
-    gradient = p[GRADIENT]
-    positive = gradient * squeezed(p, 1.0, p[OVERLAP] + x, y, theta) + p[NOISE] * normal(p[FIRST_KEY], w[TICK])
-    negative = gradient * squeezed(p, -1.0, p[OVERLAP] - x, y, theta) + p[NOISE] * normal(p[SECOND_KEY], w[TICK])
-    z = (positive - negative) / (2.0 * gradient) if gradient != 0.0 else 0.0
-    w[io[DISPLACEMENT]] = z
-    w[io[SUM]] = positive + negative
-    w[io[POSITIVE]] = positive
-    w[io[NEGATIVE]] = negative
-    w[io[ERROR]] = z - x
 
 
 class Capacitive(Sensor):
     r"""Difference of two comb capacitances (2.2.1.1-2), :math:`C_{sp,sn}=C_{s0}\pm\frac{\partial C_s}{\partial x}x`.
 
-    Exact for an ideal comb. The sum does not see the displacement; it sees what narrows gaps on one side,
-    :math:`C\propto\int\frac{d\xi}{g-\eta}+\frac{d\xi}{g+\eta},\;\eta=y+\theta\xi`: lateral motion and rotation,
+    Exact for an ideal comb. The sum does not depend on the displacement; it depends on motions that narrow gaps on one
+    side, :math:`C\propto\int\frac{d\xi}{g-\eta}+\frac{d\xi}{g+\eta},\;\eta=y+\theta\xi`: lateral motion and rotation,
     which no displacement sensor shows.
     """
 
     title = "Capacitive sensor"
-    inputs = (
-        Port("true", "um", "true displacement", source="plant.displacement"),
-        Port("lateral", "um", "true lateral displacement, where the plant has one", source="plant.shift?"),
-        Port("rotation", "mrad", "true rotation, where the plant has one", source="plant.rotation?"),
-    )
-    outputs = (
-        Port("displacement", "um", "measured displacement"),
-        Port("sum", "fF", "sum of both capacitances: sees lateral motion and rotation"),
-    )
-    taps = (
-        Port("positive", "fF", "capacitance of the comb that closes towards +x"),
-        Port("negative", "fF", "capacitance of the opposite comb"),
-        Port("error", "um", "measured minus true displacement"),
-    )
     equations = (
         Equation(
             "capacitances",
@@ -107,6 +77,29 @@ class Capacitive(Sensor):
             0.1, "noise density of the difference (assumed)", "aF/rtHz", ge=0, le=1e6, equation="2.2.1"
         )
 
+    class Packed(Record):
+        """Both combs and their noise, in um and fF: slope, overlap, gap, where the overlap begins, noise of each."""
+
+        gradient: float
+        overlap: float
+        gap: float
+        start: float
+        noise: float
+        positive_key: float
+        negative_key: float
+
+    class Ports(BlockPorts):
+        """Reads the motion in the plane; writes capacitances and displacement."""
+
+        true: float = reads("plant.displacement", "um", "true displacement")
+        lateral: float = reads("plant.shift?", "um", "true lateral displacement, where the plant has one")
+        rotation: float = reads("plant.rotation?", "mrad", "true rotation, where the plant has one")
+        displacement: float = output("um", "measured displacement")
+        sum: float = output("fF", "sum of both capacitances: sees lateral motion and rotation")
+        positive: float = tap("fF", "capacitance of the comb that closes towards +x")
+        negative: float = tap("fF", "capacitance of the opposite comb")
+        error: float = tap("um", "measured minus true displacement")
+
     @classmethod
     def noise_ff(cls, params: Any, context: Context) -> float:
         """Return the standard deviation of the difference in one sample, white up to half the sample rate."""
@@ -114,12 +107,12 @@ class Capacitive(Sensor):
 
     @classmethod
     def _gap_um(cls, params: Any, context: Context) -> float:
-        """Return the gap between the fingers it senses with."""
+        """Return the gap between the fingers of the sensing combs."""
         return drawn(context).gap_um if params.gap_um is None else float(params.gap_um)
 
     @classmethod
     def _gradient(cls, params: Any, context: Context) -> float:
-        r"""Return :math:`\partial C_s/\partial x` of one comb, fF/um: that of the device, by one over the gap."""
+        r"""Return :math:`\partial C_s/\partial x` of one comb, fF/um: the device's, scaled by one over the gap."""
         nominal = context.capacitance_gradient * FF_PER_F / UM_PER_M
         return nominal * (drawn(context).gap_um / cls._gap_um(params, context))
 
@@ -130,19 +123,32 @@ class Capacitive(Sensor):
         return cls.noise_ff(params, context) / (2.0 * gradient) if gradient else 0.0
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step: fF and um; each comb carries half the variance of the difference."""
         comb = drawn(context)
-        return np.array(
-            [
-                cls._gradient(params, context),
-                comb.overlap_um if params.overlap_um is None else params.overlap_um,
-                cls._gap_um(params, context),
-                comb.stator_tip_um if params.comb_start_um is None else params.comb_start_um,
-                cls.noise_ff(params, context) / math.sqrt(2.0),
-                key(context.seed, "sensor.capacitive.positive"),
-                key(context.seed, "sensor.capacitive.negative"),
-            ]
-        )
+        p = cls.Packed.blank()
+        p.gradient = cls._gradient(params, context)
+        p.overlap = comb.overlap_um if params.overlap_um is None else params.overlap_um
+        p.gap = cls._gap_um(params, context)
+        p.start = comb.stator_tip_um if params.comb_start_um is None else params.comb_start_um
+        p.noise = cls.noise_ff(params, context) / math.sqrt(2.0)
+        p.positive_key = key(context.seed, "sensor.capacitive.positive")
+        p.negative_key = key(context.seed, "sensor.capacitive.negative")
+        return p
 
-    step = capacitive_step
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Read both combs; displacement from the difference."""
+        displacement = x.true
+        y = x.lateral
+        theta = 1e-3 * x.rotation
+        positive = p.gradient * squeezed(p, 1.0, p.overlap + displacement, y, theta)
+        positive += p.noise * normal(p.positive_key, x.tick)
+        negative = p.gradient * squeezed(p, -1.0, p.overlap - displacement, y, theta)
+        negative += p.noise * normal(p.negative_key, x.tick)
+        z = (positive - negative) / (2.0 * p.gradient) if p.gradient != 0.0 else 0.0
+        x.displacement = z
+        x.sum = positive + negative
+        x.positive = positive
+        x.negative = negative
+        x.error = z - displacement

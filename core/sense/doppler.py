@@ -5,38 +5,19 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, Port, parameter, settled
+from core.block import Context, Equation, parameter
+from core.kernel import flush_tiny
 from core.noise import key, normal
-from core.sense.grating import GratingParams, pack_grating, series
+from core.ports import BlockPorts, output, reads
+from core.record import Record
+from core.sense.grating import G, Grating, GratingParams, pack_grating, series
 from core.sense.sensor import Sensor
-
-NOISE, KEY, DT, DECAY, GRATING = range(5)
-TRUE, VELOCITY, SIGNAL, HEIGHT = range(4)
-STARTED, LAST, SUM = range(3)
-
-
-def doppler_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Read the apparent velocity and integrate it."""
-    x = w[io[TRUE]]
-    height, slope, _ = series(p, GRATING, x)
-    signal = slope * w[io[VELOCITY]] + p[NOISE] * normal(p[KEY], w[TICK])
-    if s[STARTED] == 0.0:
-        s[STARTED] = 1.0
-        s[SUM] = height - p[GRATING]
-        s[LAST] = signal
-    elif math.isfinite(signal):
-        s[SUM] = settled(p[DECAY] * s[SUM] + 0.5 * p[DT] * (s[LAST] + signal))
-        s[LAST] = signal
-    w[io[SIGNAL]] = signal
-    w[io[HEIGHT]] = p[GRATING] + s[SUM]
 
 
 class Doppler(Sensor):
     r"""Apparent velocity of the surface under a beam normal to the chip (2.2.3), :math:`h'(x)\,\dot x`.
 
-    The beam sees motion along itself, so only the edges of the polysilicon show, as pulses of alternating sign.
+    The beam measures motion along itself, so only the edges of the polysilicon show, as pulses of alternating sign.
     The integral of the pulses is the height under the beam, the same function of displacement as the light through
     the wafer: it has the same ambiguity of direction. Only the height of a pulse tells the speed.
 
@@ -44,14 +25,6 @@ class Doppler(Sensor):
     """
 
     title = "Doppler velocimeter"
-    inputs = (
-        Port("true", "um", "true displacement", source="plant.displacement"),
-        Port("moving", "um/ms", "true velocity", source="plant.velocity"),
-    )
-    outputs = (
-        Port("velocity", "um/ms", "apparent velocity normal to the chip"),
-        Port("height", "um", "its integral: height of the surface under the beam"),
-    )
     equations = (
         Equation("signal", r"v_\perp=h'(x)\,\dot x+v", "2.2.3.1 in words"),
         Equation("height", r"h(x)=d\,(1-o(x))=\int v_\perp\,dt"),
@@ -66,22 +39,55 @@ class Doppler(Sensor):
         )
         leak_ms: float = parameter(20.0, "time constant of the integral", "ms", gt=0, le=1e6)
 
-        def packed(self, context: Context) -> list[float]:
-            """Return the packed grating of the height."""
+        def packed(self, kind: type[G], context: Context) -> G:
+            """Return the packed grating of the height; all other fields of the record are blank."""
             amplitudes = [-self.depth_um * a for a in self.shape()]
             mean = self.depth_um * (1.0 - self.opening)
-            return pack_grating(mean, self.pitch_um, self.offset(context.seed), amplitudes)
+            return pack_grating(kind, mean, self.pitch_um, self.offset(context.seed), amplitudes)
+
+    class Packed(Grating):
+        """The height over the grating, the noise and its stream, sample interval, share of the integral kept."""
+
+        noise_um_ms: float
+        key: float
+        dt_ms: float
+        decay: float
+
+    class State(Record):
+        """Whether it has run, the velocity of the last sample, the integral."""
+
+        started: float
+        last: float
+        integral: float
+
+    class Ports(BlockPorts):
+        """Reads the motion; writes the apparent velocity and the height."""
+
+        true: float = reads("plant.displacement", "um", "true displacement")
+        moving: float = reads("plant.velocity", "um/ms", "true velocity")
+        velocity: float = output("um/ms", "apparent velocity normal to the chip")
+        height: float = output("um", "its integral: height of the surface under the beam")
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        decay = math.exp(-context.dt_ms / params.leak_ms)
-        own = [params.noise_um_ms, key(context.seed, "sensor.doppler"), context.dt_ms, decay]
-        return np.array(own + params.packed(context))
+        p: Doppler.Packed = params.packed(cls.Packed, context)
+        p.key = key(context.seed, "sensor.doppler")
+        p.dt_ms = context.dt_ms
+        p.decay = math.exp(-context.dt_ms / params.leak_ms)
+        return p
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it has run, the velocity of the sample before, the integral."""
-        return np.zeros(3)
-
-    step = doppler_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Read the apparent velocity and integrate it."""
+        height, slope, _ = series(p, x.true)
+        signal = slope * x.moving + p.noise_um_ms * normal(p.key, x.tick)
+        if s.started == 0.0:
+            s.started = 1.0
+            s.integral = height - p.mean
+            s.last = signal
+        elif math.isfinite(signal):
+            s.integral = flush_tiny(p.decay * s.integral + 0.5 * p.dt_ms * (s.last + signal))
+            s.last = signal
+        x.velocity = signal
+        x.height = p.mean + s.integral

@@ -1,4 +1,4 @@
-r"""The grating in the shuttle under a focused beam: what is transmitted, and how high the surface is.
+r"""The grating in the shuttle under a focused beam: transmitted light, and height of the surface.
 
 A bar grating of pitch :math:`\Lambda` with the share :math:`D` open, smoothed by a Gaussian beam of
 :math:`1/e^2` radius :math:`w`, is open under the beam by
@@ -14,28 +14,42 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any
+from typing import TypeVar
 
-from core.block import Context, kernel, parameter
+from core.block import Context, parameter
+from core.elementary import cos, sin
+from core.kernel import kernel
 from core.noise import key, uniform
+from core.record import Record, Vector, tail
 from core.sense.sensor import SensorParams
 
-MEAN, WAVE, OFFSET, COUNT, FIRST = range(5)
-"""Layout of a packed grating: mean, 2 pi over pitch, offset, number of harmonics, then their amplitudes."""
 HARMONICS = 64
 NEGLIGIBLE = 1e-9
 
 
+class Grating(Record):
+    """A packed grating: mean, 2 pi over pitch, offset, number of harmonics, their amplitudes."""
+
+    mean: float
+    wave: float
+    offset: float
+    count: float
+    amplitudes: Vector = tail()
+
+
+G = TypeVar("G", bound=Grating)
+
+
 @lru_cache(256)
 def amplitudes(pitch: float, spot: float, opening: float) -> tuple[float, ...]:
-    """Return the amplitudes a of the harmonics, as many as matter."""
-    found = []
+    """Return the amplitudes a of the harmonics that are large enough to matter."""
+    harmonics = []
     for m in range(1, HARMONICS + 1):
         smooth = math.exp(-0.5 * (math.pi * m * spot / pitch) ** 2)
-        found.append(2.0 / (math.pi * m) * math.sin(math.pi * m * opening) * smooth)
-    while len(found) > 1 and abs(found[-1]) <= NEGLIGIBLE * abs(found[0]):
-        found.pop()
-    return tuple(found)
+        harmonics.append(2.0 / (math.pi * m) * math.sin(math.pi * m * opening) * smooth)
+    while len(harmonics) > 1 and abs(harmonics[-1]) <= NEGLIGIBLE * abs(harmonics[0]):
+        harmonics.pop()
+    return tuple(harmonics)
 
 
 class GratingParams(SensorParams):
@@ -49,11 +63,11 @@ class GratingParams(SensorParams):
     )
 
     def shape(self) -> list[float]:
-        """Return the amplitudes of the harmonics of the open share, as many as matter."""
+        """Return the amplitudes of the open share's harmonics that are large enough to matter."""
         return list(amplitudes(self.pitch_um, self.spot_um, self.opening))
 
     def offset(self, seed: int) -> float:
-        """Return the position of an opening, given or drawn."""
+        """Return the position of an opening, as given or drawn at random."""
         if self.grating_offset_um is not None:
             return self.grating_offset_um
         return float(self.pitch_um * uniform(key(seed, "sensor.grating"), 0.0))
@@ -94,50 +108,54 @@ class BeamParams(GratingParams):
         r"""Displacement noise of a pair in quadrature, :math:`\frac{\Lambda}{2\pi\sqrt2}10^{-SNR/20}`."""
         return self.pitch_um / (2.0 * math.pi * math.sqrt(2.0)) * math.pow(10.0, -self.snr_db / 20.0)
 
-    def packed(self, context: Context) -> list[float]:
-        """Return the packed grating of the intensity."""
-        return pack_grating(self.mean, self.pitch_um, self.offset(context.seed), self.harmonics)
+    def packed(self, kind: type[G], context: Context) -> G:
+        """Return the packed grating of the intensity; all other fields of the record are blank."""
+        return pack_grating(kind, self.mean, self.pitch_um, self.offset(context.seed), self.harmonics)
 
 
-def pack_grating(mean: float, pitch_um: float, offset_um: float, amplitudes: list[float]) -> list[float]:
-    """Lay out a Fourier series for the kernels below."""
-    return [mean, 2.0 * math.pi / pitch_um, offset_um, float(len(amplitudes)), *amplitudes]
+def pack_grating(kind: type[G], mean: float, pitch_um: float, offset_um: float, amplitudes: list[float]) -> G:
+    """Return a Fourier series for the kernels below; all other fields of the record are blank."""
+    p = kind.blank(len(amplitudes))
+    p.mean, p.wave, p.offset = mean, 2.0 * math.pi / pitch_um, offset_um
+    p.count = len(amplitudes)
+    p.amplitudes[:] = amplitudes
+    return p
 
 
 @kernel
-def level(p: Any, at: int, x: float) -> float:
-    """Return the value of the series packed at ``at``; what is not a number gives none."""
+def level(p: Grating, x: float) -> float:
+    """Return the value of a series; NaN gives NaN."""
     if not math.isfinite(x):
         return math.nan
-    now = math.cos(p[at + WAVE] * (x - p[at + OFFSET]))
+    now = cos(p.wave * (x - p.offset))
     twice = 2.0 * now
     before = 1.0
-    total = float(p[at + MEAN] + p[at + FIRST] * now)
-    for m in range(1, int(p[at + COUNT])):
+    total = float(p.mean + p.amplitudes[0] * now)
+    for m in range(1, int(p.count)):
         after = twice * now - before
         before = now
         now = after
-        total += p[at + FIRST + m] * now
+        total += p.amplitudes[m] * now
     return total
 
 
 @kernel
-def series(p: Any, at: int, x: float) -> tuple[float, float, float]:
-    """Return value, slope and curvature by displacement of the series packed at ``at``."""
+def series(p: Grating, x: float) -> tuple[float, float, float]:
+    """Return value, slope and curvature by displacement of a series."""
     if not math.isfinite(x):
         return math.nan, math.nan, math.nan
-    angle = p[at + WAVE] * (x - p[at + OFFSET])
-    c1 = math.cos(angle)
-    s1 = math.sin(angle)
+    angle = p.wave * (x - p.offset)
+    c1 = cos(angle)
+    s1 = sin(angle)
     c0 = 1.0
     s0 = 0.0
     twice = 2.0 * c1
-    value = float(p[at + MEAN])
+    value = float(p.mean)
     first = 0.0
     second = 0.0
-    for i in range(int(p[at + COUNT])):
+    for i in range(int(p.count)):
         m = i + 1.0
-        a = p[at + FIRST + i]
+        a = p.amplitudes[i]
         value += a * c1
         first -= m * a * s1
         second -= m * m * a * c1
@@ -147,5 +165,5 @@ def series(p: Any, at: int, x: float) -> tuple[float, float, float]:
         c1 = c2
         s0 = s1
         s1 = s2
-    wave = p[at + WAVE]
+    wave = p.wave
     return value, wave * first, wave * wave * second

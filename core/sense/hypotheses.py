@@ -1,113 +1,139 @@
-r"""Hypotheses of where a shuttle under one beam is, each a Kalman filter, and their reflections.
+r"""Hypotheses of the position of a shuttle under one beam, each a Kalman filter, and their reflections.
 
-The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`: a hypothesis that passes an
-extreme, or turns near one, has a double that did the opposite.
+The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`. If a hypothesis passes an extreme,
+or turns near one, a second hypothesis with the reflected motion explains the light equally well.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from core.block import kernel
-from core.sense import tracker
-from core.sense.grating import OFFSET, WAVE, series
-from core.sense.tracker import FILTER, P11, V, X, correct
+from core.elementary import floor
+from core.kernel import kernel
+from core.record import Record, Records, several
+from core.sense.grating import Grating, series
+from core.sense.tracker import Filter, correct
 
-NOISE, FORGET, PENALTY, DROP, NEAR, SAME_X, SAME_V, MODEL = range(8)
-GRATING = MODEL + tracker.MODEL
-"""Layout of the packed parameters: those of the hypotheses, the model of the shuttle, the grating."""
 MOST = 10
-SCORE, USED, WIDTH = FILTER, FILTER + 1, FILTER + 2
-"""Layout of a hypothesis: a filter, its score, whether it is followed; and its length."""
 NO, YES, NEW = 0.0, 1.0, 2.0
-STARTED, BEST, CHANGES, OWN = range(4)
-"""State: whether it has run, the best hypothesis, how often that changed, the hypotheses."""
+
+
+class Odds(Grating):
+    """Grating, noise, forgetting and odds, and the distances within which hypotheses count as near or as alike."""
+
+    noise: float
+    forgetting: float
+    reflection_odds: float
+    drop: float
+    near_um: float
+    same_x: float
+    same_v: float
+
+
+class Hypothesis(Filter):
+    """A filter, its score, whether it is followed."""
+
+    score: float
+    used: float
+
+
+class Followed(Record):
+    """The best hypothesis, how often that changed, the hypotheses."""
+
+    best: float
+    changes: float
+    hypotheses: Records[Hypothesis] = several(MOST)
 
 
 @kernel
-def alike(p: Any, s: Any, b: int, x: float, v: float) -> bool:
-    """Say whether a hypothesis is at a place with a speed."""
-    return bool(abs(s[b + X] - x) < p[SAME_X] and abs(s[b + V] - v) < p[SAME_V])
+def alike(p: Odds, hypothesis: Filter, x: float, v: float) -> bool:
+    """Say whether a hypothesis has nearly this position and speed."""
+    return bool(abs(hypothesis.x - x) < p.same_x and abs(hypothesis.v - v) < p.same_v)
 
 
 @kernel
-def mirror(p: Any, s: Any, b: int, extreme: float) -> None:
-    """Add the reflection of a hypothesis in an extreme of the light, unless there is one like it or better ones."""
-    x = 2.0 * extreme - s[b + X]
-    v = -s[b + V]
-    low = s[b + SCORE] - p[PENALTY]
-    to = -1
+def mirror(p: Odds, s: Followed, hypothesis: Hypothesis, extreme: float) -> None:
+    """Add the reflection of a hypothesis in an extreme of the light, unless a similar one or only better ones exist."""
+    x = 2.0 * extreme - hypothesis.x
+    v = -hypothesis.v
+    low = hypothesis.score - p.reflection_odds
+    place = -1
     for i in range(MOST):
-        o = OWN + i * WIDTH
-        if s[o + USED] == NO:
-            # a free place is better than any
-            to = o
+        rival = s.hypotheses[i]
+        if rival.used == NO:
+            # a free place is better than replacing a hypothesis
+            place = i
             low = -math.inf
-        elif alike(p, s, o, x, v):
+        elif alike(p, rival, x, v):
             return
-        elif s[o + SCORE] < low:
-            to = o
-            low = s[o + SCORE]
-    if to < 0:
+        elif rival.score < low:
+            place = i
+            low = rival.score
+    if place < 0:
         return
-    for j in range(FILTER):
-        s[to + j] = s[b + j]
-    s[to + X] = x
-    s[to + V] = v
-    s[to + SCORE] = s[b + SCORE] - p[PENALTY]
-    s[to + USED] = NEW
+    double = s.hypotheses[place]
+    double.x = x
+    double.v = v
+    double.f = hypothesis.f
+    double.p11 = hypothesis.p11
+    double.p12 = hypothesis.p12
+    double.p13 = hypothesis.p13
+    double.p22 = hypothesis.p22
+    double.p23 = hypothesis.p23
+    double.p33 = hypothesis.p33
+    double.score = hypothesis.score - p.reflection_odds
+    double.used = NEW
 
 
 @kernel
-def follow(p: Any, s: Any, b: int, z: float) -> None:
+def follow(p: Odds, hypothesis: Hypothesis, z: float) -> None:
     """Correct one hypothesis, which has been predicted, and score it."""
-    value, first, second = series(p, GRATING, s[b + X])
-    # to second order: near an extreme of the light the slope is nothing and the curvature is all
-    bend = 0.5 * second * s[b + P11]
-    gain = correct(s, b, z - value - bend, first, p[NOISE] + 2.0 * bend * bend)
-    s[b + SCORE] = p[FORGET] * s[b + SCORE] + gain
+    value, first, second = series(p, hypothesis.x)
+    # to second order: near an extreme of the light the slope vanishes and only the curvature counts
+    bend = 0.5 * second * hypothesis.p11
+    gain = correct(hypothesis, z - value - bend, first, p.noise + 2.0 * bend * bend)
+    hypothesis.score = p.forgetting * hypothesis.score + gain
 
 
 @kernel
-def turns(p: Any, s: Any, b: int, x: float, v: float) -> None:
+def turns(p: Odds, s: Followed, hypothesis: Hypothesis, x: float, v: float) -> None:
     """Add the reflection of a hypothesis that came from (x, v), if it passed an extreme or turned near one."""
-    half = math.pi / p[GRATING + WAVE]
-    before = math.floor((x - p[GRATING + OFFSET]) / half)
-    place = (s[b + X] - p[GRATING + OFFSET]) / half
-    after = math.floor(place)
+    half = math.pi / p.wave
+    before = floor((x - p.offset) / half)
+    place = (hypothesis.x - p.offset) / half
+    after = floor(place)
     if after != before:
-        mirror(p, s, b, p[GRATING + OFFSET] + half * max(before, after))
-    elif v * s[b + V] < 0.0:
-        nearest = math.floor(place + 0.5)
-        if abs(place - nearest) * half < p[NEAR]:
-            mirror(p, s, b, p[GRATING + OFFSET] + half * nearest)
+        mirror(p, s, hypothesis, p.offset + half * max(before, after))
+    elif v * hypothesis.v < 0.0:
+        nearest = floor(place + 0.5)
+        if abs(place - nearest) * half < p.near_um:
+            mirror(p, s, hypothesis, p.offset + half * nearest)
 
 
 @kernel
-def sift(p: Any, s: Any) -> float:
-    """Drop the unlikely and those that have become like a better one; find the best; return how many are left."""
-    best = int(s[BEST])
+def sift(p: Odds, s: Followed) -> float:
+    """Drop unlikely hypotheses and those similar to a better one; find the best; return how many are left."""
+    best = int(s.best)
     high = -math.inf
     for i in range(MOST):
-        b = OWN + i * WIDTH
-        if s[b + USED] != NO and s[b + SCORE] > high:
+        hypothesis = s.hypotheses[i]
+        if hypothesis.used != NO and hypothesis.score > high:
             best = i
-            high = s[b + SCORE]
-    if best != int(s[BEST]):
-        s[BEST] = float(best)
-        s[CHANGES] += 1.0
+            high = hypothesis.score
+    if best != int(s.best):
+        s.best = float(best)
+        s.changes += 1.0
     left = 0.0
     for i in range(MOST):
-        b = OWN + i * WIDTH
-        if s[b + USED] == NO:
+        hypothesis = s.hypotheses[i]
+        if hypothesis.used == NO:
             continue
-        keep = s[b + SCORE] > high - p[DROP]
+        keep = hypothesis.score > high - p.drop
         for j in range(MOST):
-            o = OWN + j * WIDTH
-            ahead = s[o + SCORE] > s[b + SCORE] or (s[o + SCORE] == s[b + SCORE] and j < i)
-            if j != i and s[o + USED] != NO and ahead and alike(p, s, o, s[b + X], s[b + V]):
+            rival = s.hypotheses[j]
+            ahead = rival.score > hypothesis.score or (rival.score == hypothesis.score and j < i)
+            if j != i and rival.used != NO and ahead and alike(p, rival, hypothesis.x, hypothesis.v):
                 keep = False
-        s[b + USED] = YES if keep else NO
+        hypothesis.used = YES if keep else NO
         left += 1.0 if keep else 0.0
     return left

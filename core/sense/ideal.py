@@ -5,31 +5,17 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Block, BlockParams, Context, Equation, FloatArray, Port, parameter
+from core.block import Block, BlockParams, Context, Equation, parameter
+from core.elementary import floor
 from core.noise import key, normal
-
-NOISE, KEY, QUANTUM, RANGE = range(4)
-
-
-def ideal_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Read the displacement."""
-    z = w[io[0]]
-    if p[NOISE] > 0.0:
-        z += p[NOISE] * normal(p[KEY], w[TICK])
-    if p[QUANTUM] > 0.0:
-        z = p[QUANTUM] * math.floor(z / p[QUANTUM] + 0.5)
-        z = min(max(z, -p[RANGE]), p[RANGE])
-    w[io[1]] = z
+from core.ports import BlockPorts, output, reads
+from core.record import Record
 
 
 class Ideal(Block):
     r"""Displacement plus white noise, rounded by the converter, :math:`z_i=q\,[(x_i+v_i)/q]`."""
 
     title = "Ideal sensor"
-    inputs = (Port("displacement", "um", "true displacement", source="plant.displacement"),)
-    outputs = (Port("displacement", "um", "measured displacement"),)
     equations = (Equation("measurement", r"z_i=x(t_i)+v_i,\quad v_i\sim N(0,\sigma^2)", "5.2.1"),)
 
     class Params(BlockParams):
@@ -39,6 +25,20 @@ class Ideal(Block):
         quantum_um: float = parameter(0.0, "step of the converter, 0 for none", "um", ge=0, le=100)
         range_um: float = parameter(40.0, "range of the converter to either side", "um", gt=0)
 
+    class Packed(Record):
+        """The noise and its stream, the converter."""
+
+        noise_um: float
+        key: float
+        quantum_um: float
+        range_um: float
+
+    class Ports(BlockPorts):
+        """True and measured displacement."""
+
+        true: float = reads("plant.displacement", "um", "true displacement")
+        displacement: float = output("um", "measured displacement")
+
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         r"""Return the noise of a sample, :math:`\sqrt{\sigma^2+q^2/12}`: rounding spreads evenly over a step."""
@@ -46,12 +46,23 @@ class Ideal(Block):
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:
-        """Return that it tells all displacements apart."""
+        """Return 0: the sensor tells all displacements apart."""
         return 0.0
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
-        return np.array([params.noise_um, key(context.seed, "sensor"), params.quantum_um, params.range_um])
+        p = cls.Packed.blank()
+        p.key = key(context.seed, "sensor")
+        return p
 
-    step = ideal_step
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Read the displacement."""
+        z = x.true
+        if p.noise_um > 0.0:
+            z += p.noise_um * normal(p.key, x.tick)
+        if p.quantum_um > 0.0:
+            z = p.quantum_um * floor(z / p.quantum_um + 0.5)
+            z = min(max(z, -p.range_um), p.range_um)
+        x.displacement = z

@@ -1,60 +1,69 @@
-"""The past: what was measured over the last samples, under which voltages; a filter that begins catches up with it."""
+"""Measurements and voltages of the last samples, from which a filter that begins catches up."""
 
 from __future__ import annotations
 
-from typing import Any
+from core.kernel import kernel
+from core.ports import reads
+from core.record import Record, Records
+from core.sense.tracker import Filter, Tracked, correct, predict
+from core.voltage import AppliedPorts, Gathered, gather
 
-from core.block import TICK, Port, kernel
-from core.sense.tracker import EVERY, P11, P22, TICK_MODEL, X, correct, predict
-from core.voltage import BEGUN, follow
 
-MEASURED, APPLIED, MIDDLE, END, VARIANCE, ENTRY = range(6)
-"""Layout of an entry, and its length; a variance of 0 says that nothing was measured."""
+class Entry(Record):
+    """Measurement at a tick, and the voltage before it; a variance of 0 marks a tick without a measurement."""
+
+    measured: float
+    applied: float
+    middle: float
+    end: float
+    variance: float
+
+
 KEPT = 32
-"""Entries kept: noise of the speed falls with the power 3/2 of it. A unit that runs more rarely finds none."""
+"""Number of entries: the noise of the speed falls with its power 3/2. A unit that runs more rarely finds no entry."""
 SPEED = 100.0
-"""Variance of the speed a fresh filter assumes in motion, over that at rest: up to the stroke at resonance."""
+"""Variance of the speed that a new filter assumes in motion, over that at rest: it covers the stroke at resonance."""
 
-PAST_PORT = Port("past", "mixed", "what was measured over the last samples, to begin from", source="sensor.past")
-
-
-@kernel
-def note(w: Any, io: Any, past: int, applied: int, measured: float, variance: float) -> None:
-    """Write what was measured at this tick, and the voltage before it, over the oldest entry."""
-    entry = io[past] + int(w[TICK]) % KEPT * ENTRY
-    w[entry + MEASURED] = measured
-    w[entry + APPLIED] = w[io[applied]]
-    w[entry + MIDDLE] = w[io[applied + 1]]
-    w[entry + END] = w[io[applied + 2]]
-    w[entry + VARIANCE] = variance
+PAST_PORT = reads("sensor.past", "mixed", "what was measured over the last samples, to begin from")
 
 
 @kernel
-def catch_up(p: Any, at: int, s: Any, b: int, drive: int, w: Any, io: Any, past: int, applied: int) -> bool:
-    """Run the fresh filter at ``b`` through the past, as often as it measures; return whether there was any.
+def note(past: Records[Entry], x: AppliedPorts, measured: float, variance: float) -> None:
+    """Write the measurement of this tick, and the voltage before it, over the oldest entry."""
+    entry = past[int(x.tick) % KEPT]
+    entry.measured = measured
+    entry.applied = x.applied
+    entry.middle = x.middle
+    entry.end = x.end
+    entry.variance = variance
 
-    The voltage since the last entry that counts, that of this tick too, is left gathered at ``drive``.
+
+@kernel
+def catch_up(p: Tracked, s: Filter, drive: Gathered, past: Records[Entry], x: AppliedPorts) -> bool:
+    """Run a new filter through the past at its own measurement interval; return whether there were any entries.
+
+    The voltage since the last entry used, that of this tick included, is left gathered.
     """
-    every = int(p[at + EVERY])
+    every = int(p.every)
     begun = False
-    place = s[b + P11]
-    s[drive + BEGUN] = 0.0
+    place = s.p11
+    drive.begun = 0.0
     for back in range(KEPT // every * every, 0, -1):
-        entry = io[past] + int(w[TICK] - back) % KEPT * ENTRY
-        follow(p, at + TICK_MODEL, s, drive, w[entry + APPLIED], w[entry + MIDDLE], w[entry + END])
+        entry = past[int(x.tick - back) % KEPT]
+        gather(p.tick, drive, entry.applied, entry.middle, entry.end)
         if back % every != 0:
             continue
         if begun:
-            predict(p, at, s, b, drive)
-        s[drive + BEGUN] = 0.0
-        if w[entry + VARIANCE] > 0.0:
+            predict(p, s, drive)
+        drive.begun = 0.0
+        if entry.variance > 0.0:
             if not begun:
                 begun = True
-                s[b + X] = w[entry + MEASURED]
-                s[b + P22] *= SPEED
-            correct(s, b, w[entry + MEASURED] - s[b + X], 1.0, w[entry + VARIANCE])
-    follow(p, at + TICK_MODEL, s, drive, w[io[applied]], w[io[applied + 1]], w[io[applied + 2]])
+                s.x = entry.measured
+                s.p22 *= SPEED
+            correct(s, entry.measured - s.x, 1.0, entry.variance)
+    gather(p.tick, drive, x.applied, x.middle, x.end)
     if begun:
-        # whatever the past says, another sensor may be off by as much as before
-        s[b + P11] += place
+        # the past does not reduce the error that another sensor may have
+        s.p11 += place
     return begun

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
+from core.elementary import floor
+from core.ports import BlockPorts, reads, tap
+from core.record import Record
 from core.sense.doppler import Doppler
-from core.sense.grating import OFFSET, WAVE, level
+from core.sense.grating import Grating, level
 from core.sense.sensor import (
     ERROR_PORT,
     LAST_PORT,
@@ -22,94 +23,20 @@ from core.sense.sensor import (
 )
 from core.sense.through_wafer import ThroughWafer
 
-SOURCE, HYSTERESIS, TOLERANCE, FOLLOW, GRATING = range(5)
-LAST, LIGHT, HEIGHT, TRUE, MOVING, DISPLACEMENT, ERROR, EXTREMES, DIRECTION, WRONG_WAY = range(10)
-STARTED, SURE, EVEN, ODD, BEHIND, SENSE, BEST, REST = range(8)
-
-
-def peak_valley_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Count and interpolate."""
-    half = math.pi / p[GRATING + WAVE]  # half a pitch, from one extreme to the next
-    if s[STARTED] == 0.0:
-        s[STARTED] = 1.0
-        s[EVEN] = level(p, GRATING, p[GRATING + OFFSET])
-        s[ODD] = level(p, GRATING, p[GRATING + OFFSET] + half)
-        s[BEHIND] = math.floor((begin_at(w[io[LAST]]) - p[GRATING + OFFSET]) / half)
-        s[SENSE] = 1.0
-        s[SURE] = 0.0
-        s[REST] = -1.0
-    value = w[io[LIGHT]] if p[SOURCE] == 0.0 else w[io[HEIGHT]]
-    if math.isfinite(value):
-        # way made from the extreme behind to the one ahead, 0 to 1 in intensity
-        even = s[BEHIND] - 2.0 * math.floor(0.5 * s[BEHIND]) == 0.0
-        start = s[EVEN] if even else s[ODD]
-        end = s[ODD] if even else s[EVEN]
-        way = (value - start) / (end - start)
-        if s[SURE] == 0.0:
-            # the first change says which way it goes
-            if s[REST] < 0.0:
-                s[REST] = way
-            if abs(way - s[REST]) > p[HYSTERESIS]:
-                s[SURE] = 1.0
-                if way < s[REST]:
-                    s[BEHIND] += 1.0
-                    s[SENSE] = -1.0
-                    way = 1.0 - way
-                s[BEST] = way
-        elif way > s[BEST]:
-            s[BEST] = way
-        elif way < s[BEST] - p[HYSTERESIS]:
-            s[BEHIND] += s[SENSE]
-            if s[BEST] > 1.0 - p[TOLERANCE]:
-                # full swing: a fringe extreme, and the motion goes on
-                reached = start + s[BEST] * (end - start)
-                if even:
-                    s[ODD] += p[FOLLOW] * (reached - s[ODD])
-                else:
-                    s[EVEN] += p[FOLLOW] * (reached - s[EVEN])
-            else:
-                s[SENSE] = -s[SENSE]
-            way = 1.0 - way
-            s[BEST] = way
-        if math.isfinite(way):
-            way = min(max(way, 0.0), 1.0)
-            if s[SURE] != 0.0 and s[BEST] > 1.0 - p[TOLERANCE] and way < s[BEST]:
-                # past a fringe extreme, if only just: the motion is taken to go on
-                way = 2.0 - way
-            w[io[DISPLACEMENT]] = p[GRATING + OFFSET] + half * (s[BEHIND] + s[SENSE] * way)
-    w[io[ERROR]] = w[io[DISPLACEMENT]] - w[io[TRUE]]
-    w[io[EXTREMES]] = s[BEHIND]
-    w[io[DIRECTION]] = s[SENSE] if s[SURE] != 0.0 else 0.0
-    w[io[WRONG_WAY]] = 1.0 if s[SURE] != 0.0 and s[SENSE] * w[io[MOVING]] < 0.0 else 0.0
-
 
 class PeakValley(Sensor):
     r"""Counts extremes of the light, half a pitch each, and interpolates between them (2.2.2, 2.2.3).
 
-    An extreme of full swing is a fringe and the motion goes on; one that is not is a turn. A turn near a fringe
-    extreme looks like a fringe, so the direction gets lost there: for a sine of 4 um in 4 of 10 positions of the
-    grating, with the transient at its start in 9 of 10, whatever the noise. It is shown because the text has no more
-    than this to say of its unit.
+    An extreme of full swing is a fringe and the motion goes on; any other extreme is a turn. A turn near a fringe
+    extreme looks like a fringe, so the unit loses the direction there: for a sine of 4 um in 4 of 10 positions of the
+    grating, with the transient at its start in 9 of 10, at any noise. It is on the bench because the text describes its
+    unit no further than this.
 
     Linear interpolation alone errs by :math:`\tfrac\Lambda2\sqrt{\tfrac1{12}+\tfrac18-\tfrac2{\pi^2}}`, 151 nm at
     4 um.
     """
 
     title = "Peak and valley counter"
-    inputs = (
-        LAST_PORT,
-        Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
-        Port("height", "um", "integrated Doppler signal", source="doppler.height"),
-        TRUE_PORT,
-        Port("moving", "um/ms", "true velocity, for the verdict only", source="plant.velocity"),
-    )
-    outputs = (RECOVERED_PORT,)
-    taps = (
-        ERROR_PORT,
-        Port("extremes", "1", "fringe extreme last passed, counted from an opening under the beam"),
-        Port("direction", "1", "direction it believes in, 0 until the first motion"),
-        Port("wrong_way", "1", "1 while that is opposite to the true motion"),
-    )
     equations = (
         Equation(
             "displacement",
@@ -126,9 +53,43 @@ class PeakValley(Sensor):
         tolerance: float = parameter(0.08, "share of the swing that may lack of a full one", ge=0.001, le=0.9)
         follow: float = parameter(0.1, "share by which the levels follow each extreme", ge=0, le=1)
 
+    class Packed(Grating):
+        """The signal over the grating, whether that is the height, and the threshold of an extreme."""
+
+        reads_height: float
+        hysteresis: float
+        tolerance: float
+        follow: float
+
+    class State(Record):
+        """Whether it has run and is sure, levels, last extreme, direction, farthest way so far, way at rest."""
+
+        started: float
+        sure: float
+        even: float
+        odd: float
+        behind: float
+        direction: float
+        best: float
+        rest: float
+
+    class Ports(BlockPorts):
+        """Reads two optical signals; writes the displacement recovered from one of them."""
+
+        last: float = LAST_PORT
+        light: float = reads("through_wafer.intensity", "1", "light through the wafer")
+        height: float = reads("doppler.height", "um", "integrated Doppler signal")
+        true: float = TRUE_PORT
+        moving: float = reads("plant.velocity", "um/ms", "true velocity, for the verdict only")
+        displacement: float = RECOVERED_PORT
+        error: float = ERROR_PORT
+        extremes: float = tap("1", "fringe extreme last passed, counted from an opening under the beam")
+        direction: float = tap("1", "direction it believes in, 0 until the first motion")
+        wrong_way: float = tap("1", "1 while that is opposite to the true motion")
+
     @classmethod
     def _light(cls, params: Any, context: Context) -> ThroughWafer.Params | Doppler.Params:
-        """Return the grating and the beam of the signal it reads, as calibrated."""
+        """Return the calibrated grating and beam of the signal it reads."""
         if params.light == "doppler":
             return calibrated(context, "doppler", Doppler.Params)
         return calibrated(context, "through_wafer", ThroughWafer.Params)
@@ -145,14 +106,64 @@ class PeakValley(Sensor):
         return cls._light(params, context).pitch_um
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step, with the grating as calibrated."""
-        own = [params.light == "doppler", params.hysteresis, params.tolerance, params.follow]
-        return np.array([*own, *cls._light(params, context).packed(context)])
+        p = cls._light(params, context).packed(cls.Packed, context)
+        p.reads_height = params.light == "doppler"
+        return p
 
-    @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it has run and is sure, levels, extreme behind, direction, best way made, way at rest."""
-        return np.zeros(8)
-
-    step = peak_valley_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Count and interpolate."""
+        half = math.pi / p.wave  # half a pitch, from one extreme to the next
+        if s.started == 0.0:
+            s.started = 1.0
+            s.even = level(p, p.offset)
+            s.odd = level(p, p.offset + half)
+            s.behind = floor((begin_at(x.last) - p.offset) / half)
+            s.direction = 1.0
+            s.sure = 0.0
+            s.rest = -1.0
+        value = x.light if p.reads_height == 0.0 else x.height
+        if math.isfinite(value):
+            # share of the way from the last extreme to the next, 0 to 1 in intensity
+            even = s.behind - 2.0 * floor(0.5 * s.behind) == 0.0
+            start = s.even if even else s.odd
+            end = s.odd if even else s.even
+            way = (value - start) / (end - start)
+            if s.sure == 0.0:
+                # the first change shows the direction
+                if s.rest < 0.0:
+                    s.rest = way
+                if abs(way - s.rest) > p.hysteresis:
+                    s.sure = 1.0
+                    if way < s.rest:
+                        s.behind += 1.0
+                        s.direction = -1.0
+                        way = 1.0 - way
+                    s.best = way
+            elif way > s.best:
+                s.best = way
+            elif way < s.best - p.hysteresis:
+                s.behind += s.direction
+                if s.best > 1.0 - p.tolerance:
+                    # full swing: a fringe extreme, and the motion goes on
+                    reached = start + s.best * (end - start)
+                    if even:
+                        s.odd += p.follow * (reached - s.odd)
+                    else:
+                        s.even += p.follow * (reached - s.even)
+                else:
+                    s.direction = -s.direction
+                way = 1.0 - way
+                s.best = way
+            if math.isfinite(way):
+                way = min(max(way, 0.0), 1.0)
+                if s.sure != 0.0 and s.best > 1.0 - p.tolerance and way < s.best:
+                    # just past a fringe extreme: the motion is assumed to go on
+                    way = 2.0 - way
+                x.displacement = p.offset + half * (s.behind + s.direction * way)
+        x.error = x.displacement - x.true
+        x.extremes = s.behind
+        x.direction = s.direction if s.sure != 0.0 else 0.0
+        x.wrong_way = 1.0 if s.sure != 0.0 and s.direction * x.moving < 0.0 else 0.0

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port
-from core.sense import tracker
+from core.block import Context, Equation
+from core.elementary import floor
+from core.ports import BlockPorts, reads, tap
+from core.record import Record
 from core.sense.dual_beam import DualBeam
 from core.sense.quadrature import Quadrature
 from core.sense.sensor import (
@@ -21,57 +21,35 @@ from core.sense.sensor import (
     calibrated,
     slips,
 )
-from core.sense.tracker import FILTER, MOTION, Tracker, TrackerParams, X, correct, gather, predict
-from core.voltage import APPLIED_PORTS, BEGUN
-from core.voltage import STATES as VOLTAGE_STATES
+from core.sense.tracker import (
+    MOTION,
+    Filter,
+    Tracked,
+    Tracker,
+    TrackerParams,
+    between_updates,
+    correct,
+    model_of,
+    predict,
+    put_at_rest,
+)
+from core.voltage import AppliedPorts, Gathered
 
-PITCH, OFFSET, NOISE, MODEL = range(4)
-LAST, TURN, APPLIED = range(3)
-TRUE, DISPLACEMENT, ERROR, RESIDUAL, SLIPS = range(APPLIED + len(APPLIED_PORTS), APPLIED + len(APPLIED_PORTS) + 5)
-STARTED, OWN, DRIVE = 0, 1, 1 + FILTER
-"""State: whether it has run, the filter, the voltage."""
 
+class PhasePorts(BlockPorts):
+    """Where to take over, and the phase."""
 
-def quadrature_kalman_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Predict, unwrap the phase about the prediction, correct."""
-    if gather(p, MODEL, s, DRIVE, w, io, APPLIED):
-        return
-    if s[STARTED] == 0.0:
-        s[STARTED] = 1.0
-        s[OWN + X] = begin_at(w[io[LAST]])
-    else:
-        predict(p, MODEL, s, OWN, DRIVE)
-    s[DRIVE + BEGUN] = 0.0
-    x = s[OWN + X]
-    ahead = (x - p[OFFSET]) / p[PITCH] - w[io[TURN]]
-    residual = p[PITCH] * (math.floor(ahead + 0.5) - ahead) if math.isfinite(ahead) else 0.0
-    correct(s, OWN, residual, 1.0, p[NOISE])
-    error = s[OWN + X] - w[io[TRUE]]
-    w[io[DISPLACEMENT]] = s[OWN + X]
-    w[io[ERROR]] = error
-    w[io[RESIDUAL]] = residual
-    w[io[SLIPS]] = slips(error, p[PITCH])
+    last: float = LAST_PORT
+    turn: float = reads("quadrature.turn", "1", "phase of the pair, in turns")
 
 
 class QuadratureKalman(Tracker):
     r"""The phase of two beams through a Kalman filter on :math:`(x,\dot x,f)`, unwrapped about its prediction (6.3).
 
-    The filter knows the nominal device and the voltage; what the model lacks goes into the slow force :math:`f`.
+    The filter knows the nominal device and the voltage; the slow force :math:`f` takes up the errors of the model.
     """
 
     title = "Quadrature with Kalman filter"
-    inputs = (
-        LAST_PORT,
-        Port("turn", "1", "phase of the pair, in turns", source="quadrature.turn"),
-        *APPLIED_PORTS,
-        TRUE_PORT,
-    )
-    outputs = (RECOVERED_PORT,)
-    taps = (
-        ERROR_PORT,
-        Port("residual", "um", "phase, as displacement, minus prediction"),
-        SLIPS_PORT,
-    )
     equations = (
         MOTION,
         Equation(
@@ -81,6 +59,30 @@ class QuadratureKalman(Tracker):
 
     class Params(TrackerParams):
         """What it assumes of the shuttle."""
+
+    class Packed(Record):
+        """Pitch and offset of the grating, variance of the phase as displacement, the model."""
+
+        pitch: float
+        offset: float
+        noise: float
+        model: Tracked
+
+    class State(Record):
+        """Whether it has run, the filter, the voltage."""
+
+        started: float
+        filter: Filter
+        drive: Gathered
+
+    class Ports(PhasePorts, AppliedPorts):
+        """Reads the phase and the voltage; writes the displacement."""
+
+        true: float = TRUE_PORT
+        displacement: float = RECOVERED_PORT
+        error: float = ERROR_PORT
+        residual: float = tap("um", "phase, as displacement, minus prediction")
+        slips: float = SLIPS_PORT
 
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
@@ -93,16 +95,39 @@ class QuadratureKalman(Tracker):
         return calibrated(context, "dual_beam", DualBeam.Params).pitch_um
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         pair = calibrated(context, "dual_beam", DualBeam.Params)
         noise = max(cls.noise_um(params, context), 1e-6)
-        own = [pair.pitch_um, pair.offset(context.seed), noise * noise]
-        return np.array(own + tracker.pack_model(params, context))
+        p = cls.Packed.blank()
+        p.pitch, p.offset = pair.pitch_um, pair.offset(context.seed)
+        p.noise = noise * noise
+        p.model = model_of(params, context)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
+    def state(cls, params: Any, context: Context) -> State:
         """Whether it has run, the filter, no voltage yet."""
-        return np.array([0.0, *tracker.start(params, context), *[0.0] * VOLTAGE_STATES])
+        s = cls.State.zeros()
+        put_at_rest(s.filter, params, context)
+        return s
 
-    step = quadrature_kalman_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Predict, unwrap the phase about the prediction, correct."""
+        if between_updates(p.model, s.drive, x):
+            return
+        if s.started == 0.0:
+            s.started = 1.0
+            s.filter.x = begin_at(x.last)
+        else:
+            predict(p.model, s.filter, s.drive)
+        s.drive.begun = 0.0
+        ahead = (s.filter.x - p.offset) / p.pitch - x.turn
+        residual = p.pitch * (floor(ahead + 0.5) - ahead) if math.isfinite(ahead) else 0.0
+        correct(s.filter, residual, 1.0, p.noise)
+        error = s.filter.x - x.true
+        x.displacement = s.filter.x
+        x.error = error
+        x.residual = residual
+        x.slips = slips(error, p.pitch)

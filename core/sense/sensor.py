@@ -1,18 +1,21 @@
-"""What every sensor shares: the noise others should assume of it, its ambiguity, and what a calibration would tell."""
+"""Base of the sensors: the noise that filters should assume, the ambiguity, and the calibration."""
 
 from __future__ import annotations
 
 import math
 from typing import Any, TypeVar
 
-from core.block import Block, BlockParams, Context, Port, kernel, parameter
+from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor
+from core.kernel import kernel
+from core.ports import output, reads, tap
 
-LAST_PORT = Port("last", "um", "what was measured last: where to take over", source="sensor.displacement")
+LAST_PORT = reads("sensor.displacement", "um", "what was measured last: where to take over")
 
-TRUE_PORT = Port("true", "um", "true displacement, for the error only", source="plant.displacement")
-RECOVERED_PORT = Port("displacement", "um", "recovered displacement")
-ERROR_PORT = Port("error", "um", "recovered minus true displacement")
-SLIPS_PORT = Port("slips", "1", "whole pitches it is off by")
+TRUE_PORT = reads("plant.displacement", "um", "true displacement, for the error only")
+RECOVERED_PORT = output("um", "recovered displacement")
+ERROR_PORT = tap("um", "recovered minus true displacement")
+SLIPS_PORT = tap("1", "whole pitches it is off by")
 
 P = TypeVar("P", bound=BlockParams)
 
@@ -25,31 +28,36 @@ class SensorParams(BlockParams):
 
 @kernel
 def begin_at(last: float) -> float:
-    """Return where to begin: where the shuttle was measured last, or 0 if that is no number."""
+    """Return the displacement to begin with: the last measured one, or 0 if that is not a finite number."""
     return last if math.isfinite(last) else 0.0
 
 
 @kernel
 def slips(error: float, pitch: float) -> float:
-    """Return the whole pitches a recovered displacement is off by."""
-    return float(math.floor(error / pitch + 0.5)) if math.isfinite(error) else 0.0
+    """Return the error of a recovered displacement in whole pitches."""
+    return float(floor(error / pitch + 0.5)) if math.isfinite(error) else 0.0
 
 
 class Sensor(Block):
-    """A sensor; it says what noise filters fed by it should assume, and which displacements it cannot tell apart."""
+    """A sensor, with the noise that its filters should assume and the displacements it cannot tell apart."""
+
+    @classmethod
+    def runs_always(cls, params: Any) -> bool:
+        """Say whether it runs even while nothing reads it."""
+        return bool(params.always)
 
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the standard deviation of the equivalent white noise of one sample."""
-        return float(getattr(params, "noise_um", 0.0))
+        return 0.0
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:
-        """Return the period of what it sees: displacements that far apart look alike. 0 for an absolute sensor."""
+        """Return the distance of displacements that look alike to it; 0 for an absolute sensor."""
         return 0.0
 
 
 def calibrated(context: Context, name: str, kind: type[P]) -> P:
-    """Return the parameters of another sensor, as a calibration of it would tell them; its defaults if unknown."""
+    """Return the parameters that a calibration of another sensor would give; its defaults if unknown."""
     params = context.sensors.get(name)
     return params if isinstance(params, kind) else kind()

@@ -5,27 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from core.block import Context, Equation, FloatArray, Port, parameter
-from core.sense import tracker
-from core.sense.grating import WAVE
-from core.sense.hypotheses import (
-    BEST,
-    CHANGES,
-    GRATING,
-    MODEL,
-    MOST,
-    OWN,
-    STARTED,
-    USED,
-    WIDTH,
-    YES,
-    follow,
-    sift,
-    turns,
-)
-from core.sense.past import PAST_PORT, catch_up
+from core.block import Context, Equation, parameter
+from core.ports import BlockPorts, reads, tap
+from core.record import Records
+from core.sense.hypotheses import MOST, YES, Followed, Odds, follow, sift, turns
+from core.sense.past import PAST_PORT, Entry, catch_up
 from core.sense.sensor import (
     ERROR_PORT,
     LAST_PORT,
@@ -37,80 +21,42 @@ from core.sense.sensor import (
     slips,
 )
 from core.sense.through_wafer import ThroughWafer
-from core.sense.tracker import FILTER, MOTION, Tracker, TrackerParams, V, X, gather, predict
-from core.voltage import APPLIED_PORTS, BEGUN
-from core.voltage import STATES as VOLTAGE_STATES
+from core.sense.tracker import (
+    MOTION,
+    Tracked,
+    Tracker,
+    TrackerParams,
+    between_updates,
+    model_of,
+    predict,
+    put_at_rest,
+)
+from core.voltage import AppliedPorts, Gathered
 
-LAST, PAST, LIGHT, APPLIED = range(4)
-TRUE, DISPLACEMENT, ERROR, ACTIVE, ALIVE, SWITCHES, SLIPS = (APPLIED + len(APPLIED_PORTS) + n for n in range(7))
-DRIVE = OWN + MOST * WIDTH
-"""State behind the hypotheses: the voltage."""
 
+class LightPorts(BlockPorts):
+    """Where to take over, the past, and the light."""
 
-def single_beam_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Follow every hypothesis and put out the likeliest."""
-    if gather(p, MODEL, s, DRIVE, w, io, APPLIED):
-        return
-    first = False
-    if s[STARTED] == 0.0:
-        s[STARTED] = 1.0
-        first = not catch_up(p, MODEL, s, OWN, DRIVE, w, io, PAST, APPLIED)
-        if first:
-            s[OWN + X] = begin_at(w[io[LAST]])
-    z = w[io[LIGHT]]
-    for i in range(MOST):
-        b = OWN + i * WIDTH
-        if s[b + USED] == YES:
-            x = s[b + X]
-            v = s[b + V]
-            if not first:
-                predict(p, MODEL, s, b, DRIVE)
-            if math.isfinite(z):
-                follow(p, s, b, z)
-                turns(p, s, b, x, v)
-    s[DRIVE + BEGUN] = 0.0
-    left = sift(p, s)
-    x = s[OWN + int(s[BEST]) * WIDTH + X]
-    error = x - w[io[TRUE]]
-    pitch = 2.0 * math.pi / p[GRATING + WAVE]
-    w[io[DISPLACEMENT]] = x
-    w[io[ERROR]] = error
-    w[io[ACTIVE]] = 1.0
-    w[io[ALIVE]] = left
-    w[io[SWITCHES]] = s[CHANGES]
-    w[io[SLIPS]] = slips(error, pitch)
+    last: float = LAST_PORT
+    past: Records[Entry] = PAST_PORT
+    light: float = reads("through_wafer.intensity", "1", "light through the wafer")
 
 
 class SingleBeam(Tracker):
     r"""Displacement from one beam by several extended Kalman filters that know the device and the voltage.
 
     The light is the same on both sides of each of its extremes, :math:`I(2x_e-x)=I(x)`. So whenever a hypothesis
-    passes an extreme, or turns near one, its reflection :math:`(2x_e-x,-\dot x)` is followed as well, at most ten in
-    all; only one of the two keeps obeying the equation of motion. The likeliest is put out, by a likelihood with a
-    memory of a few periods of the drive. While the stiffness is known to 30 % one filter would do; beyond that it
-    slips, and the reflections bring it back.
+    passes an extreme, or turns near one, the unit also follows its reflection :math:`(2x_e-x,-\dot x)`, at most ten
+    hypotheses in all; only one of the two keeps obeying the equation of motion. The unit puts out the likeliest, by a
+    likelihood with a memory of a few periods of the drive. One filter would suffice while the stiffness is known to 30
+    %; beyond that it slips, and the reflections bring it back.
 
-    It costs as much as the rest of the bench together while it runs. It begins with the place and the speed that
-    one filter makes of what was measured over the last samples.
-    The text leaves the unit to others (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
+    While it runs it costs as much as the rest of the bench together. It begins with the position and the speed that
+    one filter finds from the measurements of the last samples.
+    The text refers to others for the unit (2.2.3: Dawson 2000, 2002; Wang 2005); this one is the bench's own.
     """
 
     title = "Single beam, several hypotheses"
-    inputs = (
-        LAST_PORT,
-        PAST_PORT,
-        Port("light", "1", "light through the wafer", source="through_wafer.intensity"),
-        *APPLIED_PORTS,
-        TRUE_PORT,
-    )
-    outputs = (RECOVERED_PORT,)
-    taps = (
-        ERROR_PORT,
-        Port("active", "1", "0 while it rests"),
-        Port("hypotheses", "1", "hypotheses followed"),
-        Port("switches", "1", "how often another hypothesis became the likeliest"),
-        SLIPS_PORT,
-    )
     equations = (
         MOTION,
         Equation("reflection", r"x'=2x_e-x,\quad\dot x'=-\dot x"),
@@ -136,6 +82,28 @@ class SingleBeam(Tracker):
         drop: float = parameter(40.0, "log-likelihood below the best at which a hypothesis is dropped", gt=0, le=1e4)
         near_um: float = parameter(0.5, "turns this near an extreme are reflected", "um", ge=0, le=100)
 
+    class Packed(Odds):
+        """The odds of the hypotheses, and the model of the shuttle."""
+
+        model: Tracked
+
+    class State(Followed):
+        """The hypotheses, whether it has run, the voltage."""
+
+        started: float
+        drive: Gathered
+
+    class Ports(LightPorts, AppliedPorts):
+        """Reads the light and the voltage; writes the displacement."""
+
+        true: float = TRUE_PORT
+        displacement: float = RECOVERED_PORT
+        error: float = ERROR_PORT
+        active: float = tap("1", "0 while it rests")
+        hypotheses: float = tap("1", "hypotheses followed")
+        switches: float = tap("1", "how often another hypothesis became the likeliest")
+        slips: float = SLIPS_PORT
+
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of a pair of beams of the same quality; the filter's own error is close to it."""
@@ -147,27 +115,55 @@ class SingleBeam(Tracker):
         return calibrated(context, "through_wafer", ThroughWafer.Params).pitch_um
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
+    def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step, with the grating as calibrated."""
         beam = calibrated(context, "through_wafer", ThroughWafer.Params)
         noise = max(beam.noise, 1e-4 * abs(beam.harmonics[0]), 1e-30)
-        own = [
-            noise * noise,
-            math.exp(-context.dt_ms / params.memory_ms),
-            params.reflection_odds,
-            params.drop,
-            params.near_um,
-            0.0125 * beam.pitch_um,
-            0.025 * beam.pitch_um * context.device.natural_frequency,
-        ]
-        return np.array(own + tracker.pack_model(params, context) + beam.packed(context))
+        p = beam.packed(cls.Packed, context)
+        p.noise = noise * noise
+        p.forgetting = math.exp(-context.dt_ms / params.memory_ms)
+        p.same_x = 0.0125 * beam.pitch_um
+        p.same_v = 0.025 * beam.pitch_um * context.device.natural_frequency
+        p.model = model_of(params, context)
+        return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> FloatArray:
-        """Whether it has run, the best hypothesis, changes of it, the hypotheses: one."""
-        start = np.zeros(DRIVE + VOLTAGE_STATES)
-        start[OWN : OWN + FILTER] = tracker.start(params, context)
-        start[OWN + USED] = YES
-        return start
+    def state(cls, params: Any, context: Context) -> State:
+        """Whether it has run, the best hypothesis, its changes, and one hypothesis."""
+        s = cls.State.zeros()
+        put_at_rest(s.hypotheses[0], params, context)
+        s.hypotheses[0].used = YES
+        return s
 
-    step = single_beam_step
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Follow every hypothesis and put out the displacement of the likeliest."""
+        if between_updates(p.model, s.drive, x):
+            return
+        first = False
+        if s.started == 0.0:
+            s.started = 1.0
+            first = not catch_up(p.model, s.hypotheses[0], s.drive, x.past, x)
+            if first:
+                s.hypotheses[0].x = begin_at(x.last)
+        z = x.light
+        for i in range(MOST):
+            hypothesis = s.hypotheses[i]
+            if hypothesis.used == YES:
+                before = hypothesis.x
+                speed = hypothesis.v
+                if not first:
+                    predict(p.model, hypothesis, s.drive)
+                if math.isfinite(z):
+                    follow(p, hypothesis, z)
+                    turns(p, s, hypothesis, before, speed)
+        s.drive.begun = 0.0
+        left = sift(p, s)
+        displacement = s.hypotheses[int(s.best)].x
+        error = displacement - x.true
+        x.displacement = displacement
+        x.error = error
+        x.active = 1.0
+        x.hypotheses = left
+        x.switches = s.changes
+        x.slips = slips(error, 2.0 * math.pi / p.wave)

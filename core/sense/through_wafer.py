@@ -1,23 +1,15 @@
-"""Light through the grating in the shuttle: an intensity, from which others recover the displacement."""
+"""Light through the grating in the shuttle: an intensity, from which other blocks recover the displacement."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, Port
+from core.block import Context, Equation
 from core.noise import key, normal
-from core.sense.grating import BeamParams, level
+from core.ports import BlockPorts, output, reads
+from core.record import Record
+from core.sense.grating import BeamParams, Grating, level
 from core.sense.sensor import Sensor
-
-NOISE, KEY, GRATING = range(3)
-TRUE, INTENSITY = range(2)
-
-
-def through_wafer_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Let the light through and detect it."""
-    w[io[INTENSITY]] = level(p, GRATING, w[io[TRUE]]) + p[NOISE] * normal(p[KEY], w[TICK])
 
 
 class ThroughWafer(Sensor):
@@ -26,13 +18,11 @@ class ThroughWafer(Sensor):
     .. math:: I(x)=D+(1-D)T_b+\sum_m(1-T_b)\frac{2}{\pi m}\sin(\pi mD)\,e^{-(\pi mw/\Lambda)^2/2}
         \cos\frac{2\pi m(x-x_0)}{\Lambda}
 
-    It says where in a period the shuttle is, up to a reflection: the direction of the motion is not in it. At a
+    It shows the position of the shuttle within a period, up to a reflection, and not the direction of the motion. At a
     spot of 4.6 um, the unfocused mode of a fibre, the visibility is 0.0006: the two bulk lenses are essential.
     """
 
     title = "Through-wafer intensity"
-    inputs = (Port("true", "um", "true displacement", source="plant.displacement"),)
-    outputs = (Port("intensity", "1", "detected light, full light being 1"),)
     equations = (
         Equation(
             "intensity",
@@ -45,9 +35,27 @@ class ThroughWafer(Sensor):
     class Params(BeamParams):
         """Grating, beam and detector."""
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        return np.array([params.noise, key(context.seed, "sensor.through_wafer"), *params.packed(context)])
+    class Packed(Grating):
+        """The light over the grating, the noise of the detector and its stream."""
 
-    step = through_wafer_step
+        noise: float
+        key: float
+
+    class Ports(BlockPorts):
+        """Reads the displacement; writes the light."""
+
+        true: float = reads("plant.displacement", "um", "true displacement")
+        intensity: float = output("1", "detected light, full light being 1")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p: ThroughWafer.Packed = params.packed(cls.Packed, context)
+        p.noise = params.noise
+        p.key = key(context.seed, "sensor.through_wafer")
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Let the light through and detect it."""
+        x.intensity = level(p, x.true) + p.noise * normal(p.key, x.tick)

@@ -1,29 +1,55 @@
-r"""Kalman filter of a shuttle that is known but for a slow force: displacement, velocity, acceleration by it.
+r"""Kalman filter of a known shuttle under an unknown slow force: displacement, velocity, acceleration by that force.
 
 .. math:: x_{i+1}=\Phi x_i+\Gamma u_i+\Gamma_f f_i,\qquad f_{i+1}=f_i+n_i
 
-The device and the voltage are known; what the model lacks is left to :math:`f`, a random walk. A voltage that moves
-adds to :math:`\Gamma u_i` what it is more than at the start of the sample (`core.voltage`).
+The device and the voltage are known; the random walk :math:`f` takes up the errors of the model. A voltage that moves
+adds to :math:`\Gamma u_i` the effect of its difference from the start of the sample (`core.voltage`).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
 
-from core import voltage
-from core.block import TICK, Context, Equation, Oscillator, kernel, parameter, settled
+from core.block import Context, Equation, Oscillator, parameter
 from core.device.oscillator import transition
+from core.elementary import log
+from core.kernel import flush_tiny, kernel
+from core.record import Record
 from core.sense.sensor import Sensor, SensorParams
-
-PHI11, PHI12, PHI21, PHI22, GAMMA1, GAMMA2, FORCE1, FORCE2, WALK, EVERY, TICK_MODEL = range(11)
-MODEL = TICK_MODEL + voltage.TICK_SIZE
-"""Layout of a packed model over a sample, the model over a tick behind it, and its length."""
-X, V, F, P11, P12, P13, P22, P23, P33, FILTER = range(10)
-"""Layout of a filter's state, and its length."""
+from core.voltage import AppliedPorts, Gathered, Tick, gather, tick_of
 
 MOTION = Equation("motion", r"\ddot x=\frac{F_e-\beta\dot x-kx}{m}+f,\quad \dot f=n")
+
+
+class Tracked(Record):
+    """A packed model over a sample: transition, effect of a volt and of a force, walk, ticks; and over one tick."""
+
+    phi11: float
+    phi12: float
+    phi21: float
+    phi22: float
+    gamma1: float
+    gamma2: float
+    force1: float
+    force2: float
+    walk: float
+    every: float
+    tick: Tick
+
+
+class Filter(Record):
+    """State of a filter: displacement, velocity, acceleration by the force, and their covariance."""
+
+    x: float
+    v: float
+    f: float
+    p11: float
+    p12: float
+    p13: float
+    p22: float
+    p23: float
+    p33: float
 
 
 class TrackerParams(SensorParams):
@@ -44,99 +70,99 @@ class Tracker(Sensor):
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse what the model of mass and spring cannot be."""
+        """Refuse devices that the model of mass and spring does not describe."""
         return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
 
-def pack_model(params: TrackerParams, context: Context) -> list[float]:
+def model_of(params: TrackerParams, context: Context) -> Tracked:
     r"""Return the packed model; by default the walk has the variance :math:`4000\,s^{-1}(0.1\omega_0^2A)^2dt`."""
     device = context.device
     stiffness = device.stiffness * params.stiffness
-    phi = transition(device.mass, device.damping, stiffness, context.dt_ms)
     square = stiffness / device.mass
     volt = device.force / stiffness
-    own = params.model_error * square * params.stroke_um
-    walk = params.force_rate_per_ms * own * own * context.dt_ms
-    held = (1.0 - phi[0], -phi[2])
-    tick = replace(device, stiffness=stiffness)
-    return [
-        *phi,
-        held[0] * volt,
-        held[1] * volt,
-        held[0] / square,
-        held[1] / square,
-        walk,
-        context.every,
-        *voltage.pack_tick(tick, device.force, context.dt_ms / context.every, context.analogue),
-    ]
+    lacking = params.model_error * square * params.stroke_um
+    model = Tracked.blank()
+    model.phi11, model.phi12, model.phi21, model.phi22 = transition(
+        device.mass, device.damping, stiffness, context.dt_ms
+    )
+    held1, held2 = 1.0 - model.phi11, -model.phi21
+    model.gamma1, model.gamma2 = held1 * volt, held2 * volt
+    model.force1, model.force2 = held1 / square, held2 / square
+    model.walk = params.force_rate_per_ms * lacking * lacking * context.dt_ms
+    model.every = context.every
+    assumed = replace(device, stiffness=stiffness)
+    model.tick = tick_of(assumed, device.force, context.dt_ms / context.every, context.analogue)
+    return model
 
 
-def start(params: TrackerParams, context: Context) -> list[float]:
-    """Return a filter at rest at zero, uncertain by 0.1 um, by a tenth of the speed and by the force it may lack."""
+def put_at_rest(s: Filter, params: TrackerParams, context: Context) -> None:
+    """Put a filter at rest at zero, uncertain by 0.1 um, a tenth of the speed and the force of the model's errors."""
     square = context.device.stiffness / context.device.mass
-    own = params.model_error * square * params.stroke_um
+    lacking = params.model_error * square * params.stroke_um
     speed = 0.1 * params.stroke_um * math.sqrt(square)
-    return [0.0, 0.0, 0.0, 0.01, 0.0, 0.0, speed * speed, 0.0, own * own]
+    s.x = s.v = s.f = 0.0
+    s.p12 = s.p13 = s.p23 = 0.0
+    s.p11, s.p22, s.p33 = 0.01, speed * speed, lacking * lacking
 
 
 @kernel
-def gather(p: Any, at: int, s: Any, drive: int, w: Any, io: Any, applied: int) -> bool:
-    """Take in the voltage of a tick; say whether a sensor that runs every N of them is between two of its turns."""
-    voltage.follow(p, at + TICK_MODEL, s, drive, w[io[applied]], w[io[applied + 1]], w[io[applied + 2]])
-    return bool(p[at + EVERY] != 1.0 and w[TICK] % p[at + EVERY] != 0.0)
+def between_updates(p: Tracked, drive: Gathered, x: AppliedPorts) -> bool:
+    """Gather the voltage of a tick; say whether a sensor that runs every N of them does not run at this one."""
+    gather(p.tick, drive, x.applied, x.middle, x.end)
+    return bool(p.every != 1.0 and x.tick % p.every != 0.0)
 
 
 @kernel
-def predict(p: Any, at: int, s: Any, b: int, drive: int) -> None:
-    """Advance the filter at ``b`` of the state by one sample, under the voltage gathered at ``drive``."""
-    f11 = p[at + PHI11]
-    f12 = p[at + PHI12]
-    f21 = p[at + PHI21]
-    f22 = p[at + PHI22]
-    g1 = p[at + FORCE1]
-    g2 = p[at + FORCE2]
-    x = s[b + X]
-    v = s[b + V]
-    f = s[b + F]
-    u = s[drive + voltage.START]
-    s[b + X] = settled(f11 * x + f12 * v + g1 * f + p[at + GAMMA1] * u + s[drive + voltage.GAINED1])
-    s[b + V] = settled(f21 * x + f22 * v + g2 * f + p[at + GAMMA2] * u + s[drive + voltage.GAINED2])
-    c11 = s[b + P11]
-    c12 = s[b + P12]
-    c13 = s[b + P13]
-    c22 = s[b + P22]
-    c23 = s[b + P23]
-    c33 = s[b + P33]
+def predict(p: Tracked, s: Filter, drive: Gathered) -> None:
+    """Advance a filter by one sample, under the voltage gathered."""
+    f11 = p.phi11
+    f12 = p.phi12
+    f21 = p.phi21
+    f22 = p.phi22
+    g1 = p.force1
+    g2 = p.force2
+    x = s.x
+    v = s.v
+    f = s.f
+    u = drive.start
+    s.x = flush_tiny(f11 * x + f12 * v + g1 * f + p.gamma1 * u + drive.gained1)
+    s.v = flush_tiny(f21 * x + f22 * v + g2 * f + p.gamma2 * u + drive.gained2)
+    c11 = s.p11
+    c12 = s.p12
+    c13 = s.p13
+    c22 = s.p22
+    c23 = s.p23
+    c33 = s.p33
     a11 = f11 * c11 + f12 * c12 + g1 * c13
     a12 = f11 * c12 + f12 * c22 + g1 * c23
     a13 = f11 * c13 + f12 * c23 + g1 * c33
     a22 = f21 * c12 + f22 * c22 + g2 * c23
     a23 = f21 * c13 + f22 * c23 + g2 * c33
-    s[b + P11] = a11 * f11 + a12 * f12 + a13 * g1
-    s[b + P12] = a11 * f21 + a12 * f22 + a13 * g2
-    s[b + P13] = a13
-    s[b + P22] = (f21 * c11 + f22 * c12 + g2 * c13) * f21 + a22 * f22 + a23 * g2
-    s[b + P23] = a23
-    s[b + P33] = c33 + p[at + WALK]
+    s.p11 = a11 * f11 + a12 * f12 + a13 * g1
+    s.p12 = a11 * f21 + a12 * f22 + a13 * g2
+    s.p13 = a13
+    s.p22 = (f21 * c11 + f22 * c12 + g2 * c13) * f21 + a22 * f22 + a23 * g2
+    s.p23 = a23
+    s.p33 = c33 + p.walk
 
 
 @kernel
-def correct(s: Any, b: int, residual: float, h: float, noise: float) -> float:
-    """Correct the filter at ``b`` by a residual of slope ``h``; return the logarithm of its likelihood."""
-    c11 = s[b + P11]
-    c12 = s[b + P12]
-    c13 = s[b + P13]
+def correct(s: Filter, residual: float, h: float, noise: float) -> float:
+    """Correct a filter by a residual of slope ``h``; return the logarithm of its likelihood."""
+    c11 = s.p11
+    c12 = s.p12
+    c13 = s.p13
     psi = h * h * c11 + noise
     k1 = h * c11 / psi
     k2 = h * c12 / psi
     k3 = h * c13 / psi
-    s[b + X] += k1 * residual
-    s[b + V] += k2 * residual
-    s[b + F] = settled(s[b + F] + k3 * residual)
-    s[b + P22] -= k2 * h * c12
-    s[b + P23] -= k2 * h * c13
-    s[b + P33] -= k3 * h * c13
-    s[b + P11] = c11 - k1 * h * c11
-    s[b + P12] = c12 - k1 * h * c12
-    s[b + P13] = c13 - k1 * h * c13
-    return float(-0.5 * (residual * residual / psi + math.log(psi)))
+    s.x += k1 * residual
+    s.v += k2 * residual
+    s.f = flush_tiny(s.f + k3 * residual)
+    s.p22 -= k2 * h * c12
+    s.p23 -= k2 * h * c13
+    s.p33 -= k3 * h * c13
+    s.p11 = c11 - k1 * h * c11
+    s.p12 = c12 - k1 * h * c12
+    s.p13 = c13 - k1 * h * c13
+    return float(-0.5 * (residual * residual / psi + log(psi)))

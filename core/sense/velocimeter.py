@@ -4,30 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from core.block import TICK, Context, Equation, FloatArray, Port, parameter
+from core.block import Context, Equation, parameter
 from core.noise import key, normal
+from core.ports import BlockPorts, output, reads
+from core.record import Record
 from core.sense.sensor import Sensor, SensorParams
-
-NOISE, KEY = range(2)
-TRUE, VELOCITY = range(2)
-
-
-def velocimeter_step(p: Any, s: Any, w: Any, io: Any) -> None:
-    """Read the velocity."""
-    w[io[VELOCITY]] = w[io[TRUE]] + p[NOISE] * normal(p[KEY], w[TICK])
 
 
 class Velocimeter(Sensor):
     r"""Velocity of the shuttle along x plus white noise, :math:`z_i=\dot x_i+v_i`.
 
-    The text reads displacement and velocity (C = I in 5.2.4) without saying how; a laser along the motion would do.
+    The text measures displacement and velocity (C = I in 5.2.4) without saying how; a laser along the motion would do
+    it.
     """
 
     title = "In-plane velocimeter"
-    inputs = (Port("true", "um/ms", "true velocity", source="plant.velocity"),)
-    outputs = (Port("velocity", "um/ms", "measured velocity"),)
     equations = (Equation("measurement", r"z_i=\dot x(t_i)+v_i,\quad v_i\sim N(0,\sigma_v^2)", "5.2.4, C = I"),)
 
     class Params(SensorParams):
@@ -37,9 +28,26 @@ class Velocimeter(Sensor):
             0.5, "standard deviation of the velocity of a sample (assumed)", "um/ms", ge=0, le=1e4
         )
 
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> FloatArray:
-        """Pack the parameters for the step."""
-        return np.array([params.noise_um_ms, key(context.seed, "sensor.velocimeter")])
+    class Packed(Record):
+        """The noise and its stream."""
 
-    step = velocimeter_step
+        noise_um_ms: float
+        key: float
+
+    class Ports(BlockPorts):
+        """True and measured velocity."""
+
+        true: float = reads("plant.velocity", "um/ms", "true velocity")
+        velocity: float = output("um/ms", "measured velocity")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p = cls.Packed.blank()
+        p.key = key(context.seed, "sensor.velocimeter")
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Read the velocity."""
+        x.velocity = x.true + p.noise_um_ms * normal(p.key, x.tick)

@@ -1,1 +1,1 @@
-"""Theory: what can be said of a system before anything is run."""
+"""Theory: properties of a system that need no run."""

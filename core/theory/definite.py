@@ -15,7 +15,7 @@ TINY = 1e-12
 
 @dataclass(frozen=True)
 class Definiteness:
-    """What a matrix is.
+    """Verdict on a matrix.
 
     Parameters
     ----------
@@ -39,12 +39,12 @@ class Definiteness:
 def definiteness(matrix: Sequence[Sequence[float]]) -> Definiteness:
     r"""Judge :math:`x^TAx` by the symmetric part :math:`\tfrac12(A+A^T)`.
 
-    The eigenvalues of A itself would not do: those of [[1, 4], [0, 1]] are both 1, and x'Ax is -2 at [1, -1].
+    The eigenvalues of A itself do not decide: those of [[1, 4], [0, 1]] are both 1, and x'Ax is -2 at [1, -1].
 
     Raises
     ------
     InputError
-        When it is no square matrix of finite numbers.
+        If it is not a square matrix of finite numbers.
     """
     if not matrix or any(len(row) != len(matrix) for row in matrix):
         raise InputError("must be a square matrix", "matrix")

@@ -1,7 +1,7 @@
 r"""Stability of the rules that adapt one gain (appendix B), by eigenvalues and by Floquet's theorem.
 
 With the gain error :math:`x=k-k_vk_c` the error :math:`e=y_m-y` of :math:`k_v/(b_2s^2+b_1s+1)` obeys
-:math:`b_2\ddot e+b_1\dot e+e=x\,r`, and each rule makes the whole linear with coefficients as periodic as r.
+:math:`b_2\ddot e+b_1\dot e+e=x\,r`. Each rule makes the loop a linear system whose coefficients are as periodic as r.
 """
 
 from __future__ import annotations
@@ -11,20 +11,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.block import FloatArray, kernel
+from core.block import FloatArray
+from core.elementary import cos, sin
+from core.kernel import kernel
 
-MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = range(6)
+MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = 0, 1, 2, 3, 4, 5
 """``PARKS`` is the rule as derived, on the slope of the error alone; ``LYAPUNOV`` adds the error itself."""
 RULES = {"mit": MIT, "parks": PARKS, "lyapunov": LYAPUNOV, "dressler": DRESSLER, "price": PRICE, "monopoli": MONOPOLI}
 STEPS = 200
 """Steps of a period."""
 MARGIN = 1e-7
-"""Growth rate, 1/time, that counts as none."""
+"""Largest growth rate, 1/time, that counts as stable."""
 
 
 @dataclass(frozen=True)
 class GainLoop:
-    """A plant of unknown gain, and what its rule needs, in its own unit of time.
+    """A plant of unknown gain and the parameters of its rule, in the plant's unit of time.
 
     Parameters
     ----------
@@ -65,7 +67,7 @@ class GainLoop:
 
 @kernel
 def _coefficients(p: FloatArray, rule: int, rate: float, r: float, ym: float, y: float) -> tuple[float, float, float]:
-    """Return what e and e' put into the slope of x, and what e puts into the plant at once."""
+    """Return the effects of e and e' on the slope of x, and the direct effect of e on the plant."""
     strength = -p[2] * rate
     if rule == MIT:
         return strength * ym, 0.0, 0.0
@@ -84,15 +86,15 @@ def _coefficients(p: FloatArray, rule: int, rate: float, r: float, ym: float, y:
 def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
     """Return the transition over one period of a sine (w > 0), or the matrix of the system for a constant."""
     b1, b2, k, amplitude, q = p[0], p[1], p[3], p[4], p[7]
-    found = np.zeros((3, 3))
+    transition = np.zeros((3, 3))
     if w == 0.0:
         on_e, on_v, at_once = _coefficients(p, rule, rate, amplitude, k * amplitude, amplitude)
-        found[0, 1] = 1.0
-        found[1, 0], found[1, 1], found[1, 2] = (at_once - 1.0) / b2, -b1 / b2, amplitude / b2
-        found[2, 0], found[2, 1] = on_e, on_v
-        return found
+        transition[0, 1] = 1.0
+        transition[1, 0], transition[1, 1], transition[1, 2] = (at_once - 1.0) / b2, -b1 / b2, amplitude / b2
+        transition[2, 0], transition[2, 1] = on_e, on_v
+        return transition
     for i in range(3):
-        found[i, i] = 1.0
+        transition[i, i] = 1.0
     # model and filter answer R sin wt with a real and an imaginary part
     real, imaginary = 1.0 - b2 * w * w, b1 * w
     model = k * amplitude / (real * real + imaginary * imaginary)
@@ -101,16 +103,16 @@ def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
     r1 = 0.0
     e1, v1, g1 = _coefficients(p, rule, rate, 0.0, -model * imaginary, -filtered * q * w)
     for i in range(STEPS):
-        sine, cosine = math.sin(w * h * (i + 0.5)), math.cos(w * h * (i + 0.5))
+        sine, cosine = sin(w * h * (i + 0.5)), cos(w * h * (i + 0.5))
         ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
         r2 = amplitude * sine
         e2, v2, g2 = _coefficients(p, rule, rate, r2, ym, y)
-        sine, cosine = math.sin(w * h * (i + 1.0)), math.cos(w * h * (i + 1.0))
+        sine, cosine = sin(w * h * (i + 1.0)), cos(w * h * (i + 1.0))
         ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
         r3 = amplitude * sine
         e3, v3, g3 = _coefficients(p, rule, rate, r3, ym, y)
         for c in range(3):
-            e, v, x = found[0, c], found[1, c], found[2, c]
+            e, v, x = transition[0, c], transition[1, c], transition[2, c]
             ka, la, ma = v, (x * r1 + (g1 - 1.0) * e - b1 * v) / b2, e1 * e + v1 * v
             et, vt, xt = e + 0.5 * h * ka, v + 0.5 * h * la, x + 0.5 * h * ma
             kb, lb, mb = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
@@ -118,17 +120,17 @@ def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
             kc, lc, mc = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
             et, vt, xt = e + h * kc, v + h * lc, x + h * mc
             kd, ld, md = vt, (xt * r3 + (g3 - 1.0) * et - b1 * vt) / b2, e3 * et + v3 * vt
-            found[0, c] = e + h / 6.0 * (ka + 2.0 * kb + 2.0 * kc + kd)
-            found[1, c] = v + h / 6.0 * (la + 2.0 * lb + 2.0 * lc + ld)
-            found[2, c] = x + h / 6.0 * (ma + 2.0 * mb + 2.0 * mc + md)
+            transition[0, c] = e + h / 6.0 * (ka + 2.0 * kb + 2.0 * kc + kd)
+            transition[1, c] = v + h / 6.0 * (la + 2.0 * lb + 2.0 * lc + ld)
+            transition[2, c] = x + h / 6.0 * (ma + 2.0 * mb + 2.0 * mc + md)
         r1, e1, v1, g1 = r3, e3, v3, g3
-    return found
+    return transition
 
 
 def growth(loop: GainLoop, rule: int, rate: float, w: float) -> float:
     """Return the growth rate of the worst solution, 1/time: negative when all decay.
 
-    What no number holds after one period grows at least as told.
+    If a solution overflows within one period, the rate returned is a lower bound.
     """
     matrix = monodromy(loop.packed(), rule, rate, w)
     if not np.all(np.isfinite(matrix)):
@@ -140,7 +142,7 @@ def growth(loop: GainLoop, rule: int, rate: float, w: float) -> float:
 
 
 def critical_gain(loop: GainLoop, rule: int, w: float, most: float = 10.0, points: int = 200) -> float:
-    """Return the first adaptation gain beyond which a solution grows; ``most`` when none does up to there."""
+    """Return the first adaptation gain beyond which a solution grows, or ``most`` if none grows up to there."""
     below = 0.0
     for rate in np.linspace(most / points, most, points):
         if growth(loop, rule, float(rate), w) > MARGIN:

@@ -1,8 +1,8 @@
-r"""Persistency of excitation: whether the parameters can be found from this input at all.
+r"""Persistency of excitation: whether an input lets the parameters be identified.
 
 A regressor is persistently exciting when :math:`\alpha_1I\le\int_t^{t+\delta}\varphi\varphi^T\,d\tau\le\alpha_2I` for
 every t (A.9.1): the smallest eigenvalue of its mean Gram matrix stays above zero. Each tone of the input adds two
-directions, a constant one.
+directions, a constant adds one.
 """
 
 from __future__ import annotations
@@ -10,20 +10,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray, kernel
+from core.block import FloatArray
+from core.kernel import kernel
+from core.record import Vector
 
 SWEEPS = 10
 ROUNDING = 1e-13
-"""Eigenvalues this much smaller than the largest are 0."""
+"""Eigenvalues below this share of the largest are taken for 0."""
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """How well an input excites a regressor.
+    """The excitation of a regressor by an input.
 
     Parameters
     ----------
@@ -51,15 +52,15 @@ class Excitation:
 def excitation(gram: FloatArray) -> Excitation:
     """Judge a mean Gram matrix, shape (n, n)."""
     size = np.sqrt(np.diag(gram))
-    # One after the other: the product of two small sizes may be too small for a number.
+    # Divide by one size after the other: the product of two small sizes may underflow.
     relative = 0.0 if np.any(size == 0.0) else float(_eigenvalues(gram / size[:, None] / size)[0])
     return Excitation(_eigenvalues(gram), relative)
 
 
 def _eigenvalues(matrix: FloatArray) -> FloatArray:
-    """Return the eigenvalues, smallest first; what is rounding beside the largest is 0."""
-    found = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
-    return np.where(np.abs(found) < ROUNDING * np.abs(found[-1]), 0.0, found)
+    """Return the eigenvalues, smallest first; those that are rounding errors of the largest are set to 0."""
+    values = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
+    return np.where(np.abs(values) < ROUNDING * np.abs(values[-1]), 0.0, values)
 
 
 def gram_of_tones(
@@ -90,25 +91,23 @@ def gram_of_tones(
 
 
 @kernel
-def gather(s: Any, gram: int, regressor: int, n: int) -> None:
+def add_outer_product(gram: Vector, regressor: Vector, n: int) -> None:
     """Add the outer product of a regressor to the lower triangle of a Gram matrix."""
-    at = gram
+    at = 0
     for i in range(n):
         for j in range(i + 1):
-            s[at] += s[regressor + i] * s[regressor + j]
+            gram[at] += regressor[i] * regressor[j]
             at += 1
 
 
 @kernel
-def smallest_eigenvalue(s: Any, gram: int, scratch: int, n: int, relative: bool) -> float:
+def smallest_eigenvalue(gram: Vector, scratch: Vector, n: int, relative: bool) -> float:
     r"""Return the smallest eigenvalue of a symmetric matrix, by cyclic Jacobi rotations.
 
     Parameters
     ----------
-    s : array
-        State that holds what follows.
-    gram, scratch : int
-        Where the lower triangle and :math:`n^2` scratch numbers begin.
+    gram, scratch : vectors
+        The lower triangle, and :math:`n^2` scratch numbers.
     n : int
         Size.
     relative : bool
@@ -118,33 +117,33 @@ def smallest_eigenvalue(s: Any, gram: int, scratch: int, n: int, relative: bool)
     for i in range(n):
         for j in range(n):
             low, high = min(i, j), max(i, j)
-            value = s[gram + high * (high + 1) // 2 + low]
+            value = gram[high * (high + 1) // 2 + low]
             if relative:
-                size = s[gram + i * (i + 3) // 2] * s[gram + j * (j + 3) // 2]
+                size = gram[i * (i + 3) // 2] * gram[j * (j + 3) // 2]
                 if size <= 0.0:
                     return 0.0
                 value /= math.sqrt(size)
-            s[scratch + i * n + j] = value
+            scratch[i * n + j] = value
     for _ in range(SWEEPS):
         for i in range(n):
             for j in range(i + 1, n):
-                off = s[scratch + i * n + j]
+                off = scratch[i * n + j]
                 if off == 0.0:
                     continue
-                half = 0.5 * (s[scratch + j * n + j] - s[scratch + i * n + i]) / off
+                half = 0.5 * (scratch[j * n + j] - scratch[i * n + i]) / off
                 t = 1.0 / (abs(half) + math.sqrt(half * half + 1.0))
                 if half < 0.0:
                     t = -t
                 c = 1.0 / math.sqrt(t * t + 1.0)
                 for k in range(n):
-                    a, b = s[scratch + i * n + k], s[scratch + j * n + k]
-                    s[scratch + i * n + k] = c * (a - t * b)
-                    s[scratch + j * n + k] = c * (b + t * a)
+                    a, b = scratch[i * n + k], scratch[j * n + k]
+                    scratch[i * n + k] = c * (a - t * b)
+                    scratch[j * n + k] = c * (b + t * a)
                 for k in range(n):
-                    a, b = s[scratch + k * n + i], s[scratch + k * n + j]
-                    s[scratch + k * n + i] = c * (a - t * b)
-                    s[scratch + k * n + j] = c * (b + t * a)
-    least = s[scratch]
+                    a, b = scratch[k * n + i], scratch[k * n + j]
+                    scratch[k * n + i] = c * (a - t * b)
+                    scratch[k * n + j] = c * (b + t * a)
+    least = scratch[0]
     for i in range(1, n):
-        least = min(least, s[scratch + i * n + i])
+        least = min(least, scratch[i * n + i])
     return float(max(least, 0.0))

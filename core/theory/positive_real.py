@@ -17,7 +17,7 @@ from core.block import FloatArray
 from core.errors import InputError
 
 LARGEST = 1e30
-"""Coefficients beyond this, or below its inverse, would make products that no number holds."""
+"""Coefficients beyond this, or below its inverse, would make products that overflow or underflow."""
 TINY = 1e-10
 MOST = 20
 """Highest order that roots of polynomials in double precision can be trusted with."""
@@ -25,7 +25,7 @@ MOST = 20
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a transfer function is, and why.
+    """Verdict on a transfer function, with its reasons.
 
     Parameters
     ----------
@@ -36,11 +36,11 @@ class Verdict:
     relative_degree : int
         Degree of the denominator less that of the numerator.
     least_real : float
-        Smallest real part on the imaginary axis; huge beside a pole that makes it so.
+        Smallest real part on the imaginary axis; huge if a pole on the axis makes it so.
     at : float
-        Frequency where it is, infinite when it is the limit.
+        Frequency of that smallest real part, infinite if it is the limit at infinity.
     reasons : tuple of str
-        What keeps it from being strictly positive real.
+        The conditions it fails to be strictly positive real.
     """
 
     strictly_positive_real: bool
@@ -54,7 +54,7 @@ class Verdict:
 
 
 def polynomial(coefficients: Sequence[float], field: str) -> FloatArray:
-    """Return coefficients without leading zeros, highest power first, or refuse them."""
+    """Return coefficients without leading zeros, highest power first; refuse those that make no polynomial."""
     values = np.asarray(coefficients, dtype=np.float64)
     if values.ndim != 1 or not np.all(np.isfinite(values)) or not np.any(values):
         raise InputError("must be finite numbers, not all 0", field)
@@ -80,7 +80,7 @@ def positive_real(numerator: Sequence[float], denominator: Sequence[float]) -> V
 
     It is strictly positive real when D is Hurwitz, the relative degree is -1, 0 or 1,
     :math:`\mathrm{Re}\,G(j\omega)>0` for all :math:`\omega`, and at infinity :math:`\omega^2\mathrm{Re}\,G\not\to0` for
-    relative degree 1, :math:`\mathrm{Re}\,G\not\to0` for -1: what lets :math:`G(s-\epsilon)` be positive real (Ioannou
+    relative degree 1, :math:`\mathrm{Re}\,G\not\to0` for -1: then :math:`G(s-\epsilon)` can be positive real (Ioannou
     and Sun, Robust Adaptive Control, 3.5). It is positive real when the real part is nowhere negative and poles on the
     imaginary axis are simple with positive residues.
 
@@ -106,7 +106,7 @@ def positive_real(numerator: Sequence[float], denominator: Sequence[float]) -> V
         reasons.append("the real part is negative")
     elif lowest <= TINY:
         reasons.append("the real part touches zero")
-    # at infinity: the highest power the real part may have is kept for degree 0 and -1, and w^2 Re G for degree 1
+    # at infinity: degrees 0 and -1 need the highest power that the real part may have, degree 1 needs that of w^2 Re G
     most = len(n) + len(d) - 2
     wanted = {0: most, 1: most - 1, -1: most - 1}.get(degree, 0) // 2
     leading = real[-1 - wanted] if wanted < len(real) else 0.0
@@ -145,7 +145,7 @@ def _turns(values: Any) -> list[float]:
 
 
 def _least(real: FloatArray) -> float:
-    """Return the smallest value of a polynomial on x >= 0, minus infinity when it falls for ever."""
+    """Return the smallest value of a polynomial on x >= 0, or minus infinity if it has no lower bound."""
     values = np.trim_zeros(real, "f")
     if len(values) > 1 and values[0] < 0.0:
         return -math.inf
@@ -153,20 +153,20 @@ def _least(real: FloatArray) -> float:
 
 
 def _least_real(real: FloatArray, square: FloatArray) -> tuple[float, float]:
-    """Return where Re G = P/Q is smallest on the axis, and its value; both are polynomials in w^2."""
+    """Return the frequency at which Re G = P/Q is smallest, and its value; P and Q are polynomials in w^2."""
     slopes: Any = np.polyder(real), np.polyder(square)
     turning: Any = np.polysub(np.polymul(slopes[0], square), np.polymul(real, slopes[1]))
     top: Any = np.trim_zeros(real, "f")
     bottom: Any = np.trim_zeros(square, "f")
-    found = []
+    candidates = []
     for turn in _turns(turning):
         beside = float(np.polyval(bottom, turn)) <= TINY * float(np.sum(np.abs(bottom)))
         x = turn * (1.0 + 1e-6) + 1e-9 if beside else turn  # beside a pole on the axis
-        found.append((math.sqrt(x), float(np.polyval(top, x) / np.polyval(bottom, x))))
+        candidates.append((math.sqrt(x), float(np.polyval(top, x) / np.polyval(bottom, x))))
     far = 0.0
     if len(top) >= len(bottom):
         far = float(top[0] / bottom[0]) if len(top) == len(bottom) else math.copysign(math.inf, float(top[0]))
-    return min([*found, (math.inf, far)], key=lambda pair: pair[1])
+    return min([*candidates, (math.inf, far)], key=lambda pair: pair[1])
 
 
 def _axis_poles_are_positive(n: FloatArray, d: FloatArray) -> bool:

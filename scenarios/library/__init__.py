@@ -10,27 +10,32 @@ from scenarios.schema import Scenario
 
 
 @cache
+def ids() -> tuple[str, ...]:
+    """Return the id of every scenario in the order of the text: chapters, then appendices. It names the file."""
+    names = [entry.name for entry in files(__name__).iterdir() if entry.name.endswith(".toml")]
+    ids = [name.removesuffix(".toml") for name in names]
+    return tuple(sorted(ids, key=lambda name: (name.startswith("app"), not name.startswith("first"), name)))
+
+
+@cache
 def library() -> tuple[Scenario, ...]:
     """Return every scenario of the library in the order of the text: its chapters, then its appendices."""
-    entries = [entry for entry in files(__name__).iterdir() if entry.name.endswith(".toml")]
-    found = [Scenario.load(entry.read_text("utf-8")) for entry in entries]
-    return tuple(
-        sorted(
-            found,
-            key=lambda scenario: (scenario.id.startswith("app"), not scenario.id.startswith("first"), scenario.id),
-        )
-    )
+    return tuple(_read(name) for name in ids())
 
 
 def get(name: str) -> Scenario:
-    """Return one scenario of the library.
+    """Return one scenario of the library; no other is read.
 
     Raises
     ------
     InputError
         When there is none of that id.
     """
-    known = {scenario.id: scenario for scenario in library()}
-    if name not in known:
-        raise unknown("scenario", name, known, "scenario")
-    return known[name]
+    if name not in ids():
+        raise unknown("scenario", name, ids(), "scenario")
+    return _read(name)
+
+
+@cache
+def _read(name: str) -> Scenario:
+    return Scenario.load((files(__name__) / f"{name}.toml").read_text("utf-8"))

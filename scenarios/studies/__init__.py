@@ -1,4 +1,4 @@
-"""Computations that are not the run of a board; the file is the unit, its name is the kind in ``study``."""
+"""Computations other than the run of a board; each file holds one, and its name is the kind in ``study``."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from scenarios.studies.study import Study
 @cache
 def studies() -> dict[str, type[Study]]:
     """Return every study by name."""
-    found: dict[str, type[Study]] = {}
+    kinds: dict[str, type[Study]] = {}
     for module_info in pkgutil.iter_modules(__path__):
         module = importlib.import_module(f"{__name__}.{module_info.name}")
         for value in vars(module).values():
             if isinstance(value, type) and issubclass(value, Study) and value.__module__ == module.__name__:
-                found[module_info.name] = value
-    del found["study"]
-    return found
+                kinds[module_info.name] = value
+    del kinds["study"]
+    return kinds
 
 
 def parse_study(table: dict[str, Any]) -> tuple[type[Study], BlockParams]:

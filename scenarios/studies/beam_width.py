@@ -31,7 +31,7 @@ class BeamWidth(Study):
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return the loss of stiffness in percent, by 1.3.4 and to first order."""
         base = board.spec.device.geometry or Geometry()
-        found = {}
+        losses = {}
         for width in params.widths_um:
             if width <= params.reduction_um:
                 raise InputError(f"nothing is left of {width:g} um", "study.widths_um")
@@ -40,6 +40,6 @@ class BeamWidth(Study):
             narrow = base.model_copy(update={**drawn, "beam_bias_um": 0.5 * params.reduction_um})
             name = f"{width:g}".replace(".", "_")
             softer = 1.0 - narrow.stiffness_n_m() / whole.stiffness_n_m()
-            found[f"beam_width.softer_{name}_um_pct"] = 100.0 * softer
-            found[f"beam_width.linear_{name}_um_pct"] = 300.0 * params.reduction_um / width
-        return found
+            losses[f"beam_width.softer_{name}_um_pct"] = 100.0 * softer
+            losses[f"beam_width.linear_{name}_um_pct"] = 300.0 * params.reduction_um / width
+        return losses

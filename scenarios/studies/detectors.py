@@ -21,8 +21,8 @@ WARM = 500
 class Detectors(Study):
     """Sets the threshold of every statistic by the false alarms of a healthy device, then lets the fault happen.
 
-    ``detectors.<signal>.delay`` is the mean delay of those runs that saw the fault in time, ``.missed`` the share of
-    those that did not, ``.threshold`` where the threshold ended. ``roc.<signal>.area`` is the area under the curve of
+    ``detectors.<signal>.delay`` is the mean delay of the runs that detected the fault in time, ``.missed`` the share of
+    the others, ``.threshold`` the threshold in the end. ``roc.<signal>.area`` is the area under the curve of
     detections against false alarms within a window of samples, ``.at_1_pct`` the share detected at 1 % false alarms,
     and ``roc.<signal>.<false alarms in %>`` some points of the curve.
     """
@@ -56,19 +56,19 @@ class Detectors(Study):
         quiet = [_record(board, seed + i, length, columns, healthy=True)[WARM:] for i in range(runs)]
         end = params.fault_at + params.within
         loud = [_record(board, seed + runs + i, end, columns)[params.fault_at :] for i in range(params.runs)]
-        found: dict[str, float] = {}
+        figures: dict[str, float] = {}
         for column, signal in enumerate(params.signals):
             calm = [record[:, column] for record in quiet]
             faulty = [record[:, column] for record in loud]
             threshold = _threshold(calm, params.false_alarms_per_sample)
             delays = [_first(values, threshold) for values in faulty]
             seen = [delay for delay in delays if delay is not None]
-            found[f"detectors.{signal}.threshold"] = threshold
-            found[f"detectors.{signal}.missed"] = 1.0 - len(seen) / len(delays)
+            figures[f"detectors.{signal}.threshold"] = threshold
+            figures[f"detectors.{signal}.missed"] = 1.0 - len(seen) / len(delays)
             if seen:
-                found[f"detectors.{signal}.delay"] = float(np.mean(seen))
-            found |= _characteristic(f"roc.{signal}", calm, faulty, params.window)
-        return found
+                figures[f"detectors.{signal}.delay"] = float(np.mean(seen))
+            figures |= _characteristic(f"roc.{signal}", calm, faulty, params.window)
+        return figures
 
 
 def _record(board: Board, seed: int, samples: int, columns: list[int], *, healthy: bool = False) -> FloatArray:
@@ -77,19 +77,19 @@ def _record(board: Board, seed: int, samples: int, columns: list[int], *, health
     if healthy:
         fresh.pending.clear()
     outputs = fresh.signals.outputs
-    found = np.empty((samples, len(columns)))
+    traces = np.empty((samples, len(columns)))
     while fresh.tick < samples:
         rows = fresh.advance(samples - fresh.tick)
         if rows.count == 0:
             break
         span = slice(rows.first_tick, rows.first_tick + rows.count)
         for i, column in enumerate(columns):
-            found[span, i] = rows.outputs[:, column] if column < outputs else rows.taps[:, column - outputs]
-    return found[: fresh.tick]
+            traces[span, i] = rows.outputs[:, column] if column < outputs else rows.taps[:, column - outputs]
+    return traces[: fresh.tick]
 
 
 def _threshold(records: list[FloatArray], rate: float) -> float:
-    """Return the threshold whose crossings from below come at a rate."""
+    """Return the threshold that a signal crosses from below at a given rate."""
     allowed = rate * sum(len(record) for record in records)
     # a rise from a to b crosses every level from a up to, but not including, b
     rises = [(record[:-1], record[1:]) for record in records]
@@ -115,9 +115,9 @@ def _characteristic(prefix: str, calm: list[FloatArray], faulty: list[FloatArray
     # the area is the chance that a window with the fault stands higher than one without
     below = np.searchsorted(healthy, wrong, side="left")
     equal = np.searchsorted(healthy, wrong, side="right") - below
-    found = {f"{prefix}.area": float(np.mean((below + 0.5 * equal) / len(healthy)))}
+    figures = {f"{prefix}.area": float(np.mean((below + 0.5 * equal) / len(healthy)))}
     for percent in (0.1, 1.0, 10.0):
         threshold = np.quantile(healthy, 1.0 - percent / 100.0)
         key = "at_1_pct" if percent == 1.0 else f"at_{percent:g}_pct".replace("0.1", "tenth")
-        found[f"{prefix}.{key}"] = float(np.mean(wrong > threshold))
-    return found
+        figures[f"{prefix}.{key}"] = float(np.mean(wrong > threshold))
+    return figures

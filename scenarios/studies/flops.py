@@ -1,4 +1,4 @@
-"""Floating-point operations of the diagnosers, and what a board could carry."""
+"""Floating-point operations of the diagnosers, and the number of models that a board can compute."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 class Flops(Study):
     """Counts the operations of every diagnoser by running it on numbers that count, and holds them against a board.
 
-    ``flops.<id>.per_model`` is the number of additions, multiplications and divisions for each model and sample,
-    ``.functions`` that of exponentials, logarithms and the like for all models; ``.share`` is the part of the board's
-    operations it takes, ``.overrun`` 1 when what came before leaves too little, and ``.models_that_fit`` how many of
-    its models would still be in time.
+    ``flops.<id>.per_model`` is the number of additions, multiplications and divisions for each model and sample;
+    ``.functions`` that of exponentials, logarithms and the like for all models; ``.share`` the diagnoser's share of the
+    board's operations. ``.overrun`` is 1 if the diagnosers before it leave too few operations, and ``.models_that_fit``
+    is the number of its models that would still be in time.
     """
 
     title = "Operations"
@@ -35,9 +35,9 @@ class Flops(Study):
         """Return the figures."""
         while board.tick < params.warm and board.advance(params.warm - board.tick).count:
             pass
-        found = budget(board, params.board_mflops * 1e6, params.function_flops)
-        figures = {"flops.share": found.share}
-        for load in found.loads:
+        budgeted = budget(board, params.board_mflops * 1e6, params.function_flops)
+        figures = {"flops.share": budgeted.share}
+        for load in budgeted.loads:
             figures |= {
                 f"flops.{load.name}.per_sample": load.operations,
                 f"flops.{load.name}.per_model": load.per_model,

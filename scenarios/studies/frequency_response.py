@@ -39,24 +39,24 @@ class FrequencyResponse(Study):
         """Return the figures."""
         nominal = board.spec.device.resolved
         base = figures(**nominal)
-        found = {f"bode.{name}": value for name, value in base.items()}
+        bode = {f"bode.{name}": value for name, value in base.items()}
         far = response(**nominal, frequency_hz=np.array([1000.0, 2000.0, FAR_HZ])) * nominal["stiffness_n_m"]
-        found["bode.static_nm_per_nn"] = 1.0 / nominal["stiffness_n_m"]
-        found["bode.phase_1_khz_deg"], found["bode.phase_2_khz_deg"] = np.degrees(np.angle(far[:2])).tolist()
-        found["bode.far_db"] = float(20.0 * np.log10(abs(far[2])))
+        bode["bode.static_nm_per_nn"] = 1.0 / nominal["stiffness_n_m"]
+        bode["bode.phase_1_khz_deg"], bode["bode.phase_2_khz_deg"] = np.degrees(np.angle(far[:2])).tolist()
+        bode["bode.far_db"] = float(20.0 * np.log10(abs(far[2])))
         for name in NAMES:
             word = name.partition("_")[0]
             moved = figures(**{**nominal, name: nominal[name] * (1.0 + params.change_pct / 100.0)})
-            found[f"bode.{word}_up.f0_pct"] = 100.0 * (moved["f0_hz"] / base["f0_hz"] - 1.0)
-            found[f"bode.{word}_up.quality_factor"] = moved["quality_factor"]
-            found[f"bode.{word}_up.peak_db"] = moved["peak_db"]
+            bode[f"bode.{word}_up.f0_pct"] = 100.0 * (moved["f0_hz"] / base["f0_hz"] - 1.0)
+            bode[f"bode.{word}_up.quality_factor"] = moved["quality_factor"]
+            bode[f"bode.{word}_up.peak_db"] = moved["peak_db"]
         limits = [catalogued({"id": name}).resolved if name else nominal for name in (params.lower, params.upper)]
         for word, limit in zip(("low", "high"), limits, strict=True):
             for name in ("f0_hz", "f_peak_hz", "quality_factor", "peak_db"):
-                found[f"bode.{word}.{name}"] = figures(**limit)[name]
+                bode[f"bode.{word}.{name}"] = figures(**limit)[name]
         reach = [[limit[name] for limit in (nominal, *limits)] for name in NAMES]
         mass, damping, stiffness = ((min(values), values[0], max(values)) for values in reach)
         band = tolerance_band(mass, damping, stiffness, np.array([base["f0_hz"]]))
-        found["bode.band_db"] = float(band.high_db[0] - band.low_db[0])
-        found["bode.band_deg"] = float(band.high_deg[0] - band.low_deg[0])
-        return found
+        bode["bode.band_db"] = float(band.high_db[0] - band.low_db[0])
+        bode["bode.band_deg"] = float(band.high_deg[0] - band.low_deg[0])
+        return bode

@@ -45,42 +45,42 @@ class GainAdaptation(Study):
         law: Any = board.spec.controllers[NAME].params
         rule = rule_of(law.rule, law.form)
         loop = loop_of(board)
-        found = _simulated(board, params.duration_s)
+        results = _simulated(board, params.duration_s)
         if rule is not None and loop.b2 > 0.0:
-            found["adaptation.growth_theory_per_s"] = growth(loop, rule, law.adaptation_gain, 0.0)
-            found["adaptation.critical_gain"] = critical_gain(loop, rule, 0.0, params.most)
+            results["adaptation.growth_theory_per_s"] = growth(loop, rule, law.adaptation_gain, 0.0)
+            results["adaptation.critical_gain"] = critical_gain(loop, rule, 0.0, params.most)
             sine = loop_of(board, params.sine_b1)
             for w in params.frequencies:
                 name = f"{w:g}".replace(".", "_")
-                found[f"adaptation.critical_gain_{name}"] = critical_gain(sine, rule, w, params.most)
-        return found
+                results[f"adaptation.critical_gain_{name}"] = critical_gain(sine, rule, w, params.most)
+        return results
 
 
 def rule_of(rule: str, form: str) -> int | None:
-    """Return the rule that is meant; none for one that is no adaptation at all."""
+    """Return the rule of the theory, or None for a law that does not adapt."""
     if form != "corrected" and rule in ("mit", "lyapunov"):
         named = {("lyapunov", "derived"): "parks", ("lyapunov", "printed"): "dressler", ("mit", "derived"): "mit"}
-        found = named.get((rule, form))
-        return None if found is None else RULES[found]
+        name = named.get((rule, form))
+        return None if name is None else RULES[name]
     return RULES[rule]
 
 
 def loop_of(board: Board, b1: float | None = None) -> GainLoop:
-    """Return the loop of a bench, with another damping if given; gains of the rules scale with what keeps them safe."""
+    """Return the loop of a bench, with another damping if given; the rules' gains scale with their stability limits."""
     context = board.spec.context()
     plant, unit = context.device, 1.0 / context.device.natural_frequency
     law: Any = board.spec.controllers[NAME].params
-    own = plant.damping / plant.stiffness / unit
-    chosen = own if b1 is None else b1
+    true_b1 = plant.damping / plant.stiffness / unit
+    chosen = true_b1 if b1 is None else b1
     return GainLoop(
         b1=chosen,
         b2=plant.mass / plant.stiffness / unit**2,
         gain=plant.static_gain,
         model_gain=context.model.static_gain,
         amplitude=getattr(board.spec.reference.params, "amplitude_v", None) or 1.0,
-        error_weight=law.error_weight * chosen / own,
-        proportional=law.proportional * own / chosen,
-        filter_time=law.filter_time * own / chosen,
+        error_weight=law.error_weight * chosen / true_b1,
+        proportional=law.proportional * true_b1 / chosen,
+        filter_time=law.filter_time * true_b1 / chosen,
     )
 
 
@@ -92,20 +92,20 @@ def _simulated(board: Board, duration_s: float) -> dict[str, float]:
         rows = board.advance(ticks - board.tick)
         if rows.count == 0:
             break
-        parts.append(rows.outputs[:, model] - rows.outputs[:, plant])  # not what the sensor says of it
+        parts.append(rows.outputs[:, model] - rows.outputs[:, plant])  # the true displacement, not the measured one
     error = np.concatenate(parts)
     quarter = len(error) // 4
     dt_s = board.dt_ms * 1e-3
     early, late = (float(np.max(np.abs(part))) for part in (error[quarter : 2 * quarter], error[-quarter:]))
-    found = {
+    results = {
         "adaptation.final_error_um": float(error[-1]),
         "adaptation.peak_error_um": float(np.max(np.abs(error))),
         "adaptation.ratio": late / early if early > 0.0 else 0.0,
         "adaptation.tripped": float(board.trip is not None),
     }
     if early > 0.0 and late > 0.0:
-        found["adaptation.growth_per_s"] = float(np.log(late / early) / (2 * quarter * dt_s))
+        results["adaptation.growth_per_s"] = float(np.log(late / early) / (2 * quarter * dt_s))
     rising = np.flatnonzero((error[:-1] < 0.0) & (error[1:] >= 0.0))
     if len(rising) > 2:
-        found["adaptation.period_s"] = float(rising[-1] - rising[0]) / (len(rising) - 1) * dt_s
-    return found
+        results["adaptation.period_s"] = float(rising[-1] - rising[0]) / (len(rising) - 1) * dt_s
+    return results

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from core.block import TICK, TIME_MS, BlockParams, FloatArray, parameter
+from core.block import BlockParams, FloatArray, parameter
 from core.board import fold, program
+from core.diagnose.hypothesis import hypotheses_of
 from core.errors import InputError
+from core.ports import TICK, TIME_MS
 from scenarios.studies.monte_carlo import again
 from scenarios.studies.study import Study
 
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     from core.board.board import Board
 
 RECORDED = ("sensor.displacement", "drive.voltage", "drive.middle", "drive.end")
-"""What a diagnoser is given."""
+"""Signals that a diagnoser reads."""
 HELD = 20
 """Samples in a row that count as a conclusion."""
 
@@ -26,7 +28,7 @@ class JoinedRecords(Study):
 
     A joined record is easier than a device that changes: the second filter is in its own steady state already when
     its part begins. ``joined.<id>.t50`` is the number of samples from the joint until the probability of the second
-    hypothesis stays above one half for 20 samples, the whole second part if it never does.
+    hypothesis stays above one half for 20 samples, or the length of the second part if it never does.
     """
 
     title = "Joined records"
@@ -40,22 +42,22 @@ class JoinedRecords(Study):
 
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
-        """Return how long each diagnoser took to believe the second record."""
+        """Return the number of samples until each diagnoser believes the second record."""
         if not board.spec.diagnosers:
             raise InputError("needs a diagnoser", "diagnosers")
         before = _record(board, params.settle_samples + params.first_samples, faulty=False)
         after = _record(board, params.settle_samples + params.first_samples + params.second_samples, faulty=True)
         joint = params.settle_samples + params.first_samples
         joined = {name: np.concatenate([before[name][params.settle_samples :], after[name][joint:]]) for name in before}
-        found: dict[str, float] = {}
+        results: dict[str, float] = {}
         for name, section in board.spec.diagnosers.items():
-            hypotheses = list(getattr(section.params, "hypotheses", ()))
+            hypotheses = hypotheses_of(section.params)
             if len(hypotheses) != 2:
                 raise InputError("needs two hypotheses, one for each record", f"diagnosers.{name}.hypotheses")
             believed = _play(board, name, hypotheses[1].name, joined)[params.first_samples :] > 0.5
             runs = np.convolve(believed, np.ones(HELD), "valid") == HELD
-            found[f"joined.{name}.t50"] = float(np.argmax(runs)) if runs.any() else float(params.second_samples)
-        return found
+            results[f"joined.{name}.t50"] = float(np.argmax(runs)) if runs.any() else float(params.second_samples)
+        return results
 
 
 def _record(board: Board, samples: int, *, faulty: bool) -> dict[str, FloatArray]:
@@ -64,11 +66,11 @@ def _record(board: Board, samples: int, *, faulty: bool) -> dict[str, FloatArray
     fresh.pending.at_once()
     if not faulty:
         fresh.pending.clear()
-    found: dict[str, list[float]] = {name: [] for name in RECORDED}
+    record: dict[str, list[float]] = {name: [] for name in RECORDED}
     while fresh.tick < samples and fresh.advance(1).count:
         for name in RECORDED:
-            found[name].append(fresh.value(name))
-    return {name: np.array(values) for name, values in found.items()}
+            record[name].append(fresh.value(name))
+    return {name: np.array(values) for name, values in record.items()}
 
 
 def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray]) -> FloatArray:
@@ -76,13 +78,13 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
     wiring = again(board, board.spec.seed).wiring
     instance = wiring.instances[wiring.row(name)]
     table = np.ascontiguousarray(wiring.table[[wiring.row(name)]])
-    table[:, program.ADDRESS] = program.compiled(instance.block.step).address
+    table[:, program.ADDRESS] = program.address(instance.block)
     nothing, watches = np.zeros((1, 0)), np.zeros((0, 3))
     places = {signal: wiring.index[signal] for signal in RECORDED}
     wanted, trip = wiring.index[f"{name}.probability.{hypothesis}"], wiring.index["guard.trip"]
-    found = np.empty(len(record["sensor.displacement"]))
+    probability = np.empty(len(record["sensor.displacement"]))
     dt = board.dt_ms
-    for tick in range(len(found)):
+    for tick in range(len(probability)):
         wiring.w[TICK], wiring.w[TIME_MS] = tick, tick * dt
         # the voltage of a sample is the one applied at the sample before
         wiring.w[places["sensor.displacement"]] = record["sensor.displacement"][tick]
@@ -90,5 +92,5 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
         program.run(1, tick, dt, *arrays, nothing, nothing, fold.begin(0), trip, watches)
         for signal in RECORDED[1:]:
             wiring.w[places[signal]] = record[signal][tick]
-        found[tick] = wiring.w[wanted]
-    return found
+        probability[tick] = wiring.w[wanted]
+    return probability

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.block import BlockParams, parameter
-from core.board.score import Scores
 from core.errors import InputError, unknown
+from core.loop.score import Scores
 from scenarios.studies.study import Study
 
 if TYPE_CHECKING:
@@ -41,15 +41,15 @@ class MonteCarlo(Study):
         if len(params.compare) not in (0, 2):
             raise InputError("must name two diagnosers, or none", "study.compare")
         runs = [_run(board, board.spec.seed + i, params.samples) for i in range(params.runs)]
-        found: dict[str, float] = {}
+        figures: dict[str, float] = {}
         for name in runs[0]:
-            found |= _means(f"diagnosis.{name}", [run[name] for run in runs])
+            figures |= _means(f"diagnosis.{name}", [run[name] for run in runs])
         if params.compare:
             first, second = (f"diagnosis.{name}." for name in params.compare)
-            for key in [key.removeprefix(first) for key in found if key.startswith(first) and "confusion" not in key]:
-                if found.get(second + key):
-                    found[f"compare.{key}"] = found[first + key] / found[second + key]
-        return found
+            for key in [key.removeprefix(first) for key in figures if key.startswith(first) and "confusion" not in key]:
+                if figures.get(second + key):
+                    figures[f"compare.{key}"] = figures[first + key] / figures[second + key]
+        return figures
 
 
 def again(board: Board, seed: int) -> Board:
@@ -81,24 +81,24 @@ def _delays(scores: Scores, edges: list[int]) -> list[float]:
 
 def _means(prefix: str, runs: list[tuple[Scores, list[float]]]) -> dict[str, float]:
     scores = [entry for entry, _ in runs]
-    delays = np.array([found for _, found in runs])
+    delays = np.array([delay for _, delay in runs])
     correct = [entry.correct_fraction for entry in scores]
     missed = [sum(delay is None for delay in entry.delays) for entry in scores]
-    found = {
+    figures = {
         f"{prefix}.correct_fraction": float(np.mean(correct)),
         f"{prefix}.correct_fraction_std": float(np.std(correct)),
         f"{prefix}.false_switches": float(np.mean([entry.false_switches for entry in scores])),
         f"{prefix}.missed_steps": float(np.mean(missed)),
     }
     if delays.shape[1] > 1:
-        found[f"{prefix}.mean_delay_samples"] = float(delays[:, 1:].mean())
+        figures[f"{prefix}.mean_delay_samples"] = float(delays[:, 1:].mean())
     for step in range(delays.shape[1]):
-        found[f"{prefix}.delay_samples.{step + 1}"] = float(delays[:, step].mean())
-        found[f"{prefix}.missed.{step + 1}"] = float(np.mean([entry.delays[step] is None for entry in scores]))
+        figures[f"{prefix}.delay_samples.{step + 1}"] = float(delays[:, step].mean())
+        figures[f"{prefix}.missed.{step + 1}"] = float(np.mean([entry.delays[step] is None for entry in scores]))
     confusion = np.sum([entry.confusion for entry in scores], axis=0)
     names = scores[0].names
     for truth, row in zip(names, confusion, strict=True):
         if row.sum():
             for verdict, count in zip(names, row, strict=True):
-                found[f"{prefix}.confusion.{truth}.{verdict}"] = float(count / row.sum())
-    return found
+                figures[f"{prefix}.confusion.{truth}.{verdict}"] = float(count / row.sum())
+    return figures

@@ -60,11 +60,11 @@ class Persistency(Study):
             "all_tones": shared(tones),
             "square": [(4.0 * whole / math.pi / k, k * tones[0]) for k in range(1, 2 * HARMONICS, 2)],
         }
-        found = {}
+        results = {}
         for name, lines in inputs.items():
             verdict = excitation(gram_of_tones(lines, (gain, a1, a2), params.filter_pole))
-            found[f"persistency.{name}.smallest"] = verdict.smallest
-            found[f"persistency.{name}.relative"] = verdict.relative
+            results[f"persistency.{name}.smallest"] = verdict.smallest
+            results[f"persistency.{name}.relative"] = verdict.relative
             if math.isfinite(verdict.condition):
-                found[f"persistency.{name}.condition"] = verdict.condition
-        return found
+                results[f"persistency.{name}.condition"] = verdict.condition
+        return results

@@ -50,9 +50,9 @@ class PositiveReal(Study):
                 ("velocity", [1.0, 0.0], below),
                 ("with_velocity", [1.0, 0.9 * a1], below),
             ]
-        found = {}
+        results = {}
         for name, numerator, denominator in cases:
             verdict = positive_real(numerator, denominator)
-            found[f"spr.{name}"] = 2.0 if verdict.strictly_positive_real else 1.0 if verdict.positive_real else 0.0
-            found[f"spr.{name}_relative_degree"] = float(verdict.relative_degree)
-        return found
+            results[f"spr.{name}"] = 2.0 if verdict.strictly_positive_real else 1.0 if verdict.positive_real else 0.0
+            results[f"spr.{name}_relative_degree"] = float(verdict.relative_degree)
+        return results

@@ -19,9 +19,9 @@ STEPS = {
     "youngs_modulus_gpa": 1.0,
     "comb_bias_um": 0.1,
 }
-"""By how much each number is moved for the sensitivities."""
+"""Step of each number for the sensitivities."""
 SEEN_PCT = 0.01
-"""Least change that counts as a dependence."""
+"""Smallest change that counts as a dependence."""
 NAMES = {"mass": "mass_kg", "stiffness": "stiffness_n_m", "damping": "damping_ns_m", "force": "force"}
 
 
@@ -54,16 +54,16 @@ class ProcessSpread(Study):
             raise InputError("has no drawing to vary; choose lcr-350", "device.id")
         tolerances = Tolerances(**params.model_dump(exclude={"draws", "cut"}))
         spread = draw(geometry, tolerances, params.draws, board.spec.seed, params.cut)
-        found: dict[str, float] = {}
+        results: dict[str, float] = {}
         for name in spread.found:
-            found[f"spread.{name}.cv_pct"] = spread.variation_pct(name)
+            results[f"spread.{name}.cv_pct"] = spread.variation_pct(name)
         for share in (1, 50, 99):
-            found[f"spread.f0_hz.p{share:02d}"] = spread.percentile("f0_hz", share)
-        found["spread.correlation.stiffness_f0"] = spread.correlation("stiffness_n_m", "f0_hz")
-        found["spread.correlation.mass_force"] = spread.correlation("mass_kg", "force")
+            results[f"spread.f0_hz.p{share:02d}"] = spread.percentile("f0_hz", share)
+        results["spread.correlation.stiffness_f0"] = spread.correlation("stiffness_n_m", "f0_hz")
+        results["spread.correlation.mass_force"] = spread.correlation("mass_kg", "force")
         moved = {name: sensitivity(geometry, name, step) for name, step in STEPS.items()}
         for name, changes in moved.items():
-            found |= {f"spread.sensitivity.{name}.{key}_pct": value for key, value in changes.items()}
+            results |= {f"spread.sensitivity.{name}.{key}_pct": value for key, value in changes.items()}
         demanded = {
             (quantity, step)
             for step, numbers in CARRIERS.items()
@@ -71,7 +71,7 @@ class ProcessSpread(Study):
             if any(abs(moved[number][key]) > SEEN_PCT for number in numbers)
         }
         printed = {(quantity, step) for quantity, steps in PRINTED.items() for step in steps}
-        found["spread.dots_printed"] = float(len(printed))
-        found["spread.dots_missing"] = float(len(demanded - printed))
-        found["spread.dots_named"] = float(sum(len(steps) for steps in MISSING.values()))
-        return found
+        results["spread.dots_printed"] = float(len(printed))
+        results["spread.dots_missing"] = float(len(demanded - printed))
+        results["spread.dots_named"] = float(sum(len(steps) for steps in MISSING.values()))
+        return results

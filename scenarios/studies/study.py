@@ -1,4 +1,4 @@
-"""What a study is: parameters, and figures from the bench of a scenario."""
+"""Base of the studies: parameters, and figures from the bench of a scenario."""
 
 from __future__ import annotations
 

@@ -6,8 +6,8 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from core.block import BlockParams, parameter
+from scenarios.measure.sweep_sine import sweep_sine
 from scenarios.studies.study import Study
-from scenarios.sweep_sine import sweep_sine
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -36,7 +36,7 @@ class SweptSine(Study):
 
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
-        """Return what the sweep tells."""
+        """Return the figures of the sweep."""
         board.advance(1)  # events of the first sample take effect
-        found = asdict(sweep_sine(board, **params.model_dump()).found)
-        return {f"sweep.{name}": float(value) for name, value in found.items() if value is not None}
+        identified = asdict(sweep_sine(board, **params.model_dump()).found)
+        return {f"sweep.{name}": float(value) for name, value in identified.items() if value is not None}

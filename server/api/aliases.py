@@ -15,7 +15,7 @@ from core.diagnose.hypothesis import Hypothesis
 from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import SessionDep
-from server.api.diagnosers import found, hypotheses_of, tones_of
+from server.api.diagnosers import hypotheses_of, spec_and_section, tones_of
 from server.bench.session import Session
 
 router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosis"], route_class=StrictRoute)
@@ -34,7 +34,7 @@ class DriveTone(Body):
 
 
 class AliasSource(Body):
-    """Which hypotheses under which drive; those of the diagnoser under the drive of the bench unless given."""
+    """Hypotheses and a drive; those of the diagnoser and of the bench unless given."""
 
     hypotheses: list[Hypothesis] | None = Field(None, min_length=2, max_length=MOST_HYPOTHESES)
     tones: list[DriveTone] | None = Field(None, min_length=1, max_length=32)
@@ -58,7 +58,7 @@ class AliasSweep(BaseModel):
 
 
 class AliasReport(BaseModel):
-    """Where hypotheses lie apart and where they coincide, now and at other drive frequencies."""
+    """The hypotheses that lie apart and those that coincide, now and at other drive frequencies."""
 
     map: AliasMap
     sensor_noise_um: float
@@ -68,12 +68,12 @@ class AliasReport(BaseModel):
 
 @router.post("/aliases")
 async def get_aliases(session: SessionDep, name: Name, body: AliasSource) -> AliasReport:
-    """Say which hypotheses of a list the drive does not tell apart."""
+    """Report the hypotheses of a list that look alike under the drive."""
     return await asyncio.to_thread(_aliases, session, name, body)
 
 
 def _aliases(session: Session, name: str, body: AliasSource) -> AliasReport:
-    spec, section = found(session, name)
+    spec, section = spec_and_section(session, name)
     hypotheses = body.hypotheses or hypotheses_of(section)
     context = spec.context(spec.turns(section))
     tones = [(tone.frequency_hz, tone.amplitude_v) for tone in body.tones] if body.tones else tones_of(spec)
@@ -82,7 +82,7 @@ def _aliases(session: Session, name: str, body: AliasSource) -> AliasReport:
     nominal = context.device
     now = alias_map(hypotheses, nominal, tones, body.within_um)
     f0 = 1e3 * nominal.natural_frequency / (2.0 * math.pi)
-    # a constant has no place on an axis of octaves: the map is then drawn around the resonance
+    # An axis of octaves has no place for a constant, so the map is then drawn around the resonance.
     centre = math.sqrt(f0 * (tones[0][0] or f0))
     grid = np.geomspace(centre / SWEEP_SPAN, centre * SWEEP_SPAN, SWEEP_POINTS).tolist()
     closest = [alias_map(hypotheses, nominal, [(hz, tones[0][1])]).pairs[0] for hz in grid]

@@ -13,13 +13,14 @@ from server.api.bodies import StrictRoute
 from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.events import Event
+from server.bench.portrait import document_of
 from server.bench.status import Bench
 
 router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
 
 
 class NewBench(StrictBody):
-    """What to make a bench from."""
+    """The scenario of a new bench, and how it starts."""
 
     scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
@@ -56,14 +57,14 @@ class EventList(BaseModel):
 
 
 class Digest(BaseModel):
-    """What tells runs apart: SHA-256 over a fold of the outputs of each block at every tick."""
+    """The digest of a run, equal for equal runs: SHA-256 over a fold of the outputs of each block at every tick."""
 
     tick: int
     digest: str
 
 
 class ForkFrom(StrictBody):
-    """Where a fork begins."""
+    """The start of a fork."""
 
     snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment")
 
@@ -125,9 +126,12 @@ async def list_events(
 
 @router.get("/{bench_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
-    """Return what happened as a scenario in TOML; run headless it gives the same bits, whose digest it begins with."""
+    """Return what happened as a scenario in TOML.
+
+    It begins with the digest. Run headless, it gives the same bits.
+    """
     document, tick, digest = await service.engine.call(
-        lambda: (session.document(), session.board.tick, session.board.digest())
+        lambda: (document_of(session), session.board.tick, session.board.digest())
     )
     name = f'attachment; filename="{document["id"]}.toml"'
     text = f"# {tick} ticks, digest {digest}\n{Scenario.load(document).toml()}"

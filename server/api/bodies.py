@@ -1,4 +1,4 @@
-"""What all request bodies share: no unknown field, no silent conversion, no NaN."""
+"""Request bodies: all refuse unknown fields, silent conversions and NaN."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Body(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _whole_numbers(cls, values: Any) -> Any:
-        """Take 3.0 for 3 where a whole number is wanted: to JSON Schema they are the same."""
+        """Take 3.0 for 3 where a whole number is wanted: in JSON Schema they are the same."""
         if not isinstance(values, dict):
             return values
         whole = {name for name, field in cls.model_fields.items() if field.annotation in (int, int | None)}
@@ -35,7 +35,7 @@ class Body(BaseModel):
 def strict_json(text: str | bytes) -> Any:
     """Parse JSON as the standard has it: no NaN, no Infinity, no number that overflows, no double key, no half letter.
 
-    It is nested no deeper than any document, so that whatever is made of it can be copied and told back.
+    It is nested no deeper than any document, so that the server can copy it and quote it in a reply.
 
     Raises
     ------
@@ -59,11 +59,11 @@ def strict_json(text: str | bytes) -> Any:
         return table
 
     try:
-        found = json.loads(text, parse_constant=refuse, parse_float=number, object_pairs_hook=unique)
-        if depth(found) > DEEPEST:
+        document = json.loads(text, parse_constant=refuse, parse_float=number, object_pairs_hook=unique)
+        if depth(document) > DEEPEST:
             raise json.JSONDecodeError(TOO_DEEP, "", 0)
-        json.dumps(found, ensure_ascii=False).encode()
-        return found
+        json.dumps(document, ensure_ascii=False).encode()
+        return document
     except UnicodeDecodeError:
         raise json.JSONDecodeError("not UTF-8", "", 0) from None
     except UnicodeEncodeError:

@@ -1,4 +1,4 @@
-"""What there is: the blocks."""
+"""The catalogue of blocks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What routes ask for: the service, the bench in the path, room for one more command."""
+"""Dependencies of routes: the service, the bench in the path, the rate limit of commands."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SessionDep = Annotated[Session, Depends(get_session)]
 
 
 def get_caller(request: Request) -> str:
-    """Name the caller for the event log and the limits: an address, as there is one token."""
+    """Name the caller for the event log and the limits by address, because all callers share one token."""
     return f"api {request.client.host}" if request.client else "api"
 
 
@@ -43,13 +43,13 @@ CallerDep = Annotated[str, Depends(get_caller)]
 
 
 def check_rate(service: ServiceDep, caller: CallerDep) -> None:
-    """Refuse a caller who commands faster than anybody could mean to."""
+    """Refuse a caller whose commands exceed the rate limit."""
     if not service.commands.take(caller):
         raise rate_limited(service.settings)
 
 
 def rate_limited(settings: Settings) -> ApiError:
-    """Build the refusal of one command too many."""
+    """Build the refusal of a command beyond the rate limit."""
     rate, burst = settings.command_rate_per_s, settings.command_burst
     text = f"more than {rate:g} commands per second (burst {burst})"
     return ApiError(429, "rate_limited", text, hint="wait a second", headers={"Retry-After": "1"})

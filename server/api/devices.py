@@ -31,7 +31,7 @@ class DeviceCard(BaseModel):
 
 
 class Devices(BaseModel):
-    """Every device of the catalogue, and what can be chosen about a drawing."""
+    """Every device of the catalogue, and the choices of a drawing."""
 
     devices: list[DeviceCard]
     geometry: list[ParameterCard]
@@ -55,7 +55,7 @@ class Figure(BaseModel):
 
 
 class Evaluation(BaseModel):
-    """What a device would be."""
+    """The figures of a device, worked out before it is built."""
 
     title: str
     source: str
@@ -68,7 +68,7 @@ class Evaluation(BaseModel):
 
 
 class BodeOf(Design):
-    """Which Bode diagram."""
+    """A request for a Bode diagram."""
 
     start_hz: float = Field(200.0, gt=0, le=1e8)
     stop_hz: float = Field(20_000.0, gt=0, le=1e8)
@@ -91,18 +91,18 @@ class Bode(BaseModel):
     magnitude_db: Curve
     phase_deg: Curve
     static_gain_um_per_v: float
-    band: str = Field(description="What the band is")
+    band: str = Field(description="Meaning of the band")
 
 
 class SpreadOf(Design):
-    """Which devices to draw from the process."""
+    """A request for devices drawn from the process."""
 
     seed: int = Field(1, ge=0, le=2**53)
     draws: int = Field(2000, ge=2, le=20_000)
 
 
 class SpreadStatistics(BaseModel):
-    """How far one parameter lies apart."""
+    """The spread of one parameter."""
 
     variation_pct: float
     p01: float
@@ -140,7 +140,7 @@ def get_devices() -> Devices:
 def evaluate(body: Design) -> Evaluation:
     """Work out the figures of a device in its environment."""
     spec = designed(body.device, body.environment)
-    found, geometry = device_figures(spec), spec.device.geometry
+    figures, geometry = device_figures(spec), spec.device.geometry
     return Evaluation(
         title=spec.device.title,
         source=spec.device.source,
@@ -149,13 +149,13 @@ def evaluate(body: Design) -> Evaluation:
                 name=quantity.name,
                 label=quantity.label,
                 unit=quantity.unit,
-                value=found[quantity.name],
+                value=figures[quantity.name],
                 equation=equation_card(quantity.equation),
             )
             for quantity in QUANTITIES
-            if quantity.name in found
+            if quantity.name in figures
         ],
-        metrics=found,
+        metrics=figures,
         geometry=None if geometry is None else geometry.model_dump(),
         sensitivities={} if geometry is None else sensitivities(geometry),
     )
@@ -179,9 +179,9 @@ def bode(body: BodeOf) -> Bode:
 @router.post("/spread")
 def spread(body: SpreadOf) -> ProcessSpread:
     """Draw devices from the process; the same seed gives the same devices."""
-    found = process(designed(body.device, body.environment), body.draws, body.seed)
+    spread = process(designed(body.device, body.environment), body.draws, body.seed)
     return ProcessSpread(
         assumed=asdict(Tolerances()),
-        statistics={name: SpreadStatistics(**asdict(Statistics.of(found, name))) for name in found.found},
-        geometry={name: float(values[0]) for name, values in found.drawn.items()},
+        statistics={name: SpreadStatistics(**asdict(Statistics.of(spread, name))) for name in spread.found},
+        geometry={name: float(values[0]) for name, values in spread.drawn.items()},
     )

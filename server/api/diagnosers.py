@@ -1,4 +1,4 @@
-"""Diagnosers of a live bench: one sample explained, and what the drive cannot tell apart."""
+"""Diagnosers of a live bench: one sample explained, and the hypotheses that look alike under the drive."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from core.reference.waveform import Waveform
 from server.api.bodies import StrictRoute
 from server.api.deps import SessionDep
 from server.bench.session import Session
+from server.bench.tape import Tape
 
 router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"], route_class=StrictRoute)
 
@@ -27,8 +28,8 @@ def explain_sample(
     name: str,
     tick: Annotated[int | None, Query(ge=0, le=2**53, description="The sample; the last one unless given")] = None,
 ) -> Account:
-    """Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior."""
-    spec, section = found(session, name)
+    """Work out how a sample changed every hypothesis: prior, residual, likelihood, posterior."""
+    spec, section = spec_and_section(session, name)
     signals = signals_of(section)
     columns = session.indices([f"{name}.{signal}" for signal in signals])
     history = session.history
@@ -41,12 +42,12 @@ def explain_sample(
     turns = spec.turns(section)
     at = asked - asked % turns
 
-    def read(one: int) -> dict[str, float]:
-        if one < first:
+    def read(sample: int) -> dict[str, float]:
+        if sample < first:
             raise InputError("is the first one kept; explaining it takes the one before", "tick")
-        values = history.read(columns, one, one + 1)[:, 0]
+        values = history.read(columns, sample, sample + 1)[:, 0]
         if not np.all(np.isfinite(values)):
-            raise InputError(f"what {name} thought at tick {one} was not kept", "tick")
+            raise InputError(f"what {name} thought at tick {sample} was not kept", "tick")
         return dict(zip(signals, map(float, values), strict=True))
 
     return explain(spec, section, at, read(at - turns) if at > 0 else None, read(at))
@@ -60,8 +61,8 @@ def map_aliases(
         float | None, Query(gt=0, le=1e6, description="One tone as large as the reference; those it has unless given")
     ] = None,
 ) -> AliasMap:
-    """Map the response of every hypothesis to the tones of the drive, and name what has the same."""
-    spec, section = found(session, name)
+    """Map the response of every hypothesis to the tones of the drive, and name those with the same response."""
+    spec, section = spec_and_section(session, name)
     context = spec.context()
     tones = [(frequency_hz, volts_of(spec))] if frequency_hz else tones_of(spec)
     if not tones:
@@ -69,9 +70,10 @@ def map_aliases(
     return alias_map(hypotheses_of(section), context.device, tones, hidden_um(context.sensor_noise_um))
 
 
-def found(session: Session, name: str) -> tuple[Spec, Section]:
+def spec_and_section(session: Session, name: str) -> tuple[Spec, Section]:
     """Return the bench a diagnoser is on, the first or a twin, and its section."""
-    board = cast(Ensemble, session.board)
+    source = session.board
+    board = cast(Ensemble, source.recorded_board if isinstance(source, Tape) else source)
     if name not in board.diagnosers:
         raise unknown("diagnoser", name, board.diagnosers, "name")
     twin = name.rpartition(":")[0]

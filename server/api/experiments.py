@@ -16,9 +16,9 @@ from core.board.flops import Budget, budget
 from core.device.frequency import response
 from core.device.identification import Identified
 from core.units import UM_PER_M
-from scenarios.plant_cost import plant_costs
-from scenarios.sweep_sine import sweep_sine
-from scenarios.unstable_region import unstable_region
+from scenarios.measure.plant_cost import plant_costs
+from scenarios.measure.sweep_sine import sweep_sine
+from scenarios.measure.unstable_region import unstable_region
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep, SessionDep
 from server.bench.session import Session
@@ -33,7 +33,7 @@ T = TypeVar("T")
 
 
 class SweptSine(Body):
-    """How to sweep."""
+    """The settings of a swept sine."""
 
     amplitude_v: float = Field(2.0, ge=1e-6, le=1000)
     points: int = Field(31, ge=4, le=200, description="Tones of each of the two passes")
@@ -63,7 +63,7 @@ class FittedCurve(BaseModel):
 
 
 class Identification(BaseModel):
-    """What a swept sine tells of a bench as it is now."""
+    """The device that a swept sine identifies on a bench as it is now."""
 
     tick: int
     found: Identified
@@ -73,7 +73,7 @@ class Identification(BaseModel):
 
 
 class FoldPoint(BaseModel):
-    """Where the rest under a slowly rising drive ends: travel, voltage, place of the worst corner sideways."""
+    """The last rest position under a slowly rising drive: travel, voltage, place of the worst corner sideways."""
 
     x_um: float
     volts: float
@@ -88,7 +88,7 @@ class SafeBoundary(BaseModel):
 
 
 class UnstableRegionMap(BaseModel):
-    """Where a bench as it is now pulls in; empty where its plant cannot."""
+    """The region where a bench as it is now pulls in; empty if its plant cannot."""
 
     tick: int
     plant: str
@@ -129,7 +129,7 @@ async def region(
 
 @router.get("/plants", dependencies=[RateLimited])
 async def plants(session: SessionDep, service: ServiceDep) -> MeasuredPlants:
-    """Measure what a tick costs with each plant."""
+    """Measure the cost of a tick with each plant."""
     costs = await _on_copy(session, service, plant_costs)
     return MeasuredPlants(plants=[MeasuredPlant(**asdict(cost)) for cost in costs], tick_ns=1e6 * session.dt_ms)
 
@@ -138,17 +138,17 @@ async def plants(session: SessionDep, service: ServiceDep) -> MeasuredPlants:
 async def flops(
     session: SessionDep,
     service: ServiceDep,
-    board_mflops: Annotated[float, Query(gt=0, le=1e9, description="What the board does per second")] = 50.0,
-    function_flops: Annotated[float, Query(ge=0, le=1e4, description="What an exponential is worth")] = 20.0,
+    board_mflops: Annotated[float, Query(gt=0, le=1e9, description="Millions of operations per second")] = 50.0,
+    function_flops: Annotated[float, Query(ge=0, le=1e4, description="Operations for one exponential")] = 20.0,
 ) -> Budget:
-    """Count the operations of every diagnoser as it is now, and hold them against a board of some speed."""
+    """Count the operations of every diagnoser as it is now, and compare them with a board of some speed."""
     return await _on_copy(
         session, service, lambda kept: budget(Board.restore(kept), board_mflops * 1e6, function_flops)
     )
 
 
 async def _on_copy(session: Session, service: Service, work: Callable[[Checkpoint], T]) -> T:
-    """Do something to a copy of a bench, one at a time, beside the loop and the engine."""
+    """Run one experiment at a time on a copy of a bench, in a thread beside the event loop and the engine."""
     async with service.experiment_turn:
         kept = await service.engine.call(lambda: session.board.checkpoint())
         return await asyncio.to_thread(work, kept)
@@ -159,14 +159,14 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
     sweep = sweep_sine(board, **body.model_dump(), most_ticks=MOST_TICKS)
     force = board.spec.device.signed_force_n_per_v
     sign = 1.0 if force > 0.0 else -1.0
-    found, nominal = sweep.found, board.spec.device.metrics()
+    identified, nominal = sweep.found, board.spec.device.metrics()
     grid = np.geomspace(sweep.tones[0].frequency_hz, sweep.tones[-1].frequency_hz, CURVE_POINTS)
     unit = abs(force) * UM_PER_M
-    own = response(found.mass_kg, found.damping_ns_m, found.stiffness_n_m, grid) * unit
+    response_found = response(identified.mass_kg, identified.damping_ns_m, identified.stiffness_n_m, grid) * unit
     believed = response(nominal["mass_kg"], nominal["damping_ns_m"], nominal["stiffness_n_m"], grid) * unit
     return Identification(
         tick=kept.tick,
-        found=found,
+        found=identified,
         nominal=nominal,
         tones=[
             MeasuredTone(
@@ -179,8 +179,8 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
         ],
         curve=FittedCurve(
             frequency_hz=grid.tolist(),
-            found_um_per_v=np.abs(own).tolist(),
-            found_deg=np.degrees(np.angle(own)).tolist(),
+            found_um_per_v=np.abs(response_found).tolist(),
+            found_deg=np.degrees(np.angle(response_found)).tolist(),
             nominal_um_per_v=np.abs(believed).tolist(),
             nominal_deg=np.degrees(np.angle(believed)).tolist(),
         ),
@@ -188,12 +188,12 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
 
 
 def _map(kept: Checkpoint, drive_v: float) -> UnstableRegionMap:
-    found = unstable_region(Board.restore(kept), drive_v)
-    edge = found.boundary
+    region = unstable_region(Board.restore(kept), drive_v)
+    edge = region.boundary
     return UnstableRegionMap(
         tick=kept.tick,
-        plant=found.plant,
+        plant=region.plant,
         drive_v=drive_v,
-        folds=[FoldPoint(**asdict(fold)) for fold in found.folds],
+        folds=[FoldPoint(**asdict(fold)) for fold in region.folds],
         boundary=edge and SafeBoundary(x_um=edge.x_um.tolist(), speed_um_ms=edge.speed_um_ms.tolist()),
     )

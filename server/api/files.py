@@ -1,4 +1,4 @@
-"""Traces as downloads: made in a file without a name, one at a time, gone when sent."""
+"""Traces as downloads: written to an unnamed file, one at a time, deleted when sent."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ async def table_response(service: Service, table: pa.Table, name: str, kind: For
     """Send a table in the format asked for."""
     try:
         file = tempfile.TemporaryFile(prefix="combbench-")
-    except FileNotFoundError as error:  # says Python of folders without any room
+    except FileNotFoundError as error:  # Python raises this if no temporary folder has room
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)) from error
     try:
         async with service.file_turn:
@@ -69,7 +69,7 @@ def get_cut(
     end_tick: Annotated[int | None, Query(ge=-(2**53), le=2**53, description="The one behind the last")] = None,
     every: Annotated[int, Query(ge=1, le=1_000_000, description="Every so many ticks")] = 1,
 ) -> Cut:
-    """Read which part of a trace is wanted."""
+    """Read from the query which part of a trace is wanted."""
     names = tuple(name.strip() for name in signals.split(",") if name.strip())
     return Cut(tuple(dict.fromkeys(names)), start_tick, end_tick, every)
 

@@ -1,4 +1,4 @@
-"""The gallery: every library scenario with its claim beside what its run gave."""
+"""The gallery: every library scenario with its claim and the result of its run."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ router = APIRouter(prefix="/gallery", tags=["gallery"], route_class=StrictRoute)
 
 
 class Expected(BaseModel):
-    """An expectation, and what was measured."""
+    """An expectation, and the measured value."""
 
     metric: str
     published: str
@@ -57,14 +57,14 @@ class Gallery(BaseModel):
 
 
 class Chosen(Body):
-    """Which scenarios to run."""
+    """The scenarios to run."""
 
     only: str = Field("*", max_length=200, description="Ids that match, such as ch5-*")
 
 
 @router.get("")
 async def get_gallery(service: ServiceDep) -> Gallery:
-    """Show every library scenario: claim, expectations, and what its run gave."""
+    """Show every library scenario: claim, expectations, and the result of its run."""
     ids = await asyncio.to_thread(_run_ids)
     runs = await service.jobs.some(list(ids.values()))
     return Gallery(cards=[_card(scenario, runs.get(ids[scenario.id])) for scenario in library()])
@@ -72,7 +72,7 @@ async def get_gallery(service: ServiceDep) -> Gallery:
 
 @router.post("/run", status_code=202, dependencies=[RateLimited])
 async def run_gallery(body: Chosen, service: ServiceDep) -> Gallery:
-    """Run the library, or a part of it; what has been run with this version is not run again."""
+    """Run the library, or a part of it; a scenario that has been run with this version is not run again."""
     chosen = [scenario for scenario in library() if fnmatch.fnmatchcase(scenario.id, body.only)]
     if not chosen:
         raise InputError(f"no scenario matches {body.only!r}", "only")
@@ -89,7 +89,7 @@ def _run_ids() -> dict[str, str]:
 
 
 def _card(scenario: Scenario, run: Run | None) -> GalleryCard:
-    """Put claim and run side by side."""
+    """Return the card of a scenario and its run."""
     head = scenario.head
     summary = (run.summary if run is not None else None) or {}
     measured = summary.get("expectations") or [{}] * len(head.expect)
@@ -114,9 +114,9 @@ def _card(scenario: Scenario, run: Run | None) -> GalleryCard:
                 expected=entry.text(),
                 verdict=entry.verdict or head.verdict,
                 note=entry.note,
-                measured=found.get("measured"),
-                ok=found.get("ok"),
+                measured=measurement.get("measured"),
+                ok=measurement.get("ok"),
             )
-            for entry, found in zip(head.expect, measured, strict=True)
+            for entry, measurement in zip(head.expect, measured, strict=True)
         ],
     )

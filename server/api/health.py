@@ -1,4 +1,4 @@
-"""Health: is the process alive, can it serve."""
+"""Health: whether the process is alive and whether it can serve."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ async def live() -> Health:
 
 @router.get("/ready", responses={503: {"model": Health}})
 async def ready(service: ServiceDep, response: Response) -> Health:
-    """Answer 200 when the engine turns, the database can be written and the kernels are loaded."""
+    """Answer 200 when the engine turns, the database can be written and the kernels of a bench are loaded."""
     checks = {
         "started": service.is_ready,
         "engine": service.engine.is_alive,
         "database": await service.database.is_writable(),
-        "kernels": service.has_kernels,
+        "kernels": service.kernels.are_loaded,
     }
     ok = all(checks.values())
     response.status_code = 200 if ok else 503

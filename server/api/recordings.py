@@ -21,14 +21,14 @@ router = APIRouter(tags=["recordings"], route_class=StrictRoute)
 
 
 class Replay(Body):
-    """How to play a recording."""
+    """The speed of a replay."""
 
     speed: float = Field(1.0, ge=0.01, le=10.0, description="Multiple of the pace it was recorded at")
     paused: bool = False
 
 
 class CompareWith(Body):
-    """What to compare a recording with."""
+    """The recording to compare with, and the tolerances."""
 
     other: str = Field(description="Id of another recording")
     absolute: float = Field(0.0, ge=0.0, description="Tolerance of every signal, in its unit")
@@ -53,7 +53,7 @@ async def start_recording(
 
 @router.post("/benches/{bench_id}/recordings/{recording_id}/stop", dependencies=[RateLimited])
 async def stop_recording(recording_id: str, session: SessionDep, service: ServiceDep) -> Recording:
-    """End a recording; answers when its file is whole."""
+    """End a recording; the answer comes when its file is whole."""
     return await service.benches.stop_recording(session, recording_id)
 
 

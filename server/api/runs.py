@@ -23,7 +23,7 @@ SVG = "image/svg+xml"
 
 
 class NewRun(Body):
-    """What to run."""
+    """A scenario to run."""
 
     scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
@@ -46,7 +46,7 @@ class RunList(BaseModel):
     responses={200: {"model": Run, "description": "The same run is there already"}},
 )
 async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Run:
-    """Queue a headless run; it never disturbs the live benches."""
+    """Queue a headless run; it does not disturb the live benches."""
     scenario, _ = await asyncio.to_thread(prepare, body.scenario, body.set, body.seed)
     seeds = [scenario.spec.seed if body.seed is None else body.seed]
     if body.seeds is not None:

@@ -7,7 +7,7 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from scenarios.library import get, library
+from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
 from server.bench.benches import prepare
@@ -72,7 +72,7 @@ def list_scenarios() -> ScenarioList:
 @router.get("/{scenario_id}")
 def get_scenario(scenario_id: str) -> ScenarioText:
     """Return a scenario of the library as a document and as TOML."""
-    if scenario_id not in {scenario.id for scenario in library()}:
+    if scenario_id not in ids():
         raise not_found("scenario", scenario_id, "list them at /api/v1/scenarios")
     scenario = get(scenario_id)
     return ScenarioText(document=scenario.document, toml=scenario.toml())
@@ -80,7 +80,7 @@ def get_scenario(scenario_id: str) -> ScenarioText:
 
 @router.post("/check")
 def check_scenario(body: ScenarioSource) -> ScenarioText:
-    """Check a scenario without running it; 422 says what is wrong with it."""
+    """Check a scenario without running it; the answer 422 says what is wrong with it."""
     scenario, _ = prepare(body.scenario, {}, None)
     try:
         return ScenarioText(document=scenario.document, toml=scenario.toml())

@@ -13,7 +13,7 @@ router = APIRouter(prefix="/benches/{bench_id}/snapshots", tags=["snapshots"], r
 
 
 class NewSnapshot(Body):
-    """What to call this moment."""
+    """The name of this moment."""
 
     name: str = Field("", max_length=100)
 

@@ -44,7 +44,7 @@ log = logging.getLogger(__name__)
 CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
 
 ACK = re.compile(rb'\{"type": ?"ack", ?"frame": ?(\d{1,10})\}')
-"""As pages write it; written otherwise it is read like any other message."""
+"""An acknowledgement as pages write it; any other spelling is parsed like other messages."""
 
 FLOOD_RATE, FLOOD_BURST = 500.0, 2000
 """Messages of any kind; sixty frames a second need sixty acknowledgements."""
@@ -84,15 +84,15 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         hub.remove(client)
         for task in tasks:
             task.cancel()
-        for found in await asyncio.gather(*tasks, return_exceptions=True):
-            if isinstance(found, Exception):
-                log.error("a stream of bench %s broke off", bench_id, exc_info=found)
+        for outcome in await asyncio.gather(*tasks, return_exceptions=True):
+            if isinstance(outcome, Exception):
+                log.error("a stream of bench %s broke off", bench_id, exc_info=outcome)
                 client.close(CLOSE_FAILED, "the server failed on this stream; its log says why")
         await _close(socket, client)
 
 
 async def _close(socket: WebSocket, client: Client) -> None:
-    """Close with the reason; cut the line of one who does not even take that."""
+    """Close with the reason; cut the line if the client does not take the close."""
     code, reason = client.closing or (1000, "")
     try:
         async with asyncio.timeout(1.0):
@@ -104,7 +104,7 @@ async def _close(socket: WebSocket, client: Client) -> None:
 
 
 class Conversation:
-    """The listening half of a stream: every message is answered, none can harm.
+    """The receiving half of a stream: it answers every message, and no message can harm the server.
 
     Parameters
     ----------
@@ -122,16 +122,16 @@ class Conversation:
         self._subscribed: dict[int, int] = {}
 
     def hear(self, text: bytes) -> bool:
-        """Take an acknowledgement as it comes: there are as many of them as frames, and nothing waits for them."""
-        found = ACK.fullmatch(text)
-        if found is None or int(found[1]) >= 2**32:
+        """Take an acknowledgement at once: there are as many of them as frames, and no answer is needed."""
+        acknowledged = ACK.fullmatch(text)
+        if acknowledged is None or int(acknowledged[1]) >= 2**32:
             return False
         if self._is_heard():
-            self._client.acknowledge(int(found[1]))
+            self._client.acknowledge(int(acknowledged[1]))
         return True
 
     async def run(self, socket: WebSocket) -> None:
-        """Listen until the other side goes, or talks too much."""
+        """Read messages until the client leaves or sends too many."""
         while True:
             message = await socket.receive()
             if message["type"] == "websocket.disconnect" or not self._is_heard():
@@ -139,7 +139,7 @@ class Conversation:
             await self._read(message.get("text"))
 
     def _is_heard(self) -> bool:
-        """Count a message; close the stream of somebody who talks too much."""
+        """Count a message; close the stream of a client that sends too many."""
         if self._messages.take():
             return True
         if self._client.closing is None:
@@ -148,7 +148,7 @@ class Conversation:
         return False
 
     async def _read(self, text: str | None) -> None:
-        """Parse one message and do what it says, or say in one line why not."""
+        """Parse one message and carry it out, or answer in one line why not."""
         document: Any = None
         try:
             if text is None:
@@ -169,7 +169,7 @@ class Conversation:
             self._refuse(document, ErrorBody(code="internal", message=text))
 
     async def _do(self, message: BaseModel) -> None:
-        """Do what a valid message says."""
+        """Carry out a valid message."""
         client = self._client
         if isinstance(message, Ack):
             client.acknowledge(message.frame)
@@ -190,18 +190,18 @@ class Conversation:
             client.resume(message.after)
 
     async def _command(self, message: CommandMessage) -> None:
-        """Carry out a command and say at which tick; the page is listened to while it steps."""
+        """Carry out a command and reply with its tick; further messages are read while a step runs."""
         if not self._commands.take():
             raise rate_limited(self._service.settings)
 
         def done(event: Event) -> None:
             self._client.answer(Reply(id=message.id, ok=True, tick=event.tick))
 
-        found = await self._service.benches.begin(self._client.session, message.command, self._client.name)
-        if isinstance(found, Event):
-            done(found)
+        outcome = await self._service.benches.begin(self._client.session, message.command, self._client.name)
+        if isinstance(outcome, Event):
+            done(outcome)
         else:
-            asyncio.wrap_future(found).add_done_callback(lambda step: done(step.result()))
+            asyncio.wrap_future(outcome).add_done_callback(lambda step: done(step.result()))
 
     def _subscribe(self, message: Subscribe) -> None:
         """Show signals in a panel."""
@@ -225,7 +225,7 @@ class Conversation:
         client.offer(frame=True)
 
     def _refuse(self, document: Any, error: ErrorBody) -> None:
-        """Answer a command by its id, anything else by an error."""
+        """Answer a command by a reply with its id, any other message by an error."""
         is_command = isinstance(document, dict) and document.get("type") == "command"
         command_id = document.get("id") if is_command else None
         if isinstance(command_id, str) and len(command_id) <= 64:
@@ -235,5 +235,5 @@ class Conversation:
 
 
 def _line(error: ValidationError) -> ErrorBody:
-    """Say what is wrong with a message; pydantic puts its type into the place, people do not."""
-    return clear_line([{**one, "loc": one["loc"][1:]} for one in error.errors(include_url=False)])
+    """Say what is wrong with a message; the type of the message, which pydantic adds to the place, is left out."""
+    return clear_line([{**complaint, "loc": complaint["loc"][1:]} for complaint in error.errors(include_url=False)])

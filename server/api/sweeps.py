@@ -9,8 +9,8 @@ from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from core.nesting import read_toml
-from scenarios.script import campaign_script
-from scenarios.tally import PointTally
+from scenarios.campaign.tally import PointTally
+from scenarios.report.script import campaign_script
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, table_response
@@ -23,7 +23,7 @@ router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=StrictRoute)
 
 
 class NewSweep(Body):
-    """What to run."""
+    """A campaign to run."""
 
     sweep: str | dict[str, Any] = Field(description="Campaign as TOML text or as a document")
 
@@ -48,13 +48,13 @@ class SweepPoints(BaseModel):
     responses={200: {"model": SweepRun, "description": "The same campaign is there already"}},
 )
 async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -> SweepRun:
-    """Start a campaign, or go on with one that was stopped; asked twice, the same one answers."""
+    """Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one."""
     document = body.sweep if isinstance(body.sweep, dict) else await asyncio.to_thread(read_toml, body.sweep, "sweep")
     await service.keeping.room()
-    found, is_new = await service.sweeps.start(document)
+    sweep, is_new = await service.sweeps.start(document)
     response.status_code = 202 if is_new else 200
-    response.headers["Location"] = f"/api/v1/sweeps/{found.id}"
-    return found
+    response.headers["Location"] = f"/api/v1/sweeps/{sweep.id}"
+    return sweep
 
 
 @router.get("")
@@ -71,13 +71,13 @@ async def get_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
 
 @router.delete("/{sweep_id}", dependencies=[RateLimited])
 async def cancel_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
-    """Stop a campaign; what is done stays."""
+    """Stop a campaign; the runs that are done stay."""
     return await service.sweeps.cancel(sweep_id)
 
 
 @router.get("/{sweep_id}/points", response_model=SweepPoints)
 async def get_sweep_points(sweep_id: str, service: ServiceDep) -> Response:
-    """Return figures, confusion, delays and receiver operating characteristics, of what is done so far."""
+    """Return figures, confusion, delays and receiver operating characteristics of the runs done so far."""
     points = await service.sweeps.read(sweep_id, apart.points)
     sweep = (await service.sweeps.get(sweep_id)).model_dump_json().encode()
     return Response(b'{"sweep":%b,"points":%b}' % (sweep, points), media_type="application/json")

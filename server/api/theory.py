@@ -1,4 +1,4 @@
-"""Theory: what can be said of a system before anything is run."""
+"""Theory: properties of a system that need no run."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class ExcitationReport(BaseModel):
 
 
 class MapSource(Body):
-    """Which rule, on which plant kv/(b2 s^2 + b1 s + 1), and the axes of the map."""
+    """A rule, a plant kv/(b2 s^2 + b1 s + 1), and the axes of the map."""
 
     rule: Literal["mit", "parks", "lyapunov", "dressler", "price", "monopoli"] = "mit"
     b1: float = Field(0.2, gt=0, le=100)
@@ -158,13 +158,13 @@ def judge_positive_real(body: TransferFunctionSource) -> PositiveRealReport:
 @router.post("/positive-definite")
 def judge_positive_definite(body: MatrixSource) -> DefinitenessReport:
     """Judge a matrix."""
-    found = definiteness(body.matrix)
+    verdict = definiteness(body.matrix)
     return DefinitenessReport(
-        positive_definite=found.positive_definite,
-        semidefinite=found.semidefinite,
-        symmetric=found.symmetric,
-        eigenvalues=list(found.eigenvalues),
-        minors=list(found.minors),
+        positive_definite=verdict.positive_definite,
+        semidefinite=verdict.semidefinite,
+        symmetric=verdict.symmetric,
+        eigenvalues=list(verdict.eigenvalues),
+        minors=list(verdict.minors),
     )
 
 
@@ -174,19 +174,19 @@ def judge_persistency(body: ExcitationSource) -> ExcitationReport:
     if len({tone.frequency for tone in body.tones}) < len(body.tones):
         raise InputError("two tones have the same frequency", "tones")
     lines = [(tone.amplitude, tone.frequency) for tone in body.tones]
-    found = excitation(gram_of_tones(lines, (body.gain, body.a1, body.a2), body.filter_pole))
+    judged = excitation(gram_of_tones(lines, (body.gain, body.a1, body.a2), body.filter_pole))
     return ExcitationReport(
-        eigenvalues=[float(value) for value in found.eigenvalues],
-        smallest=found.smallest,
-        relative=found.relative,
-        condition=_finite(found.condition),
-        exciting=found.relative > 0.0,
+        eigenvalues=[float(value) for value in judged.eigenvalues],
+        smallest=judged.smallest,
+        relative=judged.relative,
+        condition=_finite(judged.condition),
+        exciting=judged.relative > 0.0,
     )
 
 
 @router.post("/aliases")
 def map_aliases(body: HypothesesSource) -> AliasMap:
-    """Map the responses of hypotheses to tones, and name what has the same."""
+    """Map the responses of hypotheses to tones, and name those with the same response."""
     if len({item.name for item in body.hypotheses}) < len(body.hypotheses):
         raise InputError("names must differ", "hypotheses")
     device = designed(body.device, {}).device.oscillator()
@@ -198,7 +198,7 @@ def map_aliases(body: HypothesesSource) -> AliasMap:
 
 @router.post("/instability-map")
 async def map_instability(body: MapSource) -> InstabilityMap:
-    """Map where a rule of appendix B is unstable under a sine."""
+    """Map the region where a rule of appendix B is unstable under a sine."""
     if body.lowest_frequency >= body.highest_frequency:
         raise InputError("must be below highest_frequency", "lowest_frequency")
     if body.frequencies * body.gains > MOST_CELLS:

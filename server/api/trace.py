@@ -88,7 +88,7 @@ async def get_trace(
 def _table(session: Session, names: list[str], indices: list[int], start: int, end: int) -> object:
     """Read every sample of a span."""
     samples = session.history.read(indices, start, end)
-    # What was overwritten while it was read is missing at the old end.
+    # Ticks that the bench overwrote during the read are missing at the old end.
     first = end - samples.shape[1]
     units = {session.signals[index].name: session.signals[index].unit for index in indices}
     about = {"version": VERSION, "scenario": session.scenario.document, "bench": session.id}

@@ -1,4 +1,4 @@
-"""All live benches: made, found, copied, closed."""
+"""The registry of live benches: it makes, finds, copies and closes them."""
 
 from __future__ import annotations
 
@@ -24,11 +24,12 @@ from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.portrait import design_of
+from server.bench.portrait import design_of, document_of
 from server.bench.recorder import CLOSED, WANTED, Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
 from server.bench.tape import REFUSAL, Tape
+from server.bench.tick_source import TickSource
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
@@ -37,11 +38,11 @@ from server.store.traces import schema_of
 from server.version import VERSION
 
 MOST_LAYOUT = 200_000
-"""Characters of a layout as JSON: many times what the page writes."""
+"""Most characters of a layout as JSON; the page writes far fewer."""
 
 
 class Wanted(BaseModel):
-    """What to record: from now, or from when a condition holds, with some of the past."""
+    """A recording to make: from now or from a condition on, with some of the past."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
@@ -71,13 +72,13 @@ class Benches:
     Parameters
     ----------
     engine : Engine
-        Advances them.
+        Advances the benches.
     recordings : Recordings
-        Keeps what they record.
+        Keeps the recordings of the benches.
     settings : Settings
         Limits.
     metrics : Metrics
-        Where they are counted.
+        Where benches and commands are counted.
     """
 
     def __init__(self, engine: Engine, recordings: Recordings, settings: Settings, metrics: Metrics) -> None:
@@ -114,7 +115,7 @@ class Benches:
         *,
         own_scale: bool = False,
     ) -> Session:
-        """Make a bench from a library id, a TOML text or a document; at the pace of its device if that is wanted.
+        """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
 
         Raises
         ------
@@ -213,13 +214,13 @@ class Benches:
         Raises
         ------
         InputError
-            If it cannot be; nothing has changed then.
+            If the command cannot be carried out; nothing has changed then.
         """
-        found = await self.begin(session, command, actor)
-        return found if isinstance(found, Event) else await asyncio.wrap_future(found)
+        outcome = await self.begin(session, command, actor)
+        return outcome if isinstance(outcome, Event) else await asyncio.wrap_future(outcome)
 
     async def begin(self, session: Session, command: Any, actor: str) -> Event | Future[Event]:
-        """Carry out a command at the next tick edge; what is returned for a step has its event when it has ended."""
+        """Carry out a command at the next tick edge; for a step, return a future that holds its event at its end."""
         kind = command.kind
         event: Event | Future[Event]
         try:
@@ -248,16 +249,16 @@ class Benches:
         session : Session
             The bench.
         wanted : Wanted
-            What to record.
+            The recording to make.
         actor : str
-            Who asks.
+            The person or program that asks.
         room_bytes : int
             How large the recording may become.
         """
         if len(session.recordings) >= 2:
             raise ApiError(409, "conflict", "two recordings of this bench are under way already")
         condition = parse_condition(wanted.when, session.column_of) if wanted.when is not None else None
-        document = await self._engine.call(session.document)
+        document = await self._engine.call(document_of, session)
         file_says = {
             "version": VERSION,
             "scenario": document,
@@ -315,13 +316,13 @@ class Benches:
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
 
-    def _kept(self, board: Board | Tape) -> int:
+    def _kept(self, board: TickSource) -> int:
         """Return for how many ticks the signals of a board are kept."""
         affordable = History.ticks_within(self._settings.history_mb, board.signals.outputs, len(board.signals.taps))
         return min(self._settings.history_ticks, affordable)
 
     def _check_room(self) -> None:
-        """Refuse one bench too many."""
+        """Refuse a new bench if the limit is reached."""
         if len(self) + self._coming >= self._settings.max_benches:
             raise ApiError(
                 409,

@@ -1,4 +1,4 @@
-"""Commands to a bench: those of the board, and those that run it."""
+"""Commands to a bench: commands of the board, and commands that run the bench."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ DEFAULT_SCALE = 0.002
 MIN_SCALE, MAX_SCALE = 1e-6, 1.0
 
 MAX_STEP = 10_000
+MAX_PENDING = 100
+"""Commands that may wait for their moment."""
 
 
 class RunCommand(BaseModel):
@@ -116,4 +118,4 @@ Command = Annotated[
     Start | Pause | Step | StepPeriod | Reset | TimeScale | Seek | Loop | Inject | Heal | Set | Switch | ResetTrip,
     BeforeValidator(parse),
 ]
-"""In a model or a route: parsed by `parse`, described by the union."""
+"""For models and routes: `parse` reads it, the union describes it."""

@@ -1,9 +1,9 @@
-"""The engine: one thread that owns time, with one worker for each processor to advance benches side by side.
+"""The engine: one thread that keeps time, with one worker for each processor to advance benches side by side.
 
-The event loop owns the conversation, the engine owns time: a busy loop or a slow client delays frames,
-never a board. Whatever must happen to a board (a command, a snapshot, a new bench) is a job, run between two
-slices; the loop awaits its result. The compiled ticks run without the interpreter's lock, so benches do not wait for
-each other; none is advanced by two threads at a time.
+The event loop serves clients; the engine thread advances boards. A busy loop or a slow client delays frames but no
+board. A command, a snapshot and a new bench are jobs: the engine runs them between two slices, and the loop awaits
+their results. The compiled ticks run without the interpreter's lock, so benches do not wait for each other. One thread
+at a time advances a bench.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ PERIOD_S = 1.0 / 120.0
 """Two rounds per screen frame."""
 
 LATE_S, LATE_AGAIN_S = 0.1, 60.0
-"""A round this late is logged, and then no other for a while: the histogram has them all."""
+"""A round this late is logged, and then no other one for a while. The histogram counts all of them."""
 
 SPARE_S = 0.001
-"""Left of every round for the rest of the process when a bench runs as fast as possible."""
+"""Part of every round left to the rest of the process when a bench runs as fast as possible."""
 
 
 PROCESSORS = os.cpu_count() or 1
@@ -39,7 +39,7 @@ PROCESSORS = os.cpu_count() or 1
 
 
 class Workload(Protocol):
-    """What the engine needs of a live bench."""
+    """The part of a live bench that the engine uses."""
 
     id: str
 
@@ -48,7 +48,7 @@ class Workload(Protocol):
         """Whether it wants to advance."""
 
     def target(self, now: float) -> int | None:
-        """Return the tick to reach in this round; none: no limit."""
+        """Return the tick to reach in this round; none means no limit."""
 
     def slice(self, target: int | None) -> bool:
         """Advance by one slice of at most 5 ms; true while the target is not reached."""
@@ -113,7 +113,7 @@ class Engine:
         Raises
         ------
         Exception
-            Whatever the function raises.
+            The error that the function raises.
         """
         return await asyncio.wrap_future(self.submit(function, *arguments))
 
@@ -137,15 +137,15 @@ class Engine:
         return future
 
     def add(self, workload: Workload) -> None:
-        """Take a bench in (a job)."""
+        """Add a bench (a job)."""
         self._work[workload.id] = workload
 
     def remove(self, workload_id: str) -> None:
-        """Let a bench go (a job)."""
+        """Remove a bench (a job)."""
         self._work.pop(workload_id, None)
 
     def _run(self) -> None:
-        """Wait for a deadline or a job, do it, again."""
+        """Wait for a deadline or a job, serve it, and repeat."""
         deadline = self.clock()
         while True:
             running = any(work.is_running for work in self._work.values())
@@ -189,7 +189,7 @@ class Engine:
         return done
 
     def _round(self, now: float, end: float) -> bool:
-        """Bring every paced bench to its target, slice by slice in turn, then spend the rest on free ones.
+        """Bring every paced bench to its target, slice by slice in turn, then spend the rest of the round on free ones.
 
         A job may change what a bench should do, so the round ends there (false) and another begins.
         """
@@ -207,7 +207,7 @@ class Engine:
     def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> bool:
         """Give each bench one slice in turn until all are there or the round is over; false after a job.
 
-        Every processor takes the next bench that is waiting: passing work on costs more than a slice of it.
+        Every processor takes the next bench that is waiting: handing a bench to a thread costs more than a slice.
         """
         waiting = deque((work, target, True) for work, target in pairs)
 

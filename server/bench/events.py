@@ -1,4 +1,4 @@
-"""What happened on a bench, numbered without gaps."""
+"""The event log of a bench: events numbered without gaps."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Event(BaseModel):
 
 
 class EventLog:
-    """Appended to by the engine, read by the event loop; keeps the last `KEPT` events."""
+    """The engine appends events, the event loop reads them; the log keeps the last `KEPT` events."""
 
     def __init__(self) -> None:
         self._events: deque[Event] = deque(maxlen=KEPT)

@@ -1,11 +1,11 @@
-"""How far a bench should be: integer sample targets on an absolute clock, nothing silently slow."""
+"""The pace of a bench: integer sample targets on an absolute clock; lost time is counted and shown."""
 
 from __future__ import annotations
 
 from collections import deque
 
 CATCH_UP_S = 0.05
-"""Wall time a bench may be behind; beyond it time is given up, counted and shown."""
+"""Wall time a bench may be behind. Time beyond it is given up, counted and shown."""
 
 WINDOW_S = 1.0
 """Wall time over which the achieved rate is measured."""
@@ -17,7 +17,7 @@ class Pacer:
     """Turns wall time into a tick to reach.
 
     The target is the integer part of ``(now - anchor) * rate`` and never a sum of steps, so it does not
-    drift. What lies more than `CATCH_UP_S` behind is given up: the anchor moves, the loss is counted.
+    drift. Time more than `CATCH_UP_S` behind is given up: the anchor moves and the loss is counted.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Pacer:
         self._seen.append((now, tick, tick))
 
     def rescale(self, scale: float | None, tick: int, now: float, is_running: bool) -> None:
-        """Change the time scale from now on; what is due at the old one stays due."""
+        """Change the time scale from now on; ticks due at the old one stay due."""
         if scale == self._scale:
             return
         due = self.target(tick, now) if is_running else None
@@ -79,7 +79,7 @@ class Pacer:
         return target
 
     def record(self, tick: int, target: int | None, now: float) -> None:
-        """Note what a round of work achieved."""
+        """Note the tick that a round of work reached."""
         if target is not None and tick < target:
             self.overruns += 1
         due = self._due + (target if target is not None else tick)
@@ -96,7 +96,7 @@ class Pacer:
         if self._scale is None:
             elapsed = wall_1 - wall_0
             return (tick_1 - tick_0) * self._dt_s / elapsed if elapsed > 0 else 0.0
-        # Against the ticks due, not against the clock: at 1 us/s a second holds less than one tick.
+        # The ticks due are the measure, not the clock: at 1 us/s a second holds less than one tick.
         return self._scale * (tick_1 - tick_0) / (due_1 - due_0) if due_1 > due_0 else self._scale
 
     @property

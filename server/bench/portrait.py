@@ -1,35 +1,60 @@
-"""What a live bench looks like from outside: its status, and all that is said of it."""
+"""Descriptions of a live bench: its status, its full description, its scenario."""
 
 from __future__ import annotations
 
+from datetime import datetime
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-from core.board.changes import describe
+from core.board.words import describe
 from core.faults.fault import FaultParams
+from scenarios.schema import Scenario
+from server.bench.commands import MAX_PENDING
+from server.bench.live_bench import LiveBench
+from server.bench.pacing import Pacer
+from server.bench.recordings import Recordings
 from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
 
-if TYPE_CHECKING:
-    from server.bench.session import Session
 
-MAX_PENDING = 100
-"""Commands that may wait for their moment."""
+class ShownBench(LiveBench, Protocol):
+    """The part of a live bench that its status, its description and its scenario are made from."""
+
+    id: str
+    scenario: Scenario
+    created: datetime
+    status: BenchStatus
+    pacer: Pacer
+    recordings: Recordings
+    replay_of: str
+    recorded_scale: float | None
+
+    @property
+    def dt_ms(self) -> float:
+        """Device time of one tick."""
+
+    @property
+    def is_running(self) -> bool:
+        """Whether time runs, until a pause or to the end of a step."""
+
+    @property
+    def is_started(self) -> bool:
+        """Whether time runs until it is paused."""
 
 
-def status_of(session: Session) -> BenchStatus:
-    """Return the status: an object nobody changes afterwards."""
-    board, pacer = session.board, session.pacer
+def status_of(bench: ShownBench) -> BenchStatus:
+    """Return the status, an object that is not changed afterwards."""
+    board, pacer = bench.board, bench.pacer
     faults: dict[str, Any] = dict(board.faults)
-    state: State = "running" if session.is_running else "paused"
+    state: State = "running" if bench.is_running else "paused"
     if board.trip is not None:
         state = "tripped"
     return BenchStatus(
         state=state,
         tick=board.tick,
-        first_tick=session.history.first_tick,
+        first_tick=bench.history.first_tick,
         time_scale=pacer.scale,
-        achieved_scale=pacer.achieved if session.is_started else 0.0,
-        capped=session.is_started and pacer.capped,
+        achieved_scale=pacer.achieved if bench.is_started else 0.0,
+        capped=bench.is_started and pacer.capped,
         overruns=pacer.overruns,
         given_up_ms=pacer.given_up_s * 1e3,
         controller=board.spec.active,
@@ -54,79 +79,79 @@ def status_of(session: Session) -> BenchStatus:
         ],
         trip=board.trip,
         scores=board.scores(),
-        last_event=session.events.last,
-        recording=list(session.recordings.under_way),
-        armed=list(session.recordings.armed),
+        last_event=bench.events.last,
+        recording=list(bench.recordings.under_way),
+        armed=list(bench.recordings.armed),
     )
 
 
-def bench_of(session: Session, around: dict[str, Any], view3d: str | None) -> Bench:
+def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> Bench:
     """Describe a bench in full.
 
     Parameters
     ----------
-    session : Session
+    bench : ShownBench
         The bench.
     around : dict
         Fields of the status that the bench itself does not know.
     view3d : str or None
         Path of its 3D page.
     """
-    spec, last = session.board.spec, session.events.last
+    spec, last = bench.board.spec, bench.events.last
     return Bench(
-        **{**dict(session.status), **around, "last_event": last},
-        id=session.id,
-        title=session.scenario.head.title or session.scenario.id,
-        scenario_id=session.scenario.id,
-        source=session.scenario.head.source,
-        created=session.created,
+        **{**dict(bench.status), **around, "last_event": last},
+        id=bench.id,
+        title=bench.scenario.head.title or bench.scenario.id,
+        scenario_id=bench.scenario.id,
+        source=bench.scenario.head.source,
+        created=bench.created,
         seed=spec.seed,
-        dt_ms=session.dt_ms,
+        dt_ms=bench.dt_ms,
         sample_rate_khz=spec.frame.sample_rate_khz,
-        samples=session.scenario.samples,
-        drive_period_ticks=session.drive_period_ticks,
-        history_ticks=session.history.capacity,
-        signals=list(session.signals),
+        samples=bench.scenario.samples,
+        drive_period_ticks=bench.drive_period_ticks,
+        history_ticks=bench.history.capacity,
+        signals=list(bench.signals),
         controllers=list(spec.controllers),
         diagnosers={
             name: DiagnoserInfo(
                 kind=section.block.name,
                 names=[item.name for item in getattr(section.params, "hypotheses", ())],
             )
-            for name, section in session.board.diagnosers.items()
+            for name, section in bench.board.diagnosers.items()
         },
-        parameters=document_now(session),
+        parameters=document_now(bench),
         view3d=view3d,
-        replay_of=session.replay_of or None,
-        recorded_scale=session.recorded_scale,
+        replay_of=bench.replay_of or None,
+        recorded_scale=bench.recorded_scale,
     )
 
 
-def document_of(session: Session) -> dict[str, Any]:
+def document_of(bench: ShownBench) -> dict[str, Any]:
     """Return what happened on a bench as a scenario; run headless it gives the same bits."""
-    title = session.scenario.head.title or session.scenario.id
+    title = bench.scenario.head.title or bench.scenario.id
     head = {
         "schema": 1,
-        "id": f"{session.scenario.id[:58]}-live",
+        "id": f"{bench.scenario.id[:58]}-live",
         "title": f"{title}, as run live"[:200],
-        "source": session.scenario.head.source,
+        "source": bench.scenario.head.source,
     }
-    graded = {key: value for key, value in session.scenario.document.items() if key in ("expect", "metrics")}
-    document = {**head, **session.board.save(), **graded}
-    if session.board.tick == 0:  # nothing has happened yet: what is saved is what would
+    graded = {key: value for key, value in bench.scenario.document.items() if key in ("expect", "metrics")}
+    document = {**head, **bench.board.save(), **graded}
+    if bench.board.tick == 0:  # the bench has not begun: the scenario keeps its own length
         document.pop("samples", None)
-        if session.scenario.samples is not None:
-            document["samples"] = session.scenario.samples
+        if bench.scenario.samples is not None:
+            document["samples"] = bench.scenario.samples
     return document
 
 
-def document_now(session: Session) -> dict[str, Any]:
-    """Return what the bench is made of now, its twins included."""
-    board = session.board
-    twins = getattr(board, "base", {}).get("twins")
+def document_now(bench: ShownBench) -> dict[str, Any]:
+    """Return the document of the bench as it is now, its twins included."""
+    board = bench.board
+    twins = board.base.get("twins")
     return {**board.spec.document, **({"twins": twins} if twins else {})}
 
 
-def design_of(session: Session) -> dict[str, Any]:
-    """Return the scenario of a bench as it is set now, from tick 0: live changes, but nothing that happened."""
-    return {**session.scenario.document, **document_now(session)}
+def design_of(bench: ShownBench) -> dict[str, Any]:
+    """Return the scenario of a bench as it is set now, from tick 0: with live changes, without events."""
+    return {**bench.scenario.document, **document_now(bench)}

@@ -1,8 +1,8 @@
 """Records every signal of a live bench at full rate, in a thread of its own.
 
 The engine hands over copies and goes on; it never waits for the disk. If the disk cannot follow, or a limit is
-reached, the recording ends there, whole and readable, and the event log says so. What was before the recording began
-is read from the history, by this thread as well.
+reached, the recording ends there, whole and readable, and the event log says so. This thread also reads from the
+history the ticks before the recording began.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ from server.store.recording import RecordingFile
 from server.store.traces import table_of
 
 QUEUE_BYTES = 64 << 20
-"""Rows on their way to the disk, at most."""
+"""Most bytes of rows on their way to the disk."""
 
 BATCH_TICKS = 8192
 FLUSH_S = 0.5
-"""What is not written yet is never older than this."""
+"""Rows wait at most this long to be written."""
 
 STOPPED = "stopped"
 COMPLETE = "it is as long as it was meant to be"
 FULL = "it reached its size limit"
 CLOSED = "the bench was closed"
 WANTED = (STOPPED, COMPLETE, FULL, CLOSED)
-"""Ends somebody asked for or set; any other is an alarm."""
+"""Ends that somebody asked for or set; any other end is an alarm."""
 
 Samples = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
 class Past:
-    """A span of the history, to be read when its turn comes."""
+    """A span of the history that the writer thread reads when its turn comes."""
 
     read: Callable[[int, int], Samples]
     first: int
@@ -54,7 +54,7 @@ class Recorder:
     recording_id : str
         Its row and file.
     file : RecordingFile
-        Where it goes.
+        The file it is written to.
     schema : pa.Schema
         Columns of the file.
     dt_ms : float
@@ -92,7 +92,7 @@ class Recorder:
         return not self.reason
 
     def begin(self, past: Past, ticks: int | None) -> None:
-        """Take what has been, and end by itself so many ticks behind it."""
+        """Take a span of the past; end the recording so many ticks behind it."""
         length = past.end - past.first
         if ticks is not None and length + ticks <= self._left:
             self._left, self._full = length + ticks, COMPLETE
@@ -132,7 +132,7 @@ class Recorder:
         self._thread.join()
 
     def _take(self, ticks: int) -> None:
-        """Count what was taken against the limit."""
+        """Count ticks against the limit."""
         self._left -= ticks
         if self._left <= 0:
             self.stop(self._full)
@@ -169,7 +169,7 @@ class Recorder:
             self._end(self._file.salvage())
 
     def _write_past(self, past: Past) -> None:
-        """Copy a span of the history; what has been overwritten meanwhile is missing at its old end."""
+        """Copy a span of the history; ticks overwritten meanwhile are missing at its old end."""
         for start in range(past.first, past.end, BATCH_TICKS):
             end = min(start + BATCH_TICKS, past.end)
             samples = past.read(start, end)

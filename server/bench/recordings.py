@@ -4,27 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from core.board.condition import Condition
 from core.board.rows import Rows
 from server.bench.events import Event
+from server.bench.live_bench import LiveBench
 from server.bench.recorder import CLOSED, STOPPED, WANTED, Past, Recorder
 from server.errors import not_found
 
-if TYPE_CHECKING:
-    from server.bench.session import Session
-
 
 def _concerning(events: Sequence[Event], first: int) -> list[Event]:
-    """Return what happened from a tick on, behind the injections that act at it still."""
+    """Return the injections that still act at a tick, then the events from that tick on."""
     acting: dict[str, Event] = {}
     since: list[Event] = []
     for event in events:
         command = event.command or {}
-        if event.kind in ("reset", "restored"):  # what came after the tick gone back to was undone
+        if event.kind in ("reset", "restored"):  # events after the tick that was gone back to are undone
             last = event.tick if event.kind == "restored" else -1
             acting = {fault: done for fault, done in acting.items() if done.tick <= last}
             since = [done for done in since if done.tick <= last]
@@ -49,16 +46,16 @@ class Armed:
 
 
 class Recordings:
-    """Begins recordings, hands them the rows of their bench and lets go of them; on the engine thread.
+    """Begins recordings, passes them the rows of their bench and forgets those that have ended; on the engine thread.
 
     Parameters
     ----------
-    session : Session
+    bench : LiveBench
         The bench.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, bench: LiveBench) -> None:
+        self._bench = bench
         self.under_way: dict[str, Recorder] = {}
         self.armed: dict[str, Armed] = {}
 
@@ -77,17 +74,17 @@ class Recordings:
         ticks : int or None
             Ticks behind the beginning after which it ends by itself.
         condition : Condition or None
-            What it waits for.
+            The condition it waits for.
         """
-        session = self._session
-        session.must_be_open()
+        bench = self._bench
+        bench.must_be_open()
         if condition is not None:
             self.armed[recorder.id] = Armed(recorder, condition, past, ticks)
-            session.note(actor, "recording_armed", f"recording {name} waits for its condition")
-            session.look()
+            bench.note(actor, "recording_armed", f"recording {name} waits for its condition")
+            bench.refresh_status()
             return None
-        session.note(actor, "recording_started", f"recording {name} began")
-        return self._begin(recorder, session.board.tick, past, ticks)
+        bench.note(actor, "recording_started", f"recording {name} began")
+        return self._begin(recorder, bench.board.tick, past, ticks)
 
     def stop(self, recording_id: str, reason: str = STOPPED) -> Recorder:
         """End a recording here, or one that waits."""
@@ -97,15 +94,15 @@ class Recordings:
             raise not_found("recording under way", recording_id)
         recorder.stop(reason)
         if recorder.reason in WANTED:
-            self._session.note("board", "recording_stopped", f"a recording ended: {recorder.reason}")
+            self._bench.note("board", "recording_stopped", f"a recording ended: {recorder.reason}")
         else:
-            self._session.note("board", "recording_failed", f"a recording broke off: {recorder.reason}")
+            self._bench.note("board", "recording_failed", f"a recording broke off: {recorder.reason}")
         self.under_way.pop(recording_id, None)
-        self._session.look()
+        self._bench.refresh_status()
         return recorder
 
     def forget(self, recording_id: str) -> None:
-        """Let go of a recording that has ended by itself."""
+        """Forget a recording that has ended by itself."""
         if recording_id in self.under_way or recording_id in self.armed:
             self.stop(recording_id)
 
@@ -113,37 +110,36 @@ class Recordings:
         """End all; returns them."""
         return [self.stop(key, reason) for key in [*self.under_way, *self.armed]]
 
-    def tell(self, event: Event) -> Event:
-        """Let the recordings under way have an event."""
+    def record(self, event: Event) -> None:
+        """Write an event into the recordings under way."""
         for recorder in self.under_way.values():
             recorder.note(event.model_dump_json())
-        return event
 
     def take(self, rows: Rows) -> None:
-        """Record some rows, and begin what waited for them."""
+        """Record some rows, and begin the recordings whose condition they meet."""
         if self.under_way:
-            self._record(rows)
+            self._record_rows(rows)
         if self.armed:
             self._watch(rows)
 
     def _begin(self, recorder: Recorder, at: int, past: int, ticks: int | None) -> int:
-        """Let a recording begin at a tick that has been or is now."""
-        session = self._session
-        history, columns = session.history, list(range(len(session.signals)))
-        end = session.board.tick
+        """Begin a recording at a tick of the past or at this one."""
+        bench = self._bench
+        history, columns = bench.history, list(range(len(bench.signals)))
+        end = bench.board.tick
         first = min(max(at - past, history.first_tick), end) if history.end_tick == end else end
         after = None if ticks is None else max(0, ticks - (end - at))
-        for event in _concerning(session.events.after(0)[1], first):
+        for event in _concerning(bench.events.after(0)[1], first):
             recorder.note(event.model_dump_json())
         recorder.begin(Past(lambda start, stop: history.read(columns, start, stop), first, end), after)
         self.under_way[recorder.id] = recorder
         if not recorder.is_open:
             self.stop(recorder.id)
-        session.look()
+        bench.refresh_status()
         return first
 
-    def _record(self, rows: Rows) -> None:
-        """Hand copies to the recordings; one that has ended by itself is let go."""
+    def _record_rows(self, rows: Rows) -> None:
+        """Pass copies of rows to the recordings, and forget those that have ended by themselves."""
         samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
         for key, recorder in list(self.under_way.items()):
             recorder.append(rows.first_tick, samples)
@@ -153,12 +149,12 @@ class Recordings:
     def _watch(self, rows: Rows) -> None:
         """Begin the armed recordings whose condition holds at some tick of these."""
         for key, waiting in list(self.armed.items()):
-            column = self._session.column_of[waiting.condition.signal]
+            column = self._bench.column_of[waiting.condition.signal]
             values = np.hstack((rows.outputs, rows.taps))[:, column]
-            found = np.flatnonzero(waiting.condition.sign * (values - waiting.condition.threshold) > 0.0)
-            if found.size:
+            holding = np.flatnonzero(waiting.condition.sign * (values - waiting.condition.threshold) > 0.0)
+            if holding.size:
                 del self.armed[key]
-                at = rows.first_tick + int(found[0])
+                at = rows.first_tick + int(holding[0])
                 text = f"a recording began: its condition held at tick {at}"
-                self._session.note("board", "recording_started", text)
+                self._bench.note("board", "recording_started", text)
                 self._begin(waiting.recorder, at, waiting.past, waiting.ticks)

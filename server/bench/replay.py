@@ -1,4 +1,4 @@
-"""A bench that plays a recording: the same page, the same commands to time, nothing to change."""
+"""A bench that plays a recording: it takes the commands to time and refuses changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from server.metrics import Metrics
 from server.store.recordings import RecordingDetail
 
 LEAST_LOOP = 100
-"""Ticks of the shortest span that is played again and again."""
+"""Ticks of the shortest span that can be looped."""
 
 
 class Replay(Session):
@@ -25,9 +25,9 @@ class Replay(Session):
     Parameters
     ----------
     recording : RecordingDetail
-        What is played; its events are those of the bench.
+        The recording to play; its events become those of the bench.
     scenario : Scenario
-        What was recorded.
+        The scenario of the recording.
     tape : Tape
         The recording, to be read tick by tick.
     time_scale : float
@@ -61,7 +61,7 @@ class Replay(Session):
             self.events.add(*fields)
 
     def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
-        """Carry out a command to time; only here it can be turned back."""
+        """Carry out a command to time; only a replay can seek and loop."""
         tape = self._tape
         if isinstance(command, Seek):
             tape.seek(command.tick)

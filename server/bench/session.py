@@ -1,34 +1,33 @@
-"""One live bench: a board, its history, its events; touched by the engine thread only.
+"""One live bench: a board, its history, its events. Only the engine thread changes it.
 
-The event loop reads what is safe to read meanwhile: the history (settled ticks), the events (locked) and
-`status`, an object that is replaced whole.
+The event loop reads three parts at any time: the history (settled ticks), the events (locked) and `status`, an object
+that is replaced whole.
 """
 
 from __future__ import annotations
 
 import secrets
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from datetime import UTC, datetime
 from typing import Any, get_args
 
 from core.board.board import Board
-from core.board.history import History
-from core.board.rows import Rows
-from core.device.geometry import Geometry
+from core.board.document import Document
 from core.errors import InputError
 from core.format import format_short
-from core.signals import Signal
 from scenarios.schema import Scenario
-from server.bench.commands import Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
-from server.bench.events import Event, EventLog
+from server.bench.commands import MAX_PENDING, Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
+from server.bench.events import Event
+from server.bench.journal import Journal
 from server.bench.pacing import Pacer
-from server.bench.portrait import MAX_PENDING, document_of, status_of
+from server.bench.portrait import status_of
 from server.bench.recorder import Recorder
 from server.bench.recordings import Recordings
 from server.bench.snapshots import Snapshots
 from server.bench.steps import Steps
-from server.bench.tape import Tape
+from server.bench.tick_source import TickSource
+from server.bench.timeline import Timeline
 from server.errors import not_found
 from server.metrics import Metrics
 
@@ -36,22 +35,20 @@ RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
 RUN = get_args(RunsBench)
 STATUS_S = 0.2
 FORK_TICKS = 20_000
-"""Past a fork brings along."""
-SLICE_S = 0.005
-"""Longest slice, by what a tick of the one before took; other benches and commands wait for it."""
+"""Ticks of the past that a fork brings along."""
 
 
-class Session:
+class Session(Timeline):
     """A live bench.
 
     Parameters
     ----------
     scenario : Scenario
-        What it was made from.
-    board : Board or Tape
-        Built from it; or a recording that is played.
+        The scenario of the bench.
+    board : TickSource
+        The board built from the scenario; or a recording that is played.
     time_scale : float or None
-        Device seconds per wall second; none: as fast as possible.
+        Device seconds per wall second; none means as fast as possible.
     history_ticks : int
         Ticks every signal is kept for.
     metrics : Metrics
@@ -63,55 +60,40 @@ class Session:
     replay_of = ""
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
-    """Device seconds per wall second that was recorded at."""
+    """Device seconds per wall second of the recording."""
 
     def __init__(
         self,
         scenario: Scenario,
-        board: Board | Tape,
+        board: TickSource,
         time_scale: float | None,
         history_ticks: int,
         metrics: Metrics,
         clock: Callable[[], float],
     ) -> None:
+        super().__init__(board, history_ticks, clock)
         self.id = secrets.token_hex(6)
         self.scenario = scenario
-        self.board: Board | Tape = board
         self.created = datetime.now(UTC)
-        self.events = EventLog()
         self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
         self.snapshots = Snapshots(self)
         self.recordings = Recordings(self)
+        self._journal = Journal(metrics, self.recordings.record)
+        self.events = self._journal.events
         self.steps = Steps(self)
-        self._history_ticks, self._metrics, self._clock = history_ticks, metrics, clock
-        self._slice_ticks = board.chunk
+        self._metrics = metrics
         self._running = False
         self._closed = False
-        self._logged = 0
         self._ends_at = scenario.samples
         self._counted = (0, 0.0)
         self._status_due = 0.0
-        self.history = self._no_history()
-        self._index = {signal.name: signal.index for signal in board.signals}
-        self.look()
+        self.refresh_status()
 
-    def _no_history(self) -> History:
-        """Return a history with nothing in it."""
-        signals = self.board.signals
-        return History(signals.outputs, len(signals.taps), self._history_ticks)
-
-    def _rewind_history(self) -> None:
-        """Let the history follow a jump of the tick."""
-        if self.history.first_tick <= self.board.tick <= self.history.end_tick:
-            self.history.end_tick = self.board.tick
-        else:
-            self.history = self._no_history()
-
-    # ---- what the engine asks
+    # ---- calls of the engine
 
     @property
     def is_running(self) -> bool:
-        """Whether time runs, be it to the end of a step."""
+        """Whether time runs, until a pause or to the end of a step."""
         return self._running or bool(self.steps)
 
     @property
@@ -120,7 +102,7 @@ class Session:
         return self._running
 
     def target(self, now: float) -> int | None:
-        """Return the tick to reach in this round; the end of the scenario is not passed unasked."""
+        """Return the tick to reach in this round; the bench stops once at the end of its scenario."""
         if self.steps:
             return None
         target = self.pacer.target(self.board.tick, now)
@@ -140,58 +122,56 @@ class Session:
         return self._running and (target is None or self.board.tick < target)
 
     def finish_round(self, target: int | None, now: float) -> None:
-        """Account for a round; renew the status now and then."""
+        """Account for a round; refresh the status now and then."""
         if self._running:
             self.pacer.record(self.board.tick, target if self.pacer.scale is not None else None, now)
         overruns, given_up = self._counted
-        if self.pacer.overruns > overruns:
-            self._metrics.overruns.inc(self.pacer.overruns - overruns)
-        if self.pacer.given_up_s > given_up:
-            self._metrics.given_up_seconds.inc(self.pacer.given_up_s - given_up)
+        self._metrics.overruns.inc(max(0, self.pacer.overruns - overruns))
+        self._metrics.given_up_seconds.inc(max(0.0, self.pacer.given_up_s - given_up))
         self._counted = (self.pacer.overruns, self.pacer.given_up_s)
         if now >= self._status_due:
             self._status_due = now + STATUS_S
-            self.look()
+            self.refresh_status()
 
     def fail(self, error: Exception) -> None:
-        """Pause after an error nobody expected, and say so."""
+        """Pause after an unexpected error, and note it."""
         self._running = False
         self.steps.end()
         self.note("board", "failed", f"stopped by an internal error: {error}")
-        self.look()
+        self.refresh_status()
 
-    # ---- what people do; all run as jobs of the engine
+    # ---- actions of people; the engine runs all of them as jobs
 
     def begin(self, start: bool) -> None:
-        """Come to life, running or paused."""
+        """Begin, running or paused."""
         self._running = start
         self.pacer.anchor(self.board.tick, self._clock())
-        self._sync_log()
+        self._journal.follow(self.board.log)
         self.note("board", "opened", "running" if start else "paused at the first tick")
-        self.look()
+        self.refresh_status()
 
     def execute(self, command: Any, actor: str) -> Event | Future[Event]:
-        """Carry out a command at this tick edge; what is returned for a step has its event when it has ended.
+        """Carry out a command at this tick edge; for a step, return a future that holds its event at its end.
 
         Raises
         ------
         InputError
-            If it cannot be; nothing has changed then.
+            If the command cannot be carried out; nothing has changed then.
         """
         self.must_be_open()
         if isinstance(command, RUN):
             event = self._run_command(command, actor)
-            if isinstance(event, Future):  # a short one is over before its status is worth a look
+            if isinstance(event, Future):  # its end refreshes the status
                 return event
         else:
             if len(self.board.pending) >= MAX_PENDING:
                 raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
-            self._sync_log()
+            self._journal.follow(self.board.log)
             self.board.apply(command, actor)
             if self.board.trip is not None:
                 self._running = False
-            event = self._sync_log()[-1]
-        self.look()
+            event = self._journal.follow(self.board.log)[-1]
+        self.refresh_status()
         return event
 
     def must_be_open(self) -> None:
@@ -201,87 +181,47 @@ class Session:
 
     def reset(self, scenario: Scenario, board: Board, actor: str) -> Event:
         """Begin again with a new board of the same signals."""
-        names = [signal.name for signal in board.signals]
-        if names != list(self._index):
+        if [signal.name for signal in board.signals] != list(self._index):
             raise InputError(
                 "these values give the bench other signals", "values", "make a new bench for them", "conflict"
             )
         if board.dt_ms != self.board.dt_ms:
             self.pacer = Pacer(board.dt_ms * 1e-3, self.pacer.scale)
-        self.scenario, self.board, self._logged = scenario, board, 0
+        self.scenario, self.board = scenario, board
+        self._journal.skip_to(0)
         self._ends_at = scenario.samples
-        self.history = self._no_history()
+        self.history = self._empty_history()
         event = self._jumped(actor, "reset", "reset to tick 0")
-        self._sync_log()
+        self._journal.follow(self.board.log)
         return event
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
-        """Go back to a moment."""
+        """Go back to a snapshot."""
         kept = self.snapshots.get(snapshot_id)
         self.board = Board.restore(kept.checkpoint)
-        self._logged = self.board.log.last
+        self._journal.skip_to(self.board.log.last)
         self._rewind_history()
         samples = self.scenario.samples
         self._ends_at = samples if samples is not None and self.board.tick < samples else None
         return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
 
     def fork(self, snapshot_id: str | None) -> Session:
-        """Return a second bench that goes on from this moment or a kept one."""
+        """Return a second bench that goes on from this moment or from a snapshot."""
         checkpoint = self.snapshots.get(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
         board = Board.restore(checkpoint)
         twin = Session(self.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
-        twin._logged = board.log.last
+        twin._journal.skip_to(board.log.last)
         twin._ends_at = self._ends_at if self._ends_at is not None and board.tick < self._ends_at else None
-        first = max(self.history.first_tick, board.tick - FORK_TICKS)
-        if first < board.tick <= self.history.end_tick:
-            past = self.history.read(list(range(len(self._index))), first, board.tick).T
-            twin.history.append(Rows.of(first, past, self.board.signals.outputs))
+        twin._copy_past(self, FORK_TICKS)
         twin.note("api", "forked", f"forked from bench {self.id}")
-        twin.look()
+        twin.refresh_status()
         return twin
 
     def close(self) -> list[Recorder]:
-        """Stop for good; returns the recordings that were under way."""
+        """Stop for good; return the recordings that were under way."""
         self._running, self._closed = False, True
         self.steps.end()
         return self.recordings.close()
-
-    # ---- what the event loop reads
-
-    @property
-    def dt_ms(self) -> float:
-        """Device time of one tick."""
-        return self.board.dt_ms
-
-    @property
-    def signals(self) -> Sequence[Signal]:
-        """All signals, in the order of the history."""
-        signals: Sequence[Signal] = self.board.signals
-        return signals
-
-    @property
-    def geometry(self) -> Geometry:
-        """The drawing of the device with its own gap; that of the reference device if it has none."""
-        return self.board.spec.device.drawing
-
-    @property
-    def drive_period_ticks(self) -> float | None:
-        """Period of the reference in ticks, if it has one."""
-        frequency = getattr(self.board.spec.reference.params, "frequency_hz", None)
-        return 1e3 / (float(frequency) * self.dt_ms) if isinstance(frequency, int | float) and frequency else None
-
-    @property
-    def column_of(self) -> dict[str, int]:
-        """Column of each signal by name."""
-        return self._index
-
-    def indices(self, names: Sequence[str]) -> list[int]:
-        """Return the columns of signals; an unknown name is an `InputError` with suggestions."""
-        return [self.board.signals.index(name) for name in names]
-
-    def document(self) -> dict[str, Any]:
-        """Return what happened as a scenario; run headless it gives the same bits (a job)."""
-        return document_of(self)
 
     # ---- inside
 
@@ -296,7 +236,7 @@ class Session:
             text = "time runs as fast as possible"
             if command.value is not None:
                 text = f"time scale set to {format_short(command.value, 's/s')}"
-            return self.note(actor, "time_scale", text, document, old, command.value)
+            return self._journal.add(self.board.tick, actor, "time_scale", text, document, old, command.value)
         if isinstance(command, Pause):
             self._running = False
             self.steps.end()
@@ -318,31 +258,21 @@ class Session:
 
     def advance(self, ticks: int) -> int:
         """Run ticks, as many as a slice has; keep them, record them, note what happened; return how many there were."""
-        began = self._clock()
-        rows = self.board.advance(min(ticks, self._slice_ticks))
+        rows = self._advance_slice(ticks)
         if rows.count:
-            took = max(self._clock() - began, 1e-9)
-            self._slice_ticks = max(1, int(SLICE_S * rows.count / took))
-            self.history.append(rows)
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)
-        if self.board.log.last > self._logged:
-            self._sync_log()
+        self._journal.follow(self.board.log)
         if self.board.trip is not None and self._running and not self._has_due():
             self._running = False
-            self.look()
+            self.refresh_status()
         return rows.count
-
-    def _has_due(self) -> bool:
-        """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
-        due = self.board.pending.next_tick
-        return due is not None and due <= self.board.tick
 
     def _finish(self) -> None:
         """Pause at the end of the scenario; starting again goes beyond it."""
         self._running, self._ends_at = False, None
         self.note("scenario", "finished", "scenario finished; start again to go on")
-        self.look()
+        self.refresh_status()
 
     def _jumped(self, actor: str, kind: str, text: str) -> Event:
         """Note that time has jumped: recordings end, the clock is anchored anew."""
@@ -352,36 +282,13 @@ class Session:
             self._running = False
         self.pacer.anchor(self.board.tick, self._clock())
         event = self.note(actor, kind, text)
-        self.look()
+        self.refresh_status()
         return event
 
-    def note(
-        self,
-        actor: str,
-        kind: str,
-        text: str,
-        command: dict[str, Any] | None = None,
-        old: Any = None,
-        new: Any = None,
-        tick: int | None = None,
-    ) -> Event:
+    def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:
         """Add an event of the bench itself, of now unless a tick is given."""
-        self._metrics.events.labels(kind).inc()
-        at = self.board.tick if tick is None else tick
-        return self.recordings.tell(self.events.add(at, actor, kind, text, command, old, new))
+        return self._journal.add(self.board.tick if tick is None else tick, actor, kind, text, command)
 
-    def _sync_log(self) -> list[Event]:
-        """Take over what the board has logged since the last time."""
-        added = []
-        for entry in self.board.log.after(self._logged):
-            self._metrics.events.labels(entry.kind).inc()
-            event = self.events.add(
-                entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new
-            )
-            added.append(self.recordings.tell(event))
-        self._logged = self.board.log.last
-        return added
-
-    def look(self) -> None:
-        """Renew the status: an object nobody changes afterwards."""
+    def refresh_status(self) -> None:
+        """Replace the status by that of now."""
         self.status = status_of(self)

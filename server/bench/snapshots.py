@@ -1,18 +1,15 @@
-"""Moments of a bench that can be gone back to; taken and forgotten on the engine thread."""
+"""Snapshots: moments a bench can go back to; taken and forgotten on the engine thread."""
 
 from __future__ import annotations
 
 import secrets
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING
 
 from core.board.board import Checkpoint
+from server.bench.live_bench import LiveBench
 from server.bench.status import Snapshot
 from server.errors import ApiError, not_found
-
-if TYPE_CHECKING:
-    from server.bench.session import Session
 
 
 @dataclass(frozen=True)
@@ -28,12 +25,12 @@ class Snapshots:
 
     Parameters
     ----------
-    session : Session
+    bench : LiveBench
         The bench.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, bench: LiveBench) -> None:
+        self._bench = bench
         self._kept: dict[str, Kept] = {}
 
     def all(self) -> list[Snapshot]:
@@ -44,10 +41,10 @@ class Snapshots:
         """Keep this moment."""
         if len(self._kept) >= most:
             raise ApiError(409, "too_many_snapshots", f"{most} snapshots are kept, the limit (max_snapshots)")
-        board = self._session.board
+        board = self._bench.board
         snapshot = Snapshot(id=secrets.token_hex(6), tick=board.tick, name=name, created=datetime.now(UTC))
         self._kept[snapshot.id] = Kept(snapshot, board.checkpoint())
-        self._session.note(actor, "snapshot_taken", f"kept this moment as {name or snapshot.id}")
+        self._bench.note(actor, "snapshot_taken", f"kept this moment as {name or snapshot.id}")
         return snapshot
 
     def get(self, snapshot_id: str) -> Kept:

@@ -1,4 +1,4 @@
-"""A bench as the API shows it: what stays, and what changes."""
+"""A bench as the API shows it: its fixed and its changing part."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field
 
 from core.board.commands import Trip
-from core.board.score import Scores
+from core.loop.score import Scores
 from core.signals import Signal
 
 State = Literal["running", "paused", "tripped"]
@@ -20,7 +20,7 @@ class ActiveFault(BaseModel):
     name: str
     severity: float
     profile: dict[str, Any]
-    parameters: dict[str, Any] = Field(default={}, description="What else was chosen for it, or its defaults")
+    parameters: dict[str, Any] = Field(default={}, description="Its other parameters, chosen or default")
     since_tick: int
 
 

@@ -1,27 +1,23 @@
-"""Steps of a bench: so many ticks and no more, taken in slices of the engine like those of a bench that runs."""
+"""Steps of a bench: a number of ticks, taken in the same slices of the engine as those of a bench that runs."""
 
 from __future__ import annotations
 
 from collections import deque
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from core.errors import InputError
-from server.bench.commands import Step, StepPeriod
+from server.bench.commands import MAX_PENDING, Step, StepPeriod
 from server.bench.events import Event
-from server.bench.portrait import MAX_PENDING
-
-if TYPE_CHECKING:
-    from server.bench.session import Session
+from server.bench.live_bench import LiveBench
 
 LONGEST_PERIOD = 100_000
 """Most ticks of a step by one period of the drive."""
 
 
 @dataclass
-class Asked:
-    """A step somebody asked for and waits for, and how far it has come."""
+class StepRequest:
+    """A step that a caller waits for, and how far it has come."""
 
     command: Step | StepPeriod
     actor: str
@@ -31,7 +27,7 @@ class Asked:
     done: int = 0
 
     def text(self) -> str:
-        """Say what was done of it."""
+        """Return in words how much of the step was done."""
         plural = "s" if self.ticks != 1 else ""
         if self.done < self.ticks:
             return f"stepped {self.done} of {self.ticks} tick{plural}"
@@ -39,23 +35,23 @@ class Asked:
 
 
 class Steps:
-    """The steps of a bench that are not at their end yet, one behind the other; on the engine thread.
+    """The queue of steps of a bench; on the engine thread.
 
     Parameters
     ----------
-    session : Session
+    bench : LiveBench
         The bench.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self._asked: deque[Asked] = deque()
+    def __init__(self, bench: LiveBench) -> None:
+        self._bench = bench
+        self._requests: deque[StepRequest] = deque()
 
     def __len__(self) -> int:
-        return len(self._asked)
+        return len(self._requests)
 
     def add(self, command: Step | StepPeriod, actor: str) -> Future[Event]:
-        """Ask for a step, behind those asked for before; the event is there when it has ended.
+        """Queue a step; return a future that holds its event when the step has ended.
 
         Raises
         ------
@@ -65,39 +61,39 @@ class Steps:
         if len(self) >= MAX_PENDING:
             raise InputError(f"{MAX_PENDING} steps wait for their turn already", code="limit")
         ticks = command.ticks if isinstance(command, Step) else self._period()
-        last = self._asked[-1] if self._asked else None
-        start = self._session.board.tick if last is None else last.start + last.ticks
-        asked = Asked(command, actor, start, ticks)
-        asked.ended.set_running_or_notify_cancel()  # who no longer waits for it does not stop it
-        self._asked.append(asked)
-        return asked.ended
+        last = self._requests[-1] if self._requests else None
+        start = self._bench.board.tick if last is None else last.start + last.ticks
+        request = StepRequest(command, actor, start, ticks)
+        request.ended.set_running_or_notify_cancel()  # a caller that no longer waits does not stop the step
+        self._requests.append(request)
+        return request.ended
 
     def slice(self) -> bool:
-        """Advance by one slice of the first; true while there is more to do."""
-        session, first = self._session, self._asked[0]
-        ran = session.advance(first.ticks - first.done)
+        """Advance the first step by one slice; true while steps are queued."""
+        bench, first = self._bench, self._requests[0]
+        ran = bench.advance(first.ticks - first.done)
         first.done += ran
-        if not ran or session.board.trip is not None:  # the end of a recording that is played, or a trip
+        if not ran or bench.board.trip is not None:  # the end of a recording that is played, or a trip
             self.end()
         elif first.done == first.ticks:
-            self._answer(self._asked.popleft())
-        return bool(self._asked)
+            self._answer(self._requests.popleft())
+        return bool(self._requests)
 
     def end(self) -> None:
-        """End all of them here."""
-        while self._asked:
-            self._answer(self._asked.popleft())
+        """End all steps at this tick."""
+        while self._requests:
+            self._answer(self._requests.popleft())
 
-    def _answer(self, asked: Asked) -> None:
-        """Note what was done of a step at the tick it began, and tell who waits for it."""
-        command = asked.command
-        event = self._session.note(asked.actor, command.kind, asked.text(), command.model_dump(), tick=asked.start)
-        self._session.look()
-        asked.ended.set_result(event)
+    def _answer(self, request: StepRequest) -> None:
+        """Note at the tick where a step began how much of it was done, and answer its caller."""
+        command = request.command
+        event = self._bench.note(request.actor, command.kind, request.text(), command.model_dump(), tick=request.start)
+        self._bench.refresh_status()
+        request.ended.set_result(event)
 
     def _period(self) -> int:
-        """Return the drive period as a number of ticks one may step."""
-        period = self._session.drive_period_ticks
+        """Return the drive period in ticks, at most the longest step allowed."""
+        period = self._bench.drive_period_ticks
         if period is None:
             raise InputError("the reference has no period", "kind", "step a number of ticks", "conflict")
         return max(1, min(LONGEST_PERIOD, round(period)))

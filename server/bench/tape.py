@@ -1,4 +1,4 @@
-"""A recording played where a bench has its board: the same ticks, the same signals, nothing computed."""
+"""A recording in the place of a board: it reads the same ticks and signals from its file and computes nothing."""
 
 from __future__ import annotations
 
@@ -10,21 +10,25 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from core.board.board import Board
+from core.board.document import Document
+from core.board.log import Log
 from core.board.pending import Queue
 from core.board.rows import Rows
+from core.board.spec import Section, Spec
 from core.errors import InputError
+from core.signals import SignalTable
 from server.store.recording import first_tick
 
 REFUSAL = "this bench plays a recording"
 
 
 class Tape:
-    """Stands for a board and advances by reading.
+    """Takes the place of a board and advances by reading a recording.
 
     Parameters
     ----------
     board : Board
-        Made from the scenario of the recording; says what the signals and blocks are.
+        Built from the scenario of the recording; gives its signals and blocks.
     path : Path
         The file of the recording.
     """
@@ -47,9 +51,45 @@ class Tape:
         self.pending = Queue()
         self.faults: dict[str, Any] = {}
 
-    def __getattr__(self, name: str) -> Any:
-        """Answer for the board in all that does not change: specification, signals, log, sample interval."""
-        return getattr(self._board, name)
+    @property
+    def recorded_board(self) -> Board:
+        """The board the recording was made with, at its first tick."""
+        return self._board
+
+    @property
+    def chunk(self) -> int:
+        """Most ticks of one call of ``advance``."""
+        return self._board.chunk
+
+    @property
+    def dt_ms(self) -> float:
+        """Sample interval, ms."""
+        return self._board.dt_ms
+
+    @property
+    def spec(self) -> Spec:
+        """The blocks and their parameters."""
+        return self._board.spec
+
+    @property
+    def base(self) -> Document:
+        """The document the board was made from."""
+        return self._board.base
+
+    @property
+    def signals(self) -> SignalTable:
+        """Table of traced signals."""
+        return self._board.signals
+
+    @property
+    def diagnosers(self) -> dict[str, Section]:
+        """Every diagnoser by its id."""
+        return self._board.diagnosers
+
+    @property
+    def log(self) -> Log:
+        """The log of the board: only the commands its scenario lets wait."""
+        return self._board.log
 
     def advance(self, n: int) -> Rows:
         """Read up to ``n`` ticks, to the end of the recording or of a piece of its file."""
@@ -59,9 +99,9 @@ class Tape:
         number = int(np.searchsorted(self._edges, self.tick, "right")) - 1
         samples = self._read(number)
         start = self.tick - int(self._edges[number])
-        found = self._rows(samples[start : start + count])
-        self.tick += found.count
-        return found
+        rows = self._rows(samples[start : start + count])
+        self.tick += rows.count
+        return rows
 
     def seek(self, tick: int) -> None:
         """Go to a tick of the recording."""
@@ -74,21 +114,21 @@ class Tape:
         return {}
 
     def digest(self) -> str:
-        """Return nothing: what is recorded is rounded."""
+        """Return nothing: the recorded values are rounded."""
         return ""
 
     def apply(self, *_: Any) -> NoReturn:
-        """Refuse: the past cannot be changed."""
+        """Refuse: a recording cannot be changed."""
         raise InputError(REFUSAL, "command", "run its scenario to change something", "conflict")
 
     def checkpoint(self) -> NoReturn:
-        """Refuse: there is no state."""
+        """Refuse: a recording has no state of a board."""
         raise InputError(REFUSAL, "bench", "run its scenario to branch off", "conflict")
 
     save = checkpoint
 
     def _read(self, number: int) -> NDArray[np.float32]:
-        """Return a row group as ``(ticks, signals)``; what was not recorded is not a number."""
+        """Return a row group as ``(ticks, signals)``; signals that were not recorded are NaN."""
         if self._group is None or self._group[0] != number:
             table = self._file.read_row_group(number, columns=[name for _, name in self._columns])
             samples = np.full((table.num_rows, self._width), np.nan, np.float32)

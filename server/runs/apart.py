@@ -1,6 +1,6 @@
-"""Does the long computations of campaigns with thousands of points in a process of lower priority.
+"""Runs the long computations of campaigns with thousands of points in a process of lower priority.
 
-In a thread of this one it would keep the interpreter from the live benches.
+In a thread of the server they would hold the interpreter's lock against the live benches.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from typing import Any, TypeVar
 import pyarrow as pa
 from pydantic import TypeAdapter
 
-from scenarios.executor import prepare
-from scenarios.outcome import Outcome
-from scenarios.report import campaign_report, results_table
-from scenarios.sweep import Sweep
-from scenarios.tally import PointTally, tally
+from scenarios.campaign.executor import prepare
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import PointTally, tally
+from scenarios.report.campaign import campaign_report, results_table
 from server.runs.worker import NICE
 from server.store.database import Database
 from server.store.results import Results
 
 FEW_POINTS, FEW_RUNS = 20, 300
-"""Campaigns up to this size are handled in this process; live benches do not notice them."""
+"""Campaigns up to this size are handled in this process; they do not slow the live benches."""
 IDLE_S = 60.0
-"""A process that has nothing to do for so long is ended; starting one takes seconds."""
+"""A process without work for so long is ended; starting one takes seconds."""
 
 T = TypeVar("T")
 Document = dict[str, Any]
 
 
 class Apart:
-    """A process that is started when there is something to do for it.
+    """A process that is started when there is work for it.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Apart:
         self._end: asyncio.TimerHandle | None = None
 
     async def call(self, size: int, function: Callable[..., T], *arguments: object) -> T:
-        """Call a function that has so much to look at."""
+        """Call a function on a campaign of ``size`` points, in a thread or in the process."""
         if size <= self._few:
             return await asyncio.to_thread(function, *arguments)
         if self._end is not None:
@@ -69,7 +69,7 @@ class Apart:
                 self._end = asyncio.get_running_loop().call_later(IDLE_S, self.close)
 
     def close(self) -> None:
-        """End the process, and what it is at."""
+        """End the process and its work."""
         pool, self._pool = self._pool, None
         if pool is not None:
             for process in list((pool._processes or {}).values()):
@@ -111,6 +111,6 @@ def _read(document: Document, database_url: str) -> tuple[Sweep, dict[str, Outco
     keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
     database = Database(database_url)
     try:
-        return sweep, {key: Outcome.model_validate(found) for key, found in Results(database).outcomes(keys)}
+        return sweep, {key: Outcome.model_validate(outcome) for key, outcome in Results(database).outcomes(keys)}
     finally:
         database.close()

@@ -1,7 +1,8 @@
 """Headless runs: queued, run in a process of lower priority, kept in the run table.
 
-The table is the truth. A run is known by its key (scenario, seeds, version), so asking twice gives the same run; one
-that was under way when the server ended begins again at the next start, and is marked aborted if that happens often.
+The run table has the state of every run. Scenario, seeds and version are the key of a run, so a second request gives
+the same run. A run that was under way when the server ended begins again at the next start; it is marked aborted if
+that happens often.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from core.errors import InputError
-from scenarios.executor import prepare
+from scenarios.campaign.executor import prepare
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of, not_found
@@ -37,7 +38,7 @@ log = logging.getLogger(__name__)
 
 ACTIVE = ("queued", "running")
 MAX_ATTEMPTS = 3
-"""Starts of one run; whatever ends the server or its worker so often is most likely that run."""
+"""Most starts of one run: a run that so often was under way when the server or its worker ended is the likely cause."""
 CANCEL_S = 5.0
 
 
@@ -88,7 +89,7 @@ class Jobs:
         self._is_closing = False
 
     async def start(self, scenario: Scenario, seeds: list[int]) -> tuple[Run, bool]:
-        """Queue a run, or return the same one that is there; true when it is new.
+        """Queue a run, or return the same one if it exists; true when it is new.
 
         Raises
         ------
@@ -157,7 +158,7 @@ class Jobs:
         return self._live(Run.model_validate(row))
 
     async def cancel(self, run_id: str) -> Run:
-        """End a run that waits or is under way; a study under way is left to end, and its result dropped."""
+        """End a run that waits or is under way; a study under way goes on to its end, and its result is dropped."""
         run = await self.get(run_id)
         task = self._tasks.get(run_id)
         if task is None:
@@ -180,7 +181,7 @@ class Jobs:
         return run, path
 
     async def recover(self) -> None:
-        """Begin again what the end of the server interrupted; give up what has been begun too often."""
+        """Begin again the runs that the end of the server interrupted; give up those begun too often."""
         query = select(RunRow).where(RunRow.state.in_(ACTIVE)).order_by(RunRow.created)
         for row in await self._database.run(lambda session: list(session.scalars(query))):
             if row.attempts >= MAX_ATTEMPTS or self._settings.run_workers == 0:
@@ -191,7 +192,7 @@ class Jobs:
             self._queue(row.id, row.document, row.seeds)
 
     async def close(self) -> None:
-        """Let go of the queue and the processes; what is not done begins again at the next start."""
+        """End the queue and the processes; unfinished runs begin again at the next start."""
         self._is_closing = True
         for run_id, task in self._tasks.items():
             if run_id not in self._futures:
@@ -204,7 +205,7 @@ class Jobs:
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
 
     async def _carry_out(self, run_id: str, document: dict[str, Any], seeds: list[int]) -> None:
-        """Wait for a worker, then for the result; whatever happens ends up in the table."""
+        """Wait for a worker, then for the result; write every outcome into the table."""
         state, values = "lost", dict[str, Any]()
         try:
             async with self._turn:
@@ -224,7 +225,7 @@ class Jobs:
             await self._end(run_id, state, **values)
 
     async def _attempt(self, run_id: str, document: dict[str, Any], seeds: list[int]) -> tuple[str, dict[str, Any]]:
-        """Run in a worker; ``lost`` when the worker died and there is reason to try again."""
+        """Run in a worker; return ``lost`` when the worker died and another try makes sense."""
         await self._update(run_id, state="running", attempts=RunRow.attempts + 1)
         place = self._folder / run_id
         await asyncio.to_thread(shutil.rmtree, place, ignore_errors=True)
@@ -265,7 +266,7 @@ class Jobs:
         await self._database.run(lambda session: session.execute(statement))
 
     def _live(self, run: Run) -> Run:
-        """Add how far a run is, which its worker says."""
+        """Add the progress of a run, which its worker writes."""
         if run.state != "running":
             return run
         try:

@@ -1,4 +1,4 @@
-"""How long a headless run may be: its ticks, and the memory of what it keeps of its signals."""
+"""Limits of a headless run: its ticks, and the memory of the signals it keeps."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ def check_length(scenario: Scenario, seeds: int, settings: Settings, what: str, 
     Parameters
     ----------
     scenario : Scenario
-        What is to be run.
+        The scenario of the run.
     seeds : int
-        How often.
+        Number of seeds.
     settings : Settings
         Limits.
     what, field : str
-        What the error calls it, and the field it names.
+        The name of the run in the error, and the field at fault.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Campaigns of the service: one after the other, in processes of lower priority or on a cluster.
 
-Rows say what was asked, the run table what is done. A campaign that the end of the server interrupted goes on at the
-next start with what is missing.
+The rows of campaigns say what was requested, the run table says what is done. A campaign that the end of the server
+interrupted goes on at the next start with the missing runs.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import defer
 
 from core.errors import InputError
-from scenarios.campaign import Campaign, Stopped
+from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
 from scenarios.schema import Scenario
-from scenarios.sweep import Sweep
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
 from server.runs.apart import FEW_POINTS, FEW_RUNS, Apart, contents, examine
@@ -79,10 +79,10 @@ class Sweeps:
         self._is_closing = False
 
     async def start(self, document: dict[str, Any]) -> tuple[SweepRun, bool]:
-        """Queue a campaign, or return the same one that is there; true when it is new.
+        """Queue a campaign, or return the same one if it exists; true when it is new.
 
-        Of one with many points only some are checked now, and the others while it waits: if one of them is wrong, the
-        campaign has failed.
+        Of a campaign with many points only some are checked now. The others are checked while it waits; if one of them
+        is wrong, the campaign fails.
 
         Raises
         ------
@@ -141,11 +141,11 @@ class Sweeps:
         return self._live(SweepRun.model_validate(await self._known(sweep_id)))
 
     async def cancel(self, sweep_id: str) -> SweepRun:
-        """Stop a campaign after the runs in hand; what is done stays, and the same campaign goes on from there."""
-        found = await self.get(sweep_id)
+        """Stop a campaign after the runs in hand; its results stay, and the same campaign can go on from there."""
+        sweep = await self.get(sweep_id)
         task = self._tasks.get(sweep_id)
         if task is None:
-            raise ApiError(409, "conflict", f"the campaign is {found.state}; it cannot be cancelled any more")
+            raise ApiError(409, "conflict", f"the campaign is {sweep.state}; it cannot be cancelled any more")
         campaign = self._campaigns.get(sweep_id)
         if campaign is not None:
             campaign.cancel()
@@ -155,11 +155,11 @@ class Sweeps:
         return await self.get(sweep_id)
 
     async def document(self, sweep_id: str) -> dict[str, Any]:
-        """Return a campaign as it was asked for."""
+        """Return the document that a campaign was requested with."""
         return (await self._known(sweep_id)).document
 
     async def read(self, sweep_id: str, reader: Callable[[dict[str, Any], str], T]) -> T:
-        """Return what one of the readers of `server.runs.apart` makes of the results that are there."""
+        """Call one of the readers of `server.runs.apart` on the results so far."""
         row = await self._known(sweep_id)
         if row.version != code_version():
             text = f"its runs are of version {row.version} of the code, this is {code_version()}"
@@ -167,7 +167,7 @@ class Sweeps:
         return await self._reading.call(row.runs, reader, row.document, self._database.url)
 
     async def recover(self) -> None:
-        """Go on with what the end of the server interrupted."""
+        """Go on with the campaigns that the end of the server interrupted."""
         query = select(SweepRow).where(SweepRow.state.in_(ACTIVE)).order_by(SweepRow.created)
         for row in await self._database.run(lambda session: list(session.scalars(query))):
             try:
@@ -181,7 +181,7 @@ class Sweeps:
             log.info("campaign %s goes on", row.id)
 
     async def close(self) -> None:
-        """Stop what is under way; it goes on at the next start."""
+        """Stop the campaign under way; it goes on at the next start."""
         self._is_closing = True
         for sweep_id, task in list(self._tasks.items()):
             campaign = self._campaigns.get(sweep_id)
@@ -194,7 +194,7 @@ class Sweeps:
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
 
     async def _carry_out(self, sweep_id: str, document: dict[str, Any], points: int, is_checked: bool) -> None:
-        """Check what has not been, wait for the turn, then for the end."""
+        """Check the remaining points, wait for the turn, then for the end."""
         state, error = "done", None
         campaign: Campaign | None = None
         try:
@@ -240,10 +240,10 @@ class Sweeps:
         self._metrics.runs.labels(state).inc()
         await self._update(sweep_id, state=state, error=error, finished=datetime.now(UTC), **values)
 
-    def _live(self, found: SweepRun) -> SweepRun:
-        """Add how far it is."""
-        campaign = self._campaigns.get(found.id)
-        return found if campaign is None else found.model_copy(update={"done": campaign.done})
+    def _live(self, sweep: SweepRun) -> SweepRun:
+        """Add the progress of a campaign under way."""
+        campaign = self._campaigns.get(sweep.id)
+        return sweep if campaign is None else sweep.model_copy(update={"done": campaign.done})
 
     async def _row(self, sweep_id: str) -> SweepRow | None:
         return await self._database.run(lambda session: session.get(SweepRow, sweep_id))

@@ -1,4 +1,4 @@
-"""What a worker process does: run a scenario for its seeds and keep what came out."""
+"""The work of a worker process: it runs a scenario for its seeds and keeps the results."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import Any
 
 NICE = 10
-LOOK_S = 0.1
+REPORT_S = 0.1
 STEM, PROGRESS, CANCEL = "run", "progress", "cancel"
 
 
 class Cancelled(Exception):
-    """Somebody asked for the run to end."""
+    """The run was cancelled."""
 
 
 class Watch:
-    """Writes how far a run is, and looks whether it is still wanted.
+    """Writes the progress of a run, and checks whether it was cancelled.
 
     Parameters
     ----------
@@ -32,17 +32,17 @@ class Watch:
         self._place, self._total, self._due = place, total, 0.0
 
     def at(self, before: int) -> Callable[[int], None]:
-        """Return what to call after every chunk, when so many ticks were done by earlier seeds."""
+        """Return the function to call after every chunk, when earlier seeds took so many ticks."""
 
-        def look(tick: int) -> None:
+        def report(tick: int) -> None:
             if time.monotonic() < self._due:
                 return
-            self._due = time.monotonic() + LOOK_S
+            self._due = time.monotonic() + REPORT_S
             if (self._place / CANCEL).exists():
                 raise Cancelled
             (self._place / PROGRESS).write_text(str((before + tick) / self._total))
 
-        return look
+        return report
 
 
 def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: int) -> dict[str, Any]:
@@ -69,7 +69,7 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     Cancelled
         When a file ``cancel`` has appeared in the folder.
     """
-    from scenarios.keeping import keep
+    from scenarios.report.keeping import keep
     from scenarios.run import DEFAULT_SAMPLES, Result, build, run, run_bytes
     from scenarios.schema import Scenario
     from scenarios.seeds import together

@@ -1,1 +1,1 @@
-"""Who may speak to the bench, from where, and how much."""
+"""Access to the bench: token, origin, headers, limits."""

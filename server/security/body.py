@@ -1,4 +1,4 @@
-"""No request body larger than the limit is ever held in memory."""
+"""The limit of request bodies: a larger one is refused and not held in memory."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from server.errors import ApiError, reply
 
 
 class BodyLimit:
-    """Answers 413 as soon as a body is known to be too large.
+    """Answers 413 as soon as a body turns out too large.
 
     Parameters
     ----------
     app : ASGIApp
-        What to wrap.
+        The application to wrap.
     limit : int
         Bytes.
     """
@@ -23,7 +23,7 @@ class BodyLimit:
         self._app, self._limit = app, limit
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Check the declared length first, then count what really comes."""
+        """Check the declared length first, then count the bytes that arrive."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -45,7 +45,7 @@ class BodyLimit:
         await self._app(scope, counted, send)
 
     def _too_large(self) -> ApiError:
-        """Build the refusal; the connection ends, as the rest of the body is not read."""
+        """Build the refusal; the connection ends, because the rest of the body is not read."""
         message = f"the request body is larger than {self._limit} bytes"
         hint = "send less, or raise body_limit_bytes"
         return ApiError(413, "too_large", message, hint=hint, headers={"Connection": "close"})

@@ -15,7 +15,7 @@ from server.security.identity import Identity
 from server.security.origin import OriginPolicy
 
 OPEN_PATHS = frozenset({"/health/live", "/health/ready"})
-"""Answered without a token: a container's health check has none; they tell which parts are well."""
+"""Paths answered without a token, because a container's health check has none; they say which parts are well."""
 
 CLOSE_ORIGIN, CLOSE_AUTH = 4003, 4401
 
@@ -26,16 +26,16 @@ WAY_IN = (
 
 
 class Gate:
-    """Lets through only who is known and comes from this server's own page.
+    """Lets through only callers with the token whose requests come from this server's own page.
 
     Parameters
     ----------
     app : ASGIApp
-        What to guard.
+        The application to guard.
     identity : Identity
-        Knows the token.
+        Checks the token.
     origin : OriginPolicy
-        Knows our own names.
+        Checks the host and the origin.
     open_paths : frozenset of str
         Paths that need no token.
     prefix : str
@@ -49,7 +49,7 @@ class Gate:
         self._open, self._prefix = open_paths, prefix
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Check, then pass on or refuse."""
+        """Check a request, then pass it on or refuse it."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -87,7 +87,7 @@ class Gate:
     async def _refuse(
         self, scope: Scope, receive: Receive, send: Send, status: int, close: int, code: str, message: str
     ) -> None:
-        """Refuse in the form the caller understands."""
+        """Refuse in a form that suits the caller: a page for people, JSON for programs, a close code for sockets."""
         if scope["type"] == "websocket":
             # A browser hides the status of a failed handshake from the page, so the socket is opened to
             # be closed with a code; another site's page (403) is refused before that.

@@ -40,7 +40,7 @@ class SecurityHeaders:
     Parameters
     ----------
     app : ASGIApp
-        What to wrap.
+        The application to wrap.
     prefix : str
         The prefix a proxy takes off every path; redirects put it on again.
     """

@@ -1,4 +1,4 @@
-"""Who is asking: one access token, shown once in the address, then a cookie."""
+"""The identity of callers: one access token, shown once in the address, then a cookie."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Identity:
     """Checks callers against the access token.
 
     The cookie carries a digest of the token, never the token; both are compared in constant time. Browsers send a
-    cookie to every port of a host, so its name tells tokens apart: two benches on one host do not log each other out.
+    cookie to every port of a host, so its name depends on the token: two benches on one host do not log each other out.
 
     Parameters
     ----------
@@ -35,16 +35,16 @@ class Identity:
     def __init__(self, token: str, public: PublicOrigin = DIRECT) -> None:
         self._token, self._public = token.encode(), public
         self.cookie = self._digest(b"combbench session")
-        # A browser takes a cookie of these names by TLS alone, and __Host- for this host and its root alone.
+        # A browser takes a cookie with one of these names by TLS alone, and __Host- for this host and its root alone.
         prefix = ("__Secure-" if public.prefix else "__Host-") if public.is_secure else ""
         self.cookie_name = f"{prefix}combbench-{self._digest(b'combbench cookie')[:8]}"
 
     def _digest(self, purpose: bytes) -> str:
-        """Return what only who has the token can compute."""
+        """Return a digest that only a holder of the token can compute."""
         return hmac.new(self._token, purpose, hashlib.sha256).hexdigest()
 
     def give_cookie(self, response: Response) -> None:
-        """Let who gets this response come in again."""
+        """Set the cookie that lets a browser come in again."""
         response.set_cookie(
             self.cookie_name,
             self.cookie,
@@ -61,7 +61,7 @@ class Identity:
         return self._token.decode()
 
     def is_token(self, given: str) -> bool:
-        """Whether ``given`` is the token."""
+        """Return whether ``given`` is the token."""
         return hmac.compare_digest(given.encode(), self._token)
 
     def has_bearer(self, connection: HTTPConnection) -> bool:
@@ -85,9 +85,9 @@ def fits_header(token: str) -> bool:
 
 
 def token_of(data: Path) -> str:
-    """Return the token kept in the data folder; made there on the first start, or when what is kept is no token.
+    """Return the token kept in the data folder; make one on the first start, or when the file holds no token.
 
-    It survives restarts, so that an open page finds its way back; only the owner may read the file.
+    It survives restarts, so that an open page can connect again; only the owner may read the file.
     """
     path = data / TOKEN_FILE
     try:

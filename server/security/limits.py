@@ -1,4 +1,4 @@
-"""How much one caller may ask: token buckets."""
+"""Rate limits of callers: token buckets."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Where a request comes from: the Host must be ours, the Origin must be exactly ours.
+"""The origin of requests: Host and Origin must be this server's own.
 
 This stops DNS rebinding (a strange name resolving to this machine) and other sites' pages talking to the
-bench in the name of the person who has it open. CORS middleware would not do: it ignores WebSockets.
+bench in the name of the person who has it open. CORS middleware does not suffice: it ignores WebSockets.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class OriginPolicy:
 
     def __init__(self, host: str, allowed_hosts: list[str], public: PublicOrigin = DIRECT) -> None:
         bound = f"[{host}]" if ":" in host else host
-        own = set() if bound in ("0.0.0.0", "[::]") else {bound.lower()}
-        self._names = LOOPBACK_NAMES | own | {name.lower() for name in [*allowed_hosts, public.host] if name}
+        bound_names = set() if bound in ("0.0.0.0", "[::]") else {bound.lower()}
+        self._names = LOOPBACK_NAMES | bound_names | {name.lower() for name in [*allowed_hosts, public.host] if name}
         self._origin = public.origin
 
     def refusal(self, connection: HTTPConnection, has_bearer: bool) -> str | None:
@@ -43,7 +43,7 @@ class OriginPolicy:
         connection : HTTPConnection
             An HTTP request or a WebSocket handshake.
         has_bearer : bool
-            Whether it carries the token itself: a program, not a page, so it may come without an Origin.
+            Whether it carries the token itself: it is then a program, not a page, and needs no Origin.
         """
         host = connection.headers.get("host", "").lower()
         if self._name_of(host) not in self._names:
@@ -55,7 +55,7 @@ class OriginPolicy:
             if changes and not has_bearer:
                 return "a request without an Origin header needs a bearer token"
             return None
-        # The service itself speaks plain HTTP; what a proxy makes of it is told by the settings, never by a header.
+        # The service itself speaks plain HTTP. The settings say how a proxy publishes it; headers are not trusted.
         if origins != [self._origin or f"http://{host}"]:
             return f"the Origin '{origins[0][:80]}' is not the origin of this server"
         return None

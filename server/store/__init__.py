@@ -1,1 +1,1 @@
-"""What outlives the process: the run table, the recordings, their files."""
+"""The data that outlives the process: the run table, the recordings, their files."""

@@ -74,18 +74,20 @@ def compare(
     if not len(rows[0]) or not common:
         raise InputError("have no tick and signal in common", "other", 'align them by "start"')
     schema = pq.read_schema(first)
-    found = []
+    differences = []
     for name in common:
-        one, two = (_column(path, name)[at].astype(np.float64) for path, at in zip((first, second), rows, strict=True))
-        difference = np.abs(one - two)
-        difference[np.isnan(one) & np.isnan(two)] = 0.0
+        first_values, second_values = (
+            _column(path, name)[at].astype(np.float64) for path, at in zip((first, second), rows, strict=True)
+        )
+        difference = np.abs(first_values - second_values)
+        difference[np.isnan(first_values) & np.isnan(second_values)] = 0.0
         difference[np.isnan(difference)] = np.inf
-        peak = float(np.max(np.abs(one), initial=0.0, where=np.isfinite(one)))
+        peak = float(np.max(np.abs(first_values), initial=0.0, where=np.isfinite(first_values)))
         tolerance = tolerances.get(name, absolute + relative * peak)
         worst = int(np.argmax(difference))
         largest = min(float(difference[worst]), float(np.finfo(np.float64).max))
         rms = float(np.sqrt(np.mean(np.minimum(difference, 1e150) ** 2)))
-        found.append(
+        differences.append(
             SignalDifference(
                 signal=name,
                 unit=(schema.field(name).metadata or {}).get(b"unit", b"").decode(),
@@ -97,9 +99,9 @@ def compare(
             )
         )
     return Comparison(
-        ok=all(entry.ok for entry in found),
+        ok=all(entry.ok for entry in differences),
         ticks=len(rows[0]),
-        signals=found,
+        signals=differences,
         only_in_first=[name for name in names[0][2:] if name not in names[1]],
         only_in_second=[name for name in names[1][2:] if name not in names[0]],
     )

@@ -59,7 +59,7 @@ class Database:
             raise InputError(f"the database cannot be used: {reason_of(error)}", "database_url") from None
 
     def claim(self) -> None:
-        """Keep a PostgreSQL database for this process until `close`; the lock of the data folder does it for SQLite.
+        """Lock a PostgreSQL database for this process until `close`; the lock of the data folder protects SQLite.
 
         Raises
         ------
@@ -105,11 +105,11 @@ class Database:
         return await asyncio.get_running_loop().run_in_executor(self._thread, self.transact, work)
 
     async def is_writable(self) -> bool:
-        """Whether something can be written now."""
+        """Return whether the database can be written now."""
 
         def probe(session: Session) -> bool:
             if session.get_bind().dialect.name == "sqlite":
-                session.execute(text("PRAGMA user_version = 0"))  # writes a page, though it is 0 already
+                session.execute(text("PRAGMA user_version = 0"))  # writes a page even though the version is 0 already
                 return True
             return not session.execute(text("SELECT pg_is_in_recovery()")).scalar()
 
@@ -119,7 +119,7 @@ class Database:
             return False
 
     async def used_bytes(self) -> int:
-        """Return the bytes of a file of SQLite that are in use; 0 for PostgreSQL, which keeps house for itself."""
+        """Return the bytes of a file of SQLite that are in use; 0 for PostgreSQL, which manages its own storage."""
         if not self.url.startswith("sqlite"):
             return 0
         pages = "SELECT page_size * (page_count - freelist_count) FROM pragma_page_size, pragma_page_count, "
@@ -183,7 +183,7 @@ def alembic_config(url: str, connection: Any = None) -> Config:
     """Describe the migrations to Alembic without an ini file."""
     from alembic.config import Config
 
-    config = Config(stdout=sys.stdout)  # the one of now: by default it is the one of the import
+    config = Config(stdout=sys.stdout)  # the standard output of now; the default is that of the import
     config.set_main_option("script_location", str(MIGRATIONS))
     config.set_main_option("sqlalchemy.url", url.replace("%", "%%"))
     config.attributes["connection"] = connection

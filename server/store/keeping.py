@@ -1,4 +1,4 @@
-"""How much is kept, and for how long: the quota and the retention of recordings and runs."""
+"""The quota and the retention of recordings and runs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FOLDERS = ("recordings", "runs")
 
 
 class Keeping:
-    """Watches what recordings and runs take.
+    """Watches the disk space and the age of recordings and runs.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Keeping:
         return left
 
     async def run(self) -> None:
-        """Delete what is older than it may be, now and every hour."""
+        """Delete recordings and runs beyond the retention, now and every hour."""
         while True:
             try:
                 await self.expire()
@@ -66,7 +66,7 @@ class Keeping:
             await asyncio.sleep(EVERY_S)
 
     async def expire(self) -> int:
-        """Delete what ended longer ago than the retention; return how many."""
+        """Delete recordings and runs that ended longer ago than the retention; return how many."""
         if not self._settings.retention_days:
             return 0
         before = datetime.now(UTC) - timedelta(days=self._settings.retention_days)
@@ -74,10 +74,10 @@ class Keeping:
         for table, folder in ((RecordingRow, "recordings"), (RunRow, "runs")):
             query = select(table.id).where(table.finished < before)
             ids = await self._database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
-            for one in ids:
-                # The files first: on a full disk the row can only go once they have made room.
-                await asyncio.to_thread(_remove, self._settings.data / folder, one)
-                statement = delete(table).filter_by(id=one)
+            for key in ids:
+                # The files go first: on a full disk the row can be deleted only after they have made room.
+                await asyncio.to_thread(_remove, self._settings.data / folder, key)
+                statement = delete(table).filter_by(id=key)
                 await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
             count += len(ids)
         if count:

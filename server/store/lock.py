@@ -26,7 +26,7 @@ def lock(folder: Path, field: str) -> IO[str]:
     Raises
     ------
     InputError
-        When another process has it, naming that process.
+        When another process has locked it; the error names that process.
     OSError
         When nothing can be written there.
     """

@@ -45,7 +45,7 @@ class Base(DeclarativeBase):
 
 
 class RunRow(Base):
-    """One headless run: what was asked, how far it is, what came out."""
+    """One headless run: its request, its progress, its results."""
 
     __tablename__ = "runs"
 
@@ -65,7 +65,7 @@ class RunRow(Base):
 
 
 class SweepRow(Base):
-    """One campaign: what was asked, and how it ended; what came out is in the results."""
+    """One campaign: its request, and how it ended; the table of results has its results."""
 
     __tablename__ = "sweeps"
 
@@ -83,7 +83,7 @@ class SweepRow(Base):
 
 
 class ResultRow(Base):
-    """One run of a campaign, by its key: scenario, seed and version. Whoever needs it finds it here."""
+    """One run of a campaign, by its key: scenario, seed and version. All campaigns share these rows."""
 
     __tablename__ = "results"
 

@@ -13,7 +13,7 @@ OTHERS = 0o077
 
 
 def keep_private(data: Path) -> None:
-    """Make the data folder if there is none, and let nobody else read what is kept in it, from before or from now on.
+    """Make the data folder if there is none, and let nobody else read its old and its new files.
 
     An existing folder keeps its mode, because it may also hold files of others.
 
@@ -24,7 +24,7 @@ def keep_private(data: Path) -> None:
     """
     os.umask(OTHERS)
     data.mkdir(parents=True, exist_ok=True)
-    for path in (found for pattern in KEPT for found in data.glob(pattern)):
+    for path in (path for pattern in KEPT for path in data.glob(pattern)):
         mode = path.stat().st_mode
         if mode & OTHERS:
             try:

@@ -1,7 +1,7 @@
-"""The file of a recording while it grows, and what it becomes.
+"""The file of a recording: a stream while it grows, a Parquet file at the end.
 
 Rows go to an Arrow stream first, which is readable up to its last whole batch even after a power cut; at the
-end it is rewritten as Parquet. What a crash left behind is recovered at the next start.
+end it is rewritten as Parquet. A stream left by a crash is recovered at the next start.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from core.errors import InputError
-from scenarios.traces import packing
+from scenarios.report.traces import packing
 
 PART, EVENTS = ".arrows", ".events"
 GROUP_TICKS = 1 << 15
-"""Ticks in a piece of the Parquet file: small ones cost more in description than in data."""
+"""Ticks in a row group of the Parquet file: a small group takes more space for its description than for its data."""
 
 
 class RecordingFile:
@@ -36,7 +36,7 @@ class RecordingFile:
     schema : pa.Schema
         Columns.
     reserve_bytes : int
-        Free space that is left alone.
+        Free space that recordings must leave.
     """
 
     def __init__(self, path: Path, schema: pa.Schema, reserve_bytes: int = 0) -> None:
@@ -46,7 +46,7 @@ class RecordingFile:
         self._stream = pa.ipc.new_stream(self._sink, schema)
 
     def append(self, table: pa.Table) -> None:
-        """Write a batch; it survives from here on.
+        """Write a batch; it survives a crash from here on.
 
         Raises
         ------
@@ -60,7 +60,7 @@ class RecordingFile:
         self._sink.flush()
 
     def note(self, line: str) -> None:
-        """Write an event, a line of JSON; it survives from here on."""
+        """Write an event, a line of JSON; it survives a crash from here on."""
         with self._path.with_suffix(EVENTS).open("a", encoding="utf-8") as file:
             file.write(line + "\n")
 
@@ -71,7 +71,7 @@ class RecordingFile:
         return convert(self._path)
 
     def salvage(self) -> int:
-        """Let go of a stream that cannot be written any more; keep what has reached the disk."""
+        """Close a stream that cannot be written any more; keep the batches that have reached the disk."""
         with contextlib.suppress(OSError):
             self._sink.close()
         try:
@@ -81,19 +81,19 @@ class RecordingFile:
 
 
 def free_bytes(folder: Path) -> int:
-    """Return the free space of the disk a folder is on; of the one it would be made on."""
+    """Return the free space of the disk that holds a folder, or would hold it."""
     while not folder.exists():
         folder = folder.parent
     return shutil.disk_usage(folder).free
 
 
 def rescue(path: Path) -> int:
-    """Make whole what a crash has left of a recording; return the ticks of its Parquet file, 0 without one."""
+    """Complete the file of a recording after a crash; return the ticks of its Parquet file, 0 without one."""
     try:
         if path.with_suffix(PART).exists():
             return convert(path)
         return int(pq.read_metadata(path).num_rows)
-    except pa.ArrowInvalid:  # not even what it is about has reached the disk
+    except pa.ArrowInvalid:  # the header has not reached the disk
         path.with_suffix(PART).unlink(missing_ok=True)
         return 0
     except (OSError, pa.ArrowException):
@@ -133,7 +133,7 @@ def convert(path: Path) -> int:
             for batch in _whole_batches(reader):
                 held.append(batch)
                 ticks += batch.num_rows
-                if sum(one.num_rows for one in held) >= GROUP_TICKS:
+                if sum(held_batch.num_rows for held_batch in held) >= GROUP_TICKS:
                     writer.write_table(pa.Table.from_batches(held))
                     held = []
             if held:

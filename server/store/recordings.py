@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 OPEN = ("armed", "recording")
 State = Literal["armed", "recording", "done", "cut_short", "failed", "aborted"]
-"""Waits, grows, has ended as meant, has ended early and is whole up to there, has nothing, the server stopped."""
+"""It waits; it grows; it ended as intended; it ended early but is whole; it is empty; the server stopped."""
 
 
 class Recording(BaseModel):
@@ -55,7 +55,7 @@ class Recording(BaseModel):
 
 
 class RecordingDetail(Recording):
-    """A recording with all that it takes to understand and repeat it."""
+    """A recording with the data needed to understand and repeat it."""
 
     scenario: dict[str, Any] | None
     events: list[dict[str, Any]] | None
@@ -64,7 +64,7 @@ class RecordingDetail(Recording):
 
 @dataclass(frozen=True)
 class About:
-    """What a recording says of itself."""
+    """The description of a recording at its beginning."""
 
     bench_id: str
     name: str
@@ -86,7 +86,7 @@ class Recordings:
     folder : Path
         Where the files are.
     reserve_bytes : int
-        Free space that is left alone.
+        Free space that recordings must leave.
     """
 
     def __init__(self, database: Database, folder: Path, reserve_bytes: int) -> None:
@@ -94,7 +94,7 @@ class Recordings:
         self._unclosed: dict[str, dict[str, Any]] = {}
 
     def path(self, recording_id: str) -> Path:
-        """Return the file of a recording; the id is ours, never a caller's text."""
+        """Return the file of a recording; the id must be one that the service made, never a caller's text."""
         return self._folder / f"{recording_id}.parquet"
 
     async def open(self, about: About, schema: pa.Schema) -> tuple[Recording, RecordingFile]:
@@ -149,7 +149,7 @@ class Recordings:
         statement = update(RecordingRow).where(RecordingRow.id == recording_id).values(**values)
         try:
             self._database.transact(lambda session: session.execute(statement))
-        except DBAPIError as error:  # a full disk; it is tried again when somebody asks
+        except DBAPIError as error:  # a full disk; closing is tried again at the next request
             log.error("recording %s is not closed in the database: %s", recording_id, reason_of(error))
             self._unclosed[recording_id] = values
         else:
@@ -157,7 +157,7 @@ class Recordings:
             path.with_suffix(EVENTS).unlink(missing_ok=True)
 
     async def _settle(self) -> None:
-        """Close what could not be closed while the disk was full, and make its file whole."""
+        """Close the recordings that a full disk kept from closing, and complete their files."""
         for recording_id, values in list(self._unclosed.items()):
             if not values["ticks"]:
                 values["ticks"] = await asyncio.to_thread(rescue, self.path(recording_id))
@@ -190,7 +190,7 @@ class Recordings:
         return recording, path
 
     async def delete(self, recording_id: str) -> None:
-        """Delete a recording that has ended: the files first, as a full disk lets the row go only when they have."""
+        """Delete a recording that has ended: the files first, because a full disk leaves no room to delete the row."""
         recording = await self.get(recording_id)
         if recording.state in OPEN:
             raise ApiError(409, "conflict", "the recording is under way", hint="stop it first")
@@ -200,11 +200,11 @@ class Recordings:
         await self._database.run(lambda session: session.execute(delete(RecordingRow).filter_by(id=recording_id)))
 
     async def recover(self) -> None:
-        """Make whole what a crash has left: keep the ticks that reached the disk, mark the row aborted."""
+        """Complete recordings after a crash: keep the ticks that reached the disk, mark the rows aborted."""
         query = select(RecordingRow.id, RecordingRow.state)
         known = {row.id: row.state for row in await self._database.run(lambda session: list(session.execute(query)))}
         for recording_id, state in known.items():
-            # A disk that was full leaves a stream of a recording that has ended.
+            # A full disk leaves the stream of a recording that has ended.
             if state in OPEN or self.path(recording_id).with_suffix(PART).exists():
                 ticks = await asyncio.to_thread(self._rescue, recording_id)
                 log.warning("recovered %d ticks of recording %s", ticks, recording_id)
@@ -213,7 +213,7 @@ class Recordings:
                 path.unlink(missing_ok=True)
 
     def _rescue(self, recording_id: str) -> int:
-        """Make a file whole and close its row."""
+        """Complete a file and close its row."""
         path = self.path(recording_id)
         ticks = rescue(path)
         values: dict[str, Any] = {"state": "aborted", "ticks": ticks, "reason": "the server stopped"}

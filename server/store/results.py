@@ -21,35 +21,35 @@ class Results:
     Parameters
     ----------
     database : Database
-        Where it is.
+        The database of the table.
     """
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def have(self, keys: Sequence[str]) -> set[str]:
-        """Return which of the keys are there."""
-        found: set[str] = set()
+        """Return the keys that have a result."""
+        keys_there: set[str] = set()
         for start in range(0, len(keys), AT_ONCE):
             query = select(ResultRow.key).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
-            found |= set(self._database.transact(lambda session, q=query: list(session.scalars(q))))  # type: ignore[misc]
-        return found
+            keys_there |= set(self._database.transact(lambda session, q=query: list(session.scalars(q))))  # type: ignore[misc]
+        return keys_there
 
-    def put(self, found: list[tuple[str, dict[str, Any]]]) -> None:
-        """Add outcomes in one transaction; one that is there already stays as it is."""
-        rows = [{"key": key, "outcome": outcome} for key, outcome in found]
+    def put(self, outcomes: list[tuple[str, dict[str, Any]]]) -> None:
+        """Add outcomes in one transaction; existing outcomes stay as they are."""
+        rows = [{"key": key, "outcome": outcome} for key, outcome in outcomes]
         if rows:
             self._database.transact(lambda session: session.execute(self._insert(), rows))
 
     def outcomes(self, keys: Sequence[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Yield the outcomes that are there, a few hundred at a time."""
+        """Yield the outcomes in the table, a few hundred at a time."""
         for start in range(0, len(keys), AT_ONCE):
             query = select(ResultRow.key, ResultRow.outcome).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
             rows = self._database.transact(lambda session, q=query: list(session.execute(q)))  # type: ignore[misc]
             yield from ((key, outcome) for key, outcome in rows)
 
     def _insert(self) -> Insert:
-        """Say "insert unless it is there" in the words of the database."""
+        """Return the statement "insert unless it exists" in the dialect of the database."""
         if self._database.url.startswith("sqlite"):
             return sqlite.insert(ResultRow).on_conflict_do_nothing()
         return postgresql.insert(ResultRow).on_conflict_do_nothing()

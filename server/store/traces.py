@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError, unknown
 from core.signals import CLOCK
-from scenarios.traces import packing
+from scenarios.report.traces import packing
 
 LARGEST = 2**62
 Format = Literal["csv", "parquet", "npz", "mat"]
@@ -54,7 +54,7 @@ def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[
 
 @dataclass(frozen=True)
 class Cut:
-    """Which part of a trace: signals (all when empty), ticks from start to before end, every so many."""
+    """A part of a trace: signals (all when empty), ticks from start to before end, every so many."""
 
     signals: tuple[str, ...] = ()
     start: int | None = None
@@ -63,7 +63,7 @@ class Cut:
 
     @property
     def is_all(self) -> bool:
-        """Whether nothing is left out."""
+        """Whether the part is the whole trace."""
         return self == Cut()
 
 

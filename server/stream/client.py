@@ -1,7 +1,7 @@
-"""One open stream: what is sent, in which order, and never more than the client takes.
+"""One open stream: it sends messages in a fixed order and no more than the client takes.
 
-Hardly anything is queued per client. Events are read from the bench's log behind a cursor, a picture is the one of the
-moment it can be sent, so a slow client costs one frame slot and sees the newest picture.
+The server queues hardly anything per client. It reads events from the bench's log behind a cursor, and takes a picture
+at the moment it can be sent. A slow client therefore costs one frame slot and sees the newest picture.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ log = logging.getLogger(__name__)
 CLOSE_SLOW, CLOSE_FAILED = 4408, 1011
 
 WINDOW = 2
-"""Frames sent and not acknowledged yet, at most."""
+"""Most frames sent and not acknowledged yet."""
 
 STALL_S = 5.0
-"""A client that takes nothing for this long is let go."""
+"""The stream of a client that takes nothing for this long is closed."""
 
 MOST_WAITING = 500
-"""Answers that wait for a client which asks and does not read."""
+"""Most answers that wait for a client that asks and does not read."""
 
 
 class Client:
@@ -42,17 +42,17 @@ class Client:
     Parameters
     ----------
     line : Line
-        Accepted.
+        The accepted connection.
     session : Session
         The bench it watches.
     sent : Sent
         Where frames are counted.
     news : News
-        The bench in words.
+        The messages about the bench.
     cuts : SharedCuts
-        The bench in pictures.
+        The pictures of the bench.
     last_event : int
-        Number of the last event it is taken to know.
+        Number of the last event the client has.
     """
 
     def __init__(self, line: Line, session: Session, sent: Sent, news: News, cuts: SharedCuts, last_event: int) -> None:
@@ -73,7 +73,7 @@ class Client:
         self._told_slow_at = -1e9
 
     def offer(self, *, events: bool = False, status: bool = False, frame: bool = False) -> None:
-        """Say what there may be that is new."""
+        """Mark what may be new: events, status, pictures."""
         self._wants_events |= events
         self._wants_status |= status
         if frame:
@@ -111,9 +111,9 @@ class Client:
         self.offer(events=True)
 
     def stalled(self, now: float) -> bool:
-        """Whether it has taken nothing for too long although there was something to take.
+        """Return whether the client has taken nothing for too long although something waited for it.
 
-        A client may acknowledge frames it never read, so bytes must also leave for it.
+        A client may acknowledge frames it has not read, so bytes must also leave for it.
         """
         if self.line.waiting == 0 or self.line.passed_on > self._passed_on:
             self._passed_on, self._moved_at = self.line.passed_on, now
@@ -121,12 +121,12 @@ class Client:
         return unread or (self._frame > self._acked and now - self._taken_at > STALL_S)
 
     def close(self, code: int, reason: str) -> None:
-        """Close the stream, behind what was sent."""
+        """Close the stream behind the messages sent so far."""
         self.closing = self.closing or (code, reason)
         self.closed.set()
 
     def flush(self) -> None:
-        """Send what is due, as far as the line takes it; the rest goes when it has drained."""
+        """Send the messages that are due, as far as the line takes them; the rest follows when it has drained."""
         if self.closing is not None:
             return
         try:
@@ -138,11 +138,11 @@ class Client:
 
     @property
     def _has_room(self) -> bool:
-        """Whether another frame may go."""
+        """Whether another frame may be sent."""
         return self._frame - self._acked < WINDOW and self.line.is_free
 
     def _due(self) -> list[bytes]:
-        """Take what is to be sent now; written in one go it costs one call of the system."""
+        """Take the messages to send now; written together they cost one system call."""
         due = [*self._outbox]
         self._outbox.clear()
         if self._wants_events:
@@ -155,16 +155,16 @@ class Client:
 
     def _events(self) -> list[bytes]:
         """Return some of the events behind the cursor; if the log has forgotten some, say how many."""
-        said, self._cursor = self._news.events(self._cursor)
-        self._wants_events = bool(said)
-        return said
+        messages, self._cursor = self._news.events(self._cursor)
+        self._wants_events = bool(messages)
+        return messages
 
     def _status(self) -> list[bytes]:
         """Return the status; the scenario as it is now only if it has changed since."""
         self._wants_status = False
-        said = self._news.status(self._edition, self.dropped)
+        status = self._news.status(self._edition, self.dropped)
         self._edition = self._news.edition
-        return [said]
+        return [status]
 
     def _picture(self) -> list[bytes]:
         """Return the pictures that have changed as one frame."""
@@ -186,7 +186,7 @@ class Client:
         return [binary_head(length), *parts]
 
     def _drop(self) -> None:
-        """Count a frame the client was too slow for, and tell it so now and then."""
+        """Count a frame the client was too slow for, and send it a notice now and then."""
         if not self.session.is_running:
             return
         self.dropped += 1

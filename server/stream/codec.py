@@ -45,7 +45,7 @@ class Picture:
 
     @cached_property
     def body(self) -> bytes:
-        """The samples as they are sent: made once, however many pages show this picture."""
+        """The samples as they are sent, made once for all pages that show this picture."""
         odd = b"\0\0\0\0" if len(self.latest) % 2 else b""
         return self.columns.tobytes() + self.latest.tobytes() + odd
 
@@ -77,7 +77,7 @@ class Moment:
     dt_ms : float
         Device time of one tick.
     cut_s : float
-        When it was taken, on the server's monotonic clock.
+        Time of the cut, on the server's monotonic clock.
     """
 
     head: int
@@ -121,7 +121,7 @@ class Frame:
 
 
 def decode(data: bytes) -> Frame:
-    """Decode one frame: the reference for other clients, and what tests and tools read with.
+    """Decode one frame: the reference for other clients; tests and tools use it.
 
     Raises
     ------

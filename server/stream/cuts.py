@@ -1,4 +1,4 @@
-"""The history of a bench at one moment, and what pages show of it."""
+"""The history of a bench at one moment, and the pictures that pages show of it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class SharedCuts:
         self.refresh()
 
     def refresh(self) -> int:
-        """Take the present moment; returns its tick."""
+        """Take the present moment; return its tick."""
         if self._session.history is not self._history:
             self._history = self._session.history
             for view in self._views.values():
@@ -41,21 +41,21 @@ class SharedCuts:
         return self.moment.head
 
     def picture(self, view: View) -> Picture:
-        """Return what a view shows at this moment."""
+        """Return the picture of a view at this moment."""
         picture = self._pictures.get(view)
         if picture is None:
             picture = self._pictures[view] = view.picture(self)
         return picture
 
     def view(self, spec: Subscribe, indices: list[int], trigger_index: int | None) -> View:
-        """Return what a subscription shows: that of another page which asked for the same, or a new one."""
+        """Return the view of a subscription: pages with the same subscription share one."""
         fresh = View(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head)
         if spec.trigger is not None and spec.trigger.sweep == "single":
-            return fresh  # each page arms its own
+            return fresh  # each page arms its own trigger
         key = f"{self.moment.dt_ms} {spec.model_copy(update={'panel': 0}).model_dump_json()}"
         return self._views.setdefault(key, fresh)
 
-    # What views read.
+    # Views read the history by the methods below.
 
     @property
     def end_tick(self) -> int:

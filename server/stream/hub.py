@@ -1,4 +1,4 @@
-"""All open streams: who watches what, when there is something new to see, when to let one go."""
+"""All open streams: the hub counts them, offers them news, and closes stalled ones."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CLOSE_FULL, CLOSE_GONE, CLOSE_NO_BENCH = 1013, 1001, 4404
 
 
 class Hub:
-    """Shows what is new at the frame rate, and the status five times a second.
+    """Sends news at the frame rate, and the status five times a second.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Hub:
         return len(room.clients) if room else 0
 
     def check_room(self, bench_id: str) -> None:
-        """Refuse one stream too many.
+        """Refuse a new stream if a limit is reached.
 
         Raises
         ------
@@ -68,19 +68,19 @@ class Hub:
             raise ApiError(503, "too_many_clients", text)
 
     def room(self, session: Session) -> Room:
-        """Return where the pages of a bench are."""
+        """Return the room of a bench."""
         if session.id not in self._rooms:
             self._rooms[session.id] = Room(session, lambda: self.around(session))
         return self._rooms[session.id]
 
     def add(self, client: Client) -> None:
-        """Take a stream in, and give it a number people can tell it by."""
+        """Add a stream, and give it a number that people know it by."""
         client.name = f"page {next(self._numbers)}"
         self.room(client.session).clients.add(client)
         self._metrics.clients.set(len(self))
 
     def remove(self, client: Client) -> None:
-        """Let a stream go."""
+        """Remove a stream."""
         room = self._rooms[client.session.id]
         room.clients.discard(client)
         if not room.clients:
@@ -88,16 +88,16 @@ class Hub:
         self._metrics.clients.set(len(self))
 
     def publish(self) -> None:
-        """Show what is new if it is time to; called on the loop after every round of the engine."""
+        """Send news if a picture is due; called on the event loop after every round of the engine."""
         if self._showing is not None or not self._pace.is_due(time.monotonic()):
-            # A bench that stands still has no later round that would show where it came to.
+            # A paused bench has no later round, so its last picture is sent by a timer.
             if self._later is None:
                 self._later = asyncio.get_running_loop().call_later(self._pace.period_s, self._show)
             return
         self._show()
 
     def _show(self) -> None:
-        """Show what is new."""
+        """Send news to all pages."""
         if self._later is not None:
             self._later.cancel()
             self._later = None
@@ -108,7 +108,7 @@ class Hub:
             self._go_on()
 
     def _go_on(self) -> None:
-        """Serve some pages, then let the event loop do what has come up meanwhile."""
+        """Serve some pages, then let the event loop do other work."""
         assert self._showing is not None
         try:
             for _ in self._showing:
@@ -124,7 +124,7 @@ class Hub:
             client.close(CLOSE_NO_BENCH, "the bench was closed")
 
     def close_all(self, reason: str) -> None:
-        """Close every stream: the server goes."""
+        """Close every stream because the server stops."""
         for client in self._all():
             client.post(Notice(code="shutdown", message=reason))
             client.close(CLOSE_GONE, reason)
@@ -134,12 +134,12 @@ class Hub:
         return {"watchers": self.watchers(session.id), **self._lateness()}
 
     async def run(self) -> None:
-        """Offer the status, let stalled clients go."""
+        """Offer the status, and close stalled streams."""
         while True:
             due = time.monotonic() + STATUS_S
             await asyncio.sleep(STATUS_S)
             for client in self._all():
-                # As of when it was due: a loop that stood still has not read yet what pages took meanwhile.
+                # The time due counts: a loop that stood still has not read the acknowledgements of that time yet.
                 if client.stalled(due):
                     self._metrics.streams_closed.labels("stalled").inc()
                     client.close(CLOSE_SLOW, "nothing was taken for 5 s")

@@ -1,4 +1,4 @@
-"""A WebSocket that also takes messages ready made, so that what many are sent is made once."""
+"""A WebSocket that also takes framed messages, so that a message for many pages is framed once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from starlette.websockets import WebSocket
 from uvicorn.config import Config
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from uvicorn.server import ServerState
-from websockets.frames import Frame, Opcode, apply_mask  # type: ignore[attr-defined]
+from websockets.frames import CloseCode, Frame, Opcode, apply_mask  # type: ignore[attr-defined]
 from websockets.http11 import Request
 
 EXTENSION = "combbench.line"
@@ -40,7 +40,7 @@ def short_text(data: bytes) -> bytes | None:
 
 
 def ends_whole(data: bytes) -> bool:
-    """Say whether the bytes, which begin with a message of a client, end with the end of one."""
+    """Return whether the bytes, which begin with a message of a client, end with the end of one."""
     at = 0
     while len(data) - at >= 6:
         length, head = data[at + 1] & 0x7F, 6
@@ -55,8 +55,8 @@ class Line(WebSocketsSansIOProtocol):
     """uvicorn's WebSocket, with a short way past the application in both directions.
 
     The usual way costs two turns of the event loop and a copy for each message: too much for a picture sixty times a
-    second to each of 200 pages. Handshake, limits, pings and closing stay uvicorn's. A short message that arrives alone
-    passes the parser too, as long as everything before it arrived in whole messages.
+    second to each of 200 pages. uvicorn still handles handshake, limits, pings and closing. A short message that
+    arrives alone bypasses the parser too, as long as all bytes before it were whole messages.
     """
 
     def __init__(
@@ -68,9 +68,9 @@ class Line(WebSocketsSansIOProtocol):
     ) -> None:
         super().__init__(config, server_state, app_state, _loop)
         self.hear: Callable[[bytes], bool] = lambda _text: False
-        """Asked first about each text message; true if that is all there is to do with it."""
+        """Called first with each text message; returns true if it has handled the message."""
         self.drained: Callable[[], None] = lambda: None
-        """Told when a full line takes more again."""
+        """Called when a full line takes more again."""
         self._written = 0
         self._is_new = self._is_whole = True
 
@@ -81,12 +81,12 @@ class Line(WebSocketsSansIOProtocol):
 
     @property
     def is_free(self) -> bool:
-        """Whether what is written now goes out soon: little of what was written before still waits."""
+        """Whether a message written now leaves soon: few earlier bytes still wait."""
         return self.writable.is_set()
 
     @property
     def waiting(self) -> int:
-        """Bytes written that the other side has not made room for."""
+        """Bytes written that wait for room at the other side."""
         return int(self.transport.get_write_buffer_size())
 
     @property
@@ -101,10 +101,10 @@ class Line(WebSocketsSansIOProtocol):
             self.transport.write(data)
 
     def cut(self) -> None:
-        """Give up the connection of somebody who takes not even a close."""
+        """Cut the connection of a client that does not take the close."""
         self.transport.abort()
 
-    # What uvicorn calls.
+    # uvicorn calls the methods below.
 
     def handle_connect(self, event: Request) -> None:
         """Let the application find this line."""
@@ -113,7 +113,7 @@ class Line(WebSocketsSansIOProtocol):
             cast(dict[str, Any], self.scope["extensions"])[EXTENSION] = self
 
     def data_received(self, data: bytes) -> None:
-        """Take what has come."""
+        """Take bytes that have arrived."""
         if self._is_new:  # the request that opens it
             self._is_new = False
         elif self._is_whole:
@@ -124,12 +124,20 @@ class Line(WebSocketsSansIOProtocol):
             self._is_whole = ends_whole(data)
         super().data_received(data)
 
+    def handle_parser_exception(self) -> None:
+        """Cut a client that breaks the rules before it was answered: no close can be sent yet."""
+        if self.conn.close_sent is None:
+            self.queue.put_nowait({"type": "websocket.disconnect", "code": CloseCode.PROTOCOL_ERROR, "reason": ""})
+            self.transport.abort()
+        else:
+            super().handle_parser_exception()
+
     def handle_text(self, event: Frame) -> None:
-        """Offer a whole message to who hears it at once."""
+        """Offer a whole message to `hear`."""
         if not (event.fin and not self.close_sent and self.hear(bytes(event.data))):
             super().handle_text(event)
 
     def resume_writing(self) -> None:
-        """Go on."""
+        """Go on writing."""
         super().resume_writing()
         self.drained()

@@ -11,11 +11,11 @@ from server.stream.line import text_message
 from server.stream.wire import Events, Notice, Status
 
 EVENTS_AT_ONCE = 100
-UNTOLD = '"dropped_frames":-1'
+UNKNOWN_DROPPED = '"dropped_frames":-1'
 
 
 class News:
-    """The words on one bench.
+    """The messages about one bench: its status and its events.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class News:
         self._session, self._around = session, around
         self._document = document_now(session)
         self.edition = 1
-        """Changes whenever the parameters do."""
+        """Number of the present parameters; it rises when they change."""
         self._status: object = None
         self._texts: dict[bool, str] = {}
         self._statuses: dict[tuple[bool, int], bytes] = {}
@@ -47,8 +47,8 @@ class News:
                 self.edition += 1
         key = (known_edition != self.edition, dropped)
         if key not in self._statuses:
-            told = f'"dropped_frames":{dropped}'
-            self._statuses[key] = text_message(self._text(key[0]).replace(UNTOLD, told))
+            dropped_field = f'"dropped_frames":{dropped}'
+            self._statuses[key] = text_message(self._text(key[0]).replace(UNKNOWN_DROPPED, dropped_field))
         return self._statuses[key]
 
     def events(self, after: int) -> tuple[list[bytes], int]:
@@ -58,16 +58,16 @@ class News:
             self._events = {}
         if after not in self._events:
             lost, events = self._session.events.after(after, EVENTS_AT_ONCE)
-            said = (
+            notices = (
                 [Notice(code="events_lost", message=f"{lost} events are older than this bench keeps")] if lost else []
             )
-            messages = [*said, Events(events=events)] if events else said
+            messages = [*notices, Events(events=events)] if events else notices
             last = events[-1].seq if events else after
-            self._events[after] = ([text_message(one.model_dump_json()) for one in messages], last)
+            self._events[after] = ([text_message(message.model_dump_json()) for message in messages], last)
         return self._events[after]
 
     def _text(self, with_parameters: bool) -> str:
-        """Return the status but for one number that differs from page to page."""
+        """Return the status without the one number that differs from page to page."""
         if with_parameters not in self._texts:
             message = Status(
                 **{**dict(self._session.status), **self._around()},

@@ -1,4 +1,4 @@
-"""How often pictures are sent: as often as asked, less often while the event loop has too much to do."""
+"""The rate of pictures: the rate of the settings, or less while the event loop is too busy."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable
 
 SLACK = 0.25
-"""Share of a period a picture may come early: it follows a round of the engine, and rounds have their own beat."""
+"""Share of a period a picture may come early: it follows a round of the engine, and rounds have their own period."""
 
 BUSY = 0.5
-"""Share of its time the event loop may work; more, and what people do waits too long behind pictures."""
+"""Share of its time the event loop may work; above it commands wait too long behind pictures."""
 
 SLOWEST_S = 0.2
 OVER_S = 0.25
@@ -17,10 +17,10 @@ OVER_S = 0.25
 
 
 class Pace:
-    """The period of pictures, held where the event loop is busy for a given share of its time at most.
+    """The period of pictures, chosen so that the event loop is busy for a given share of its time at most.
 
-    Pictures cost in proportion to their rate and are nearly all there is to do on a loop that is busy at all, so the
-    period is stretched by how much busier than `BUSY` the loop has been, and shrinks again likewise.
+    Pictures cost in proportion to their rate and are nearly all the work of a busy loop. The period is therefore
+    stretched by the ratio of the load of the loop to `BUSY`, and shrinks again in the same way.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Pace:
         self._since: tuple[float, float] | None = None
 
     def is_due(self, now: float) -> bool:
-        """Whether it is time for a picture."""
+        """Return whether it is time for a picture."""
         return now >= self._next
 
     def begin(self, now: float) -> None:

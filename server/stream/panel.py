@@ -1,4 +1,4 @@
-"""One panel of one page: what it shows, and what of that was sent."""
+"""One panel of one page: its picture, and the picture that was sent last."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class Panel:
     Parameters
     ----------
     view : View
-        Cuts the pictures; pages that show the same share it.
+        Cuts the pictures; pages with the same subscription share it.
     revision : int
-        Which subscription of this panel it is.
+        Number of the subscription of this panel.
     """
 
     def __init__(self, view: View, revision: int) -> None:
@@ -24,7 +24,7 @@ class Panel:
 
     @property
     def points(self) -> int:
-        """Columns times signals: what a picture costs."""
+        """Columns times signals: the cost of a picture."""
         return len(self.view.indices) * self.view.spec.width
 
     def picture(self, cuts: SharedCuts) -> Picture | None:

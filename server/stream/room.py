@@ -1,4 +1,4 @@
-"""All pages of one bench, and what is new to them."""
+"""All pages of one bench, and the news for them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from server.stream.cuts import SharedCuts
 from server.stream.news import News
 
 STATUS_S = 0.05
-"""After an event the status follows at once, but not more often than this."""
+"""The status follows an event at once, but not more often than this."""
 
 
 PAGES_AT_ONCE = 25
@@ -34,15 +34,15 @@ class Room:
         self.clients: set[Client] = set()
         self.cuts = SharedCuts(session)
         self.news = News(session, around)
-        self._head = self._last = self._told = -1
-        self._told_at = 0.0
+        self._head = self._last = self._status_event = -1
+        self._status_at = 0.0
 
     def publish(self, now: float) -> Iterator[None]:
-        """Offer every page what is new, with breaks."""
+        """Offer every page the news; pause between groups of pages."""
         head, last = self.cuts.refresh(), self.session.events.last
-        status = last != self._told and now - self._told_at >= STATUS_S
+        status = last != self._status_event and now - self._status_at >= STATUS_S
         if status:
-            self._told, self._told_at = last, now
+            self._status_event, self._status_at = last, now
         new = {"events": last != self._last, "frame": head != self._head, "status": status}
         self._head, self._last = head, last
         if any(new.values()):

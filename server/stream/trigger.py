@@ -1,4 +1,4 @@
-"""The trigger of a scope, on the full-rate history: every crossing once, none missed."""
+"""The trigger of a scope: it finds every crossing in the full-rate history once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BLOCK = 50_000
 
 
 class Samples(Protocol):
-    """What a trigger reads from."""
+    """The history that a trigger reads."""
 
     @property
     def first_tick(self) -> int:
@@ -69,22 +69,22 @@ class Trigger:
         Parameters
         ----------
         history : Samples
-            Full-rate history; what it has already forgotten cannot trigger.
+            Full-rate history; ticks it no longer holds cannot trigger.
         first_only : bool
             Stop behind the first crossing; the next scan goes on from there.
         """
         if not history.first_tick <= self.next_tick <= history.end_tick:
-            # Forgotten, or the bench went back in time.
+            # The history no longer has the tick, or the bench went back in time.
             self.restart(min(max(self.next_tick, history.first_tick), history.end_tick))
-        found: list[int] = []
+        crossings: list[int] = []
         while self.next_tick < history.end_tick:
             end = min(self.next_tick + BLOCK, history.end_tick)
             samples = history.read([self.index], self.next_tick, end)[0]
-            found += self._crossings(samples, first_only)
-            if found and first_only:
-                return found
+            crossings += self._crossings(samples, first_only)
+            if crossings and first_only:
+                return crossings
             self.next_tick = end
-        return found
+        return crossings
 
     def _crossings(self, samples: NDArray[np.float32], first_only: bool) -> list[int]:
         """Scan one block; both directions, merged in order."""

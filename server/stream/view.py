@@ -1,4 +1,4 @@
-"""Pictures of panels: which ticks they cover, and when they change; pages that show the same share one."""
+"""Pictures of panels: the ticks they cover, and when they change. Pages with the same subscription share a view."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def column_step(ticks: int, width: int) -> int:
 
 
 class _State(NamedTuple):
-    """Identifies a picture: its kind, a tick that tells it from others of that kind, and its flags."""
+    """Identifies a picture: its kind, a tick that is different for other pictures of that kind, and its flags."""
 
     kind: Literal["frozen", "rolling", "triggered", "empty"]
     tick: int
@@ -105,11 +105,11 @@ class View:
             self._sweep.rearm(head)
 
     def forget(self) -> None:
-        """Take another picture even of the same ticks: they may hold something else now."""
+        """Take a new picture even of the same ticks, because their samples may have changed."""
         self._state = None
 
     def picture(self, history: History) -> Picture:
-        """Return the picture of now; the very same object while nothing in it changes."""
+        """Return the picture of now; the same object while nothing in it changes."""
         state = self._look(history)
         if self._picture is None or state != self._state:
             self._state = state
@@ -125,7 +125,7 @@ class View:
         return self._picture
 
     def _look(self, history: History) -> _State:
-        """Say what there is to show: pictures differ if and only if this does."""
+        """Return the key of the picture of now: pictures differ if and only if their keys differ."""
         head = history.end_tick
         if self._frozen is not None:
             return _State("frozen", min(max(head, self._frozen.start), self._frozen.end), FROZEN)
@@ -147,19 +147,19 @@ class View:
             count = max(1, math.ceil(self._window / step))
             return Span(start, start + count * step, count), self._sweep.exact(history, state.tick)
         span = Span.ending(history.end_tick, self._window, self.spec.width)
-        if state.kind == "empty":  # behind all there is
+        if state.kind == "empty":  # behind the newest tick
             span = Span(history.end_tick, history.end_tick + span.end - span.start, span.columns)
         return span, math.nan
 
 
 class _Sweep:
-    """The time base of a triggered panel: which crossing is on show."""
+    """The time base of a triggered panel: it chooses the crossing to show."""
 
     def __init__(self, spec: Subscribe, index: int, window: int, head: int) -> None:
         assert spec.trigger is not None
         self._spec, self._window = spec.trigger, window
         self.before = round(spec.trigger.position * window)
-        # Begin where a whole window would still be in sight, so that a paused bench shows its last picture.
+        # Begin one whole window before the newest tick, so that a paused bench shows its last picture.
         start = head - 4 * window if spec.trigger.sweep != "single" else head
         self._trigger = Trigger(index, spec.trigger.edge, spec.trigger.level, spec.trigger.hysteresis, start)
         self._waiting: list[int] = []
@@ -200,7 +200,7 @@ class _Sweep:
         return self._shown, TRIGGERED
 
     def exact(self, history: History, tick: int) -> float:
-        """Place the crossing between ticks."""
+        """Return the tick of the crossing, between whole ticks."""
         return crossing_time(history, self._trigger.index, tick, self._spec.level)
 
 

@@ -29,7 +29,7 @@ class Message(BaseModel):
 
 
 class TriggerSpec(Message):
-    """When a panel takes its picture."""
+    """The trigger of a panel; it sets the moment of the picture."""
 
     signal: str = Field(max_length=200)
     edge: Literal["rising", "falling", "either"] = "rising"
@@ -116,7 +116,7 @@ class Hello(BaseModel):
 
 
 class Status(BenchStatus):
-    """What changes on a bench: five times a second, and after events at most twenty times."""
+    """The changing part of a bench: sent five times a second, and after events at most twenty times."""
 
     type: Literal["status"] = "status"
     parameters: dict[str, Any] | None = Field(None, description="The scenario as it is now; null: unchanged")

@@ -1,4 +1,4 @@
-"""Where the parts of a comb resonator are: boxes and meshes in um, from its drawing.
+"""The parts of a comb resonator and their places: boxes and meshes in um, from its drawing.
 
 One scene unit is 100 um: viser drops changes below about 1e-5 of a value, so metres would not move.
 """
@@ -18,7 +18,7 @@ IntArray = NDArray[np.int64]
 
 UM_PER_UNIT = 100.0
 HEIGHTS, WIDTHS = 4.0, 2.5
-"""Heights, and widths of beams and trusses, over the true ones: a film of 2 um is not seen across 800 um."""
+"""Factor on heights, and on widths of beams and trusses: a film of 2 um is invisible across 800 um."""
 GROUND_UM = 2.0
 FILM_UM = 2.0 * HEIGHTS
 BASE_UM = 30.0

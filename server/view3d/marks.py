@@ -1,4 +1,4 @@
-"""How each fault is seen on the part it acts on; one without a mark of its own is a label at the part it names."""
+"""The mark of each fault on the part it acts on; a fault without a mark gets a label at the part it names."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from server.view3d.layout import FILM_UM, GROUND_UM, UM_PER_UNIT, Box, Layout, M
 from server.view3d.pose import Active
 
 RIGHT, LEFT = 1, 2
-"""Bits of a short."""
+"""Bits of the combs that are shorted."""
 DOT_UM, CHUNK_UM, MASS_UM = 7.0, 5.0, 30.0
-"""Sizes that are seen; none of them is to scale."""
+"""Sizes large enough to see; none of them is to scale."""
 
 Place = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Solid:
-    """Something to put on the device, um, and whether it moves with the shuttle."""
+    """A solid on the device, um, and whether it moves with the shuttle."""
 
     name: str
     mesh: Mesh
@@ -33,14 +33,14 @@ class Solid:
 
 @dataclass
 class Marks:
-    """All that is seen of the faults of a moment.
+    """All marks of the faults of a moment.
 
     Parameters
     ----------
     layout : Layout
         Where the parts are.
     solids : list of Solid
-        What is put on the device.
+        Solids on the device.
     labels : dict
         Words, by the place they stand at, um.
     beams : list of float
@@ -50,7 +50,7 @@ class Marks:
     bases : float
         The same for the stators, where the drive comes in.
     damage, share : Damage or None, float
-        What the suspension has lost or is held by, and how much of it.
+        The damage of the suspension, and the share of it that is there.
     """
 
     layout: Layout
@@ -67,7 +67,7 @@ class Marks:
         self.damage, self.share = replace(self.damage or Damage(), **damage), max(self.share, share)
 
     def add(self, name: str, mesh: Mesh, *, on_shuttle: bool = False) -> None:
-        """Put something on the device."""
+        """Put a solid on the device."""
         self.solids.append(Solid(name, mesh, on_shuttle))
 
     def tint(self, plus: float, minus: float) -> None:
@@ -75,7 +75,7 @@ class Marks:
         self.beams = [max(self.beams[0], plus), max(self.beams[1], minus)]
 
     def show(self, fault: Active) -> None:
-        """Add what is seen of one more fault."""
+        """Add the mark of one more fault."""
         draw = getattr(self, f"_{fault.block.name}", None)
         place = draw(fault) if draw is not None else None
         self.labels.setdefault(place or place_of(fault.block.shows, self.layout), []).append(words(fault))
@@ -139,7 +139,7 @@ class Marks:
         return x, y - 15.0, self.layout.top_um
 
     def _short_circuit(self, fault: Active) -> Place:
-        # the comb itself takes the colour, whatever shorted it
+        # the comb itself takes the colour, for every cause of a short
         side = -1.0 if getattr(fault.params, "comb", "right") == "left" else 1.0
         return side * self.layout.stator_um, -0.3 * self.layout.geometry.arm_length_um, self.layout.top_um
 
@@ -148,7 +148,7 @@ class Marks:
         along_y = getattr(fault.params, "axis", "x") == "y"
         y = -0.88 * self.layout.half_width_um
         self.add("shock", arrow((0.0, y, self.layout.top_um), 70.0 * sign, along_y))
-        return 0.0, 0.8 * y, self.layout.top_um + 6.0  # further in: the words are wider than the arrow
+        return 0.0, 0.8 * y, self.layout.top_um + 6.0  # further in, because the words are wider than the arrow
 
     def _drive_gain(self, fault: Active) -> None:
         self.bases = max(self.bases, min(1.0, 0.4 + abs(fault.severity)))
@@ -156,14 +156,14 @@ class Marks:
 
 def marks(faults: Sequence[Active], layout: Layout) -> Marks:
     """Return the marks of all faults that act."""
-    found = Marks(layout)
+    shown = Marks(layout)
     for fault in faults:
-        found.show(fault)
-    return found
+        shown.show(fault)
+    return shown
 
 
 def place_of(part: str, layout: Layout) -> Place:
-    """Return where a label about a part stands; what is not on the device stands at its edge."""
+    """Return the place of the label of a part; labels of parts that are not on the device stand at its edge."""
     top = layout.top_um
     half = layout.geometry.arm_length_um / 2
     places: dict[str, Place] = {
@@ -180,12 +180,12 @@ def place_of(part: str, layout: Layout) -> Place:
 
 
 def words(fault: Active) -> str:
-    """Name a fault, with its severity where that has a unit."""
+    """Return the name of a fault, with its severity if that has a unit."""
     unit, severity = fault.block.outputs[0].unit, fault.severity
     if unit == "1":
         return fault.block.title
-    said = format_count(severity, unit) if unit == "week" else format_short(severity, unit, 3)
-    return f"{fault.block.title} {said}"
+    amount = format_count(severity, unit) if unit == "week" else format_short(severity, unit, 3)
+    return f"{fault.block.title} {amount}"
 
 
 def ball(centre: Place, radius: float, stretch: Place = (1.0, 1.0, 1.0)) -> Mesh:

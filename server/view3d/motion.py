@@ -1,4 +1,4 @@
-"""Which moment of the board is shown: true motion when it is slow enough to see, a strobe when it is not."""
+"""The moment of the board that is shown: true motion if it is slow enough to see, a strobe otherwise."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ SEEN_HZ = 8.0
 """An oscillation faster than this on the screen is strobed."""
 
 STROBE_HZ = 0.8
-"""What a strobed oscillation looks like."""
+"""Frequency at which a strobed oscillation appears."""
 
 EXAGGERATIONS = (1.0, 2.0, 3.0, 4.0, 5.0, 8.0, 10.0, 20.0, 50.0, 100.0)
 TURN_EXAGGERATIONS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0)
 WANTED_UM = 16.0
 """Amplitude that is well seen at the size of the device, and that its fingers have room for."""
 WANTED_TURN_UM = 12.0
-"""The same for what a rotation moves the ends of the arms."""
+"""The same for the motion of the ends of the arms by a rotation."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def moment(head: int, period_ticks: float | None, rate_ticks_s: float, wall_s: f
     rate_ticks_s : float
         Ticks per wall second.
     wall_s : float
-        Wall clock: where the strobe is in its slow cycle.
+        Wall clock; it sets the place of the strobe in its slow cycle.
     """
     last = head - 1
     if period_ticks is None or rate_ticks_s <= SEEN_HZ * period_ticks:
@@ -82,20 +82,20 @@ def closed_share(lateral_um: float, gap_um: float) -> float:
 def warning(closed: float) -> float:
     """Return how much of the colour of attention a comb takes.
 
-    A root: stability is lost when a tenth to a fifth of the gap has closed, and that must be seen to come.
+    It is a root, so that the approach is visible: stability is lost when a tenth to a fifth of the gap has closed.
     """
     return math.sqrt(closed)
 
 
 def caption(factor: float, turn_factor: float | None, is_strobed: bool) -> str:
-    """Say what is not as in nature.
+    """Return in words how the picture differs from the true motion.
 
     Parameters
     ----------
     factor, turn_factor : float
         Exaggeration of the motion along x and of the rotation; none where the plant has no rotation.
     is_strobed : bool
-        Whether what is seen is slower than what happens.
+        Whether the motion shown is slower than the true one.
     """
     parts = [f"motion × {format_short(factor, '', 3)}"]
     if turn_factor is not None:

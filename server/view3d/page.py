@@ -23,7 +23,7 @@ POLICY = "; ".join(
         "frame-ancestors 'self'",
     )
 )
-"""Only for this document: its client is one file of inline script and compiles code at run time."""
+"""Content policy of this document only: its client is one file of inline script and compiles code at run time."""
 
 
 def page(layout: Layout) -> str:
@@ -33,7 +33,7 @@ def page(layout: Layout) -> str:
 
 
 def cameras(layout: Layout) -> dict[str, Any]:
-    """Return the presets: the box to be seen, in scene units, and from where, for tall and for wide pictures.
+    """Return the presets of the camera, for tall and for wide pictures: box to show, in scene units, and direction.
 
     A direction is azimuth and elevation in degrees. Tall pictures have +x to the right; in wide ones the device lies
     on its side, +x up.

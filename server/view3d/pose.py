@@ -1,4 +1,4 @@
-"""What the scene shows of one moment of a bench, read from its history."""
+"""The pose: one moment of a bench as the scene shows it, read from its history."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ LASERS = ("through_wafer", "dual_beam", "doppler")
 APART_UM = 11.0
 """Least distance of two beams of light, so that they are seen to be two."""
 STEPS = 50
-"""Shades and sizes a severity or a warning can have: so few that they seldom change."""
+"""Number of shades and sizes of a severity or a warning; it is small, so that they seldom change."""
 
 
 @dataclass(frozen=True)
@@ -72,15 +72,15 @@ class Pose:
     combs_um : tuple of float
         Sideways displacement of the fingers at +x and -x, true to scale.
     warnings : tuple of float
-        How much of the colour of attention these fingers take.
+        Share of the colour of attention that these fingers take.
     contact, short : int
         Whether fingers touch; bits of the combs that are shorted.
     faults : tuple of Active
-        What acts.
+        The faults that act.
     lasers : tuple of Laser
         Beams of light on the grating.
     caption : str
-        What is not as in nature.
+        The differences from the true motion, in words.
     """
 
     displacement_um: float = 0.0
@@ -117,8 +117,8 @@ class Observer:
         self._known: dict[str, Any] = {}
         self._factor = self._turn_factor = 1.0
 
-    def look(self) -> Pose:
-        """Return the pose of now, or of the moment the strobe shows."""
+    def pose(self) -> Pose:
+        """Return the pose of now, or of the moment that the strobe shows."""
         session, history = self._session, self._session.history
         head, spec = history.end_tick, session.board.spec
         if head <= history.first_tick:
@@ -153,14 +153,14 @@ class Observer:
         )
 
     def _magnify(self, recent: Float32Array) -> None:
-        """Choose the exaggerations from the minima and maxima of late."""
+        """Choose the exaggerations from recent minima and maxima."""
         largest = np.where(np.isfinite(recent), np.abs(recent), 0.0).max(axis=(1, 2))
         self._factor = exaggeration(float(largest[:2].max()), self._factor)
         ends_um = 1e-3 * float(largest[2]) * self._layout.geometry.arm_length_um / 2
         self._turn_factor = exaggeration(ends_um, self._turn_factor, WANTED_TURN_UM, TURN_EXAGGERATIONS)
 
     def _estimate(self, measured: float, values: FloatArray) -> float | None:
-        """Return what the winner of the bank predicted: measured minus its residual."""
+        """Return the prediction of the winner of the bank: measured minus its residual."""
         if not len(values):
             return None
         winner = int(values[0])
@@ -176,7 +176,7 @@ class Observer:
         )
 
     def _lasers(self, spec: Any) -> tuple[Laser, ...]:
-        """Return where the light of the sensors that run meets the grating."""
+        """Return the places where the light of the running sensors meets the grating."""
         in_use = needed(spec)
         beams: dict[float, bool] = {}
         for name in LASERS:

@@ -1,4 +1,4 @@
-"""viser on a socket that nobody else can open.
+"""A viser server on a socket that only this user can open.
 
 Without this, viser listens on a TCP port that every user of the machine and every page in their browsers can open.
 """
@@ -20,7 +20,7 @@ from viser.infra import _infra
 class PrivateServer:
     """A viser server on a Unix socket in a folder of its own, which only this user may enter.
 
-    It serves WebSockets alone, and only to who comes by :attr:`path`.
+    It serves WebSockets alone, and only to clients that connect by :attr:`path`.
     """
 
     def __init__(self) -> None:
@@ -36,22 +36,22 @@ class PrivateServer:
             raise
 
     def stop(self) -> None:
-        """Stop the server and let its clients go."""
+        """Stop the server and disconnect its clients."""
         self.viser.stop()
         self._folder.cleanup()
 
 
 def _serve(handler: Any, listener: Any, _port: int, **options: Any) -> Any:
-    """Open viser's server: it is given a socket as its host, and its files are served by our own page."""
+    """Open viser's server with a socket as its host; our own page serves its files."""
     return websockets.asyncio.server.unix_serve(handler, sock=listener, **{**options, "process_request": None})
 
 
 def _use_sockets() -> None:
-    """Let viser serve on the socket it is given; it knows hosts and ports alone."""
+    """Let viser, which takes only hosts and ports, serve on the given socket."""
     ours = SimpleNamespace(**{**vars(websockets.asyncio.server), "serve": _serve})
     whole = SimpleNamespace(**{**vars(websockets), "asyncio": SimpleNamespace(server=ours)})
     vars(_infra)["websockets"] = whole
 
 
-rich.get_console().quiet = True  # viser prints to standard output whatever it is told
+rich.get_console().quiet = True  # viser prints to standard output in spite of its settings
 _use_sockets()

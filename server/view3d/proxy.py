@@ -1,4 +1,4 @@
-"""The way to a scene: its page and its WebSocket, on our port and behind our gate."""
+"""The proxy of a scene: it serves its page and its WebSocket on our port and behind our gate."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ CLOSE_VERSION, CLOSE_NO_BENCH, CLOSE_FULL, CLOSE_LOST = 4001, 4404, 1013, 1012
 async def get_page(bench_id: str, service: ServiceDep) -> HTMLResponse:
     """Return the page of the 3D view."""
     from server.view3d.page import POLICY, page
-    from server.view3d.theatre import layout_of
+    from server.view3d.viewers import layout_of
 
     layout = layout_of(service.benches.get(bench_id))
     return HTMLResponse(page(layout), headers={POLICY_HEADER: POLICY})
@@ -39,7 +39,7 @@ async def get_page(bench_id: str, service: ServiceDep) -> HTMLResponse:
 async def join(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> None:
     """Connect a page to the scene of its bench."""
     session = service.benches.find(bench_id)
-    show = service.theatre.show_of(session) if session is not None and service.theatre is not None else None
+    show = service.viewers.show_of(session) if session is not None and service.viewers is not None else None
     offered = socket.scope["subprotocols"]
     refusal: tuple[int, str] | None = None
     if SUBPROTOCOL not in offered:
@@ -90,7 +90,7 @@ async def _relay(socket: WebSocket, path: Path) -> None:
 
 
 async def _down(socket: WebSocket, scene: ClientConnection) -> None:
-    """From the scene to the page."""
+    """Pass messages from the scene to the page."""
     with contextlib.suppress(ConnectionClosed, WebSocketDisconnect, RuntimeError):
         async for message in scene:
             if isinstance(message, bytes):
@@ -98,6 +98,6 @@ async def _down(socket: WebSocket, scene: ClientConnection) -> None:
 
 
 async def _until_gone(socket: WebSocket) -> None:
-    """Let the page say what it likes; the scene is only looked at, and viser breaks at what it does not know."""
+    """Drop the messages of the page: the scene takes no input, and viser fails on unknown messages."""
     while (await socket.receive())["type"] != "websocket.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""The scene of one bench: a shuttle that moves and turns, beams that bend, faults where they act."""
+"""The scene of one bench: the shuttle moves and turns, the beams bend, marks show the faults."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ REFERENCE, ESTIMATE, LIGHT = (223, 228, 234), (31, 184, 143), (240, 110, 190)
 ATTENTION = (232, 64, 52)
 SIDES = ((1, "right", RIGHT), (-1, "left", LEFT))
 BEAM_UM, ABOVE_UM, BELOW_UM, SPOT_UM = 3.0, 130.0, 90.0, 5.0
-"""Sizes of the light that are seen."""
+"""Sizes of the light, large enough to see."""
 
 
 class Scene:
@@ -46,7 +46,7 @@ class Scene:
 
     @property
     def path(self) -> Path:
-        """Where the scene is watched: a Unix socket of this user alone."""
+        """The Unix socket of the scene, which only this user can open."""
         return self._private.path
 
     def show(self, pose: Pose) -> None:
@@ -71,18 +71,18 @@ class Scene:
         self._server.flush()
 
     def close(self) -> None:
-        """Stop the server and let its clients go."""
+        """Stop the server and disconnect its clients."""
         self._private.stop()
 
     def _move(self, pose: Pose, before: Pose) -> None:
-        """Put everything that moves where it is."""
+        """Place all moving parts."""
         x, y, turn = pose.displacement_um, pose.shift_um, pose.turn
         self._shuttle.position = (x / UM_PER_UNIT, y / UM_PER_UNIT, 0.0)
         if turn != before.turn:
             self._shuttle.wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
         for (_, name, _), lateral in zip(SIDES, pose.combs_um, strict=True):
             fingers = self._fingers[name]
-            # true to scale in their gaps, whatever the exaggeration of the arm that carries them
+            # the fingers are true to scale in their gaps; only the arm that carries them is exaggerated
             fingers.position = (x / UM_PER_UNIT, lateral / UM_PER_UNIT, 0.0)
             if turn != before.turn:
                 places = self._places[name].copy()
@@ -98,15 +98,15 @@ class Scene:
 
     def _show_faults(self, pose: Pose) -> None:
         """Show each fault on the part it acts on."""
-        before, found = self._marks, marks(pose.faults, self._layout)
-        self._marks = found
+        before, now = self._marks, marks(pose.faults, self._layout)
+        self._marks = now
         for handle in self._added:
             handle.remove()
         self._added = []
-        for solid in found.solids:
+        for solid in now.solids:
             path = f"/shuttle/{solid.name}" if solid.on_shuttle else f"/{solid.name}"
             self._added.append(self._mesh(path, solid.mesh, ATTENTION))
-        labels: dict[Place, list[str]] = dict(found.labels)
+        labels: dict[Place, list[str]] = dict(now.labels)
         if pose.contact:
             side = 1 if abs(pose.combs_um[0]) >= abs(pose.combs_um[1]) else -1
             place = (side * self._layout.stator_um, 0.45 * self._layout.comb_um, self._layout.top_um)
@@ -117,21 +117,21 @@ class Scene:
                 f"/labels/{number}", "\n".join(lines), position=(x, y, z + 0.12), anchor="bottom-center"
             )
             self._added.append(label)
-        if (found.damage, found.share) != (before.damage, before.share):
-            self._bend(found)
-        for beams, share, earlier in zip(self._beams, found.beams, before.beams, strict=True):
+        if (now.damage, now.share) != (before.damage, before.share):
+            self._bend(now)
+        for beams, share, earlier in zip(self._beams, now.beams, before.beams, strict=True):
             if share != earlier:
                 beams.color = blend(SILICON, ATTENTION, share)
-        if found.film != before.film:
-            self._film.visible = found.film > 0.0
-            self._film.opacity = 0.3 * found.film
-        if found.bases != before.bases:
-            self._bases.color = blend(FIXED, ATTENTION, found.bases)
+        if now.film != before.film:
+            self._film.visible = now.film > 0.0
+            self._film.opacity = 0.3 * now.film
+        if now.bases != before.bases:
+            self._bases.color = blend(FIXED, ATTENTION, now.bases)
 
-    def _bend(self, found: Marks) -> None:
-        """Let the suspension follow the shuttle as a damaged one does; only the side at +y can be damaged."""
+    def _bend(self, now: Marks) -> None:
+        """Choose the shape of the suspension by its damage; only the side at +y can be damaged."""
         for i, side in enumerate((1, -1)):
-            self._flexures[i] = flexure(self._layout, side, found.damage, found.share)
+            self._flexures[i] = flexure(self._layout, side, now.damage, now.share)
             self._beams[i].faces = self._flexures[i].faces.astype(np.uint32)
 
     def _show_lasers(self, lasers: tuple[Laser, ...]) -> None:
@@ -151,7 +151,7 @@ class Scene:
             ]
 
     def _build(self) -> None:
-        """Put everything in place, once."""
+        """Build all parts, once."""
         scene, layout = self._server.scene, self._layout
         # viser's own lights bleach every colour to white
         scene.configure_default_lights(False)
@@ -187,11 +187,11 @@ class Scene:
         scene.add_line_segments(f"{name}/outline", outline, color, thickness=2.0, thickness_units="screen")
         return ghost
 
-    def _mesh(self, name: str, mesh: Mesh, color: Color, **more: Any) -> Any:
+    def _mesh(self, name: str, mesh: Mesh, color: Color, **options: Any) -> Any:
         """Add a rigid mesh, or one whose vertices are moved."""
         vertices, faces = mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32)
         return self._server.scene.add_mesh_simple(
-            name, vertices, faces, color=color, flat_shading=True, side="double", **more
+            name, vertices, faces, color=color, flat_shading=True, side="double", **options
         )
 
     def _comb(self, name: str, places: Any, color: Color) -> Any:
@@ -217,12 +217,12 @@ def blend(first: Color, second: Color, share: float) -> Color:
 
 
 def in_batch(color: Color) -> NDArray[np.uint8]:
-    """Return a colour as batches want it: viser takes theirs as linear, all others as sRGB."""
+    """Return a colour for a batch: viser takes colours of batches as linear, all others as sRGB."""
     share = np.array(color) / 255.0
     linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
     return np.asarray(np.round(255.0 * linear), dtype=np.uint8)
 
 
 def _seen(faults: tuple[Active, ...]) -> list[Any]:
-    """Return what of the faults is seen: a ramp moves in steps of two figures, not at every frame."""
+    """Return the visible part of the faults; a ramp moves in steps of two figures, not at every frame."""
     return [(fault.block, fault.params, f"{fault.severity:.2g}") for fault in faults]

@@ -24,7 +24,7 @@ class Flexure:
     Parameters
     ----------
     rest : ndarray, shape (vertices, 3)
-        Where the vertices are at rest, um.
+        Places of the vertices at rest, um.
     follow : ndarray, shape (vertices, 2, 3)
         Their displacement along x and y per displacement (x, y, theta) of the shuttle.
     faces : ndarray, shape (triangles, 3)
@@ -52,7 +52,7 @@ def flexure(layout: Layout, side: int, damage: Damage | None = None, share: floa
     side : int
         1 or -1.
     damage : Damage, optional
-        What is wrong at the side of +y.
+        Damage of the side at +y.
     share : float
         How much of the damage is there; a truss breaks off at the whole of it.
     """
@@ -76,8 +76,8 @@ def flexure(layout: Layout, side: int, damage: Damage | None = None, share: floa
 
 
 def _lines(layout: Layout, side: int, shape: frame.Shape) -> dict[tuple[str, int], tuple[FloatArray, FloatArray]]:
-    """Return the centre line of every beam and truss segment: points, and how they follow."""
-    found = {}
+    """Return the centre line of every beam and truss segment: points, and how they follow the shuttle."""
+    lines = {}
     segment = layout.geometry.truss_segment_um
     chains: dict[tuple[str, int], list[tuple[int, int]]] = {}
     for a, b in shape.elements:
@@ -94,8 +94,8 @@ def _lines(layout: Layout, side: int, shape: frame.Shape) -> dict[tuple[str, int
         y = side * np.abs(ends[0, 1] + s * (ends[1, 1] - ends[0, 1]))
         if name[0] == "truss":
             y = y + side * layout.truss_um / 2
-        found[name] = (np.column_stack([x, y, np.full(rings, layout.z)]), follow)
-    return found
+        lines[name] = (np.column_stack([x, y, np.full(rings, layout.z)]), follow)
+    return lines
 
 
 def _followed(shape: frame.Shape, chain: list[tuple[int, int]], point: FloatArray) -> FloatArray:

@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,11 +13,13 @@ from hypothesis import strategies as st
 from core import registry
 from core.block import Block
 from core.board.board import Board
+from core.board.parse import parse
+from core.board.wiring import wire
 from core.device.catalogue import device
 from core.errors import InputError
+from tests.core.fence import run_behind_fences
 from tests.lab import RICH, STORY, do, document, inner_digest, make, play, run_digest
 
-ROOT = Path(__file__).resolve().parents[2]
 TICKS = 120
 SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
 KIND = {"plant": "model"}
@@ -115,7 +113,9 @@ def cases() -> dict[str, dict[str, Any]]:
 
 
 CASES = cases()
-every_case = pytest.mark.parametrize("case", [pytest.param(case, id=name) for name, case in CASES.items()])
+OF_BLOCK = {name_of(entry): {} for entry in ALL}
+for _name, _case in CASES.items():
+    OF_BLOCK[_name.split()[0]][_name] = _case
 every_block = pytest.mark.parametrize("entry", [pytest.param(entry, id=name_of(entry)) for entry in ALL])
 
 
@@ -126,53 +126,39 @@ def board_of(case: dict[str, Any], *, compiled: bool = True) -> Board:
 # -- the same bits, however it is run
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # plain numbers warn where compiled ones quietly overflow
-@every_case
-def test_compiled_step_gives_the_bits_of_the_same_function_uncompiled(case):
-    fast, slow = board_of(case), board_of(case, compiled=False)
-    assert run_digest(fast, TICKS) == run_digest(slow, TICKS)
-    assert inner_digest(fast) == inner_digest(slow)
-    assert fast.trip == slow.trip
+@every_block
+def test_compiled_steps_give_the_bits_of_plain_python(entry):
+    for name, case in OF_BLOCK[name_of(entry)].items():
+        fast, slow = board_of(case), board_of(case, compiled=False)
+        assert run_digest(fast, TICKS) == run_digest(slow, TICKS), name
+        assert inner_digest(fast) == inner_digest(slow), name
+        assert fast.trip == slow.trip, name
 
 
-@every_case
-def test_deterministic_and_finite(case):
-    board = board_of(case)
-    trace = play(board, 8 * TICKS)
-    # a law with its safety switched off may run away, and fingers may touch, but then the board says so
-    assert board.trip is None or any(words in board.trip.reason for words in ("not a finite", "touched", "shorted"))
-    for name, values in trace.items():
-        assert board.trip is not None or np.all(np.isfinite(values)), name
-    again = board_of(case)
-    play(again, 8 * TICKS)
-    assert again.digest() == board.digest() and inner_digest(again) == inner_digest(board)
+@every_block
+def test_deterministic_and_finite(entry):
+    for name, case in OF_BLOCK[name_of(entry)].items():
+        board = board_of(case)
+        trace = play(board, 8 * TICKS)
+        # a law with its safety switched off may run away, and fingers may touch, but then the board says so
+        ends = ("not a finite", "touched", "shorted")
+        assert board.trip is None or any(words in board.trip.reason for words in ends), name
+        for signal, values in trace.items():
+            assert board.trip is not None or np.all(np.isfinite(values)), f"{name}: {signal}"
+        again = board_of(case)
+        play(again, 8 * TICKS)
+        assert again.digest() == board.digest() and inner_digest(again) == inner_digest(board), name
 
 
-def plain(cases: list[dict[str, Any]], ticks: int, *, fence: bool) -> list[str]:
-    """Ask the oracle that runs without any compiled code."""
-    answer = subprocess.run(
-        [sys.executable, "-m", "tests.core.plain"],
-        input=json.dumps({"cases": cases, "ticks": ticks, "fence": fence}),
-        cwd=ROOT,
-        env={**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert answer.returncode == 0, answer.stderr[-2000:]
-    return json.loads(answer.stdout)
-
-
-@pytest.mark.timeout(400)  # plain Python, half a minute where nothing else runs
-def test_everything_as_plain_python_gives_the_same_digests():
-    found = plain(list(CASES.values()), TICKS, fence=False)
-    expected = [run_digest(board_of(case), TICKS) for case in CASES.values()]
-    assert dict(zip(CASES, found, strict=True)) == dict(zip(CASES, expected, strict=True))
-
-
-@pytest.mark.timeout(400)  # plain Python, half a minute where nothing else runs
-def test_steps_touch_only_their_own_parameters_state_and_ports():
-    assert plain(list(CASES.values()), 42, fence=True) == []
+@every_block
+def test_steps_touch_only_their_own_parameters_state_and_ports(entry):
+    for case in OF_BLOCK[name_of(entry)].values():
+        faults = {
+            name: registry.block("faults", name).Params(severity=severity, profile=profile, start_tick=5)
+            for name, severity, profile in case["faults"]
+        }
+        spec = parse(case["document"]).with_faults(faults)
+        run_behind_fences(spec, wire(spec), entry, 42)
 
 
 # -- snapshots
@@ -268,35 +254,38 @@ def test_units_are_written_in_the_names_of_parameters_or_beside_them():
 # -- limits
 
 
-def limits() -> list[Any]:
-    found = []
-    for entry in ALL:
-        if entry.family == "faults":
-            continue
-        for parameter in registry.card(entry).parameters:
-            for bound in (parameter.minimum, parameter.maximum):
-                if bound is not None:
-                    value = int(bound) if parameter.type == "integer" else bound
-                    found.append(
-                        pytest.param(entry, parameter.name, value, id=f"{name_of(entry)}.{parameter.name}={value:g}")
-                    )
-    return found
+def limits(entry: type[Block]) -> list[tuple[str, float]]:
+    bounds = [(parameter, bound) for parameter in registry.card(entry).parameters for bound in bounds_of(parameter)]
+    return [(parameter.name, int(bound) if parameter.type == "integer" else bound) for parameter, bound in bounds]
 
 
-@pytest.mark.parametrize(("entry", "name", "value"), limits())
-def test_a_parameter_at_its_limit_is_refused_or_runs(entry, name, value):
+def bounds_of(parameter: registry.ParameterCard) -> list[float]:
+    return [bound for bound in (parameter.minimum, parameter.maximum) if bound is not None]
+
+
+@pytest.mark.parametrize(
+    "entry", [pytest.param(entry, id=name_of(entry)) for entry in ALL if entry.family != "faults" and limits(entry)]
+)
+def test_a_parameter_at_its_limit_is_refused_or_runs(entry):
+    for name, value in limits(entry):
+        at_its_limit(entry, name, value)
+
+
+def at_its_limit(entry: type[Block], name: str, value: float) -> None:
+    label = f"{name_of(entry)}.{name}={value:g}"
     values = {**chosen(entry), f"{path_of(entry)}.{name}": value}
     try:
         board = make(values, base=RICH)
     except InputError as error:
-        assert error.field == f"{path_of(entry)}.{name}".replace("controller", "controllers.") or name in error.field
+        path = f"{path_of(entry)}.{name}".replace("controller", "controllers.")
+        assert error.field == path or name in error.field, label
         return
     trace = play(board, 300)
-    # a shadow may go where it wants; what drives, and the shuttle, stay finite or stop the board
+    # a shadow may go where it wants; the voltage that drives and the shuttle stay finite, or the board stops
     if board.trip is None:
         for signal in ("plant.displacement", "plant.velocity", "drive.voltage", f"{board.spec.active}.voltage"):
-            assert np.all(np.isfinite(trace[signal])), signal
+            assert np.all(np.isfinite(trace[signal])), f"{label}: {signal}"
     bank = np.array([trace[s] for s in trace if s.startswith("kalman.probability.")])
     if entry.family == "diagnose" and len(bank):
-        assert len(bank) == len(getattr(board.spec.diagnosers["kalman"].params, "hypotheses", bank))
-        np.testing.assert_allclose(bank.sum(axis=0), 1.0, atol=1e-9)
+        assert len(bank) == len(getattr(board.spec.diagnosers["kalman"].params, "hypotheses", bank)), label
+        np.testing.assert_allclose(bank.sum(axis=0), 1.0, atol=1e-9, err_msg=label)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.board import program
 from tests.lab import make
 
 EPS = 8.8541878128e-12
@@ -28,5 +27,4 @@ def bench(bias: float = 10.0, values: dict[str, Any] | None = None, **plant: Any
 def insides(board):
     """Packed parameters and state of the plant after a tick."""
     board.advance(1)
-    wiring = board.wiring
-    return wiring.p[wiring.table[wiring.row("plant"), program.P_OFFSET] :], wiring.state_of("plant")
+    return board.wiring.parameters("plant"), board.wiring.state("plant")

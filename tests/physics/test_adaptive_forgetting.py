@@ -65,7 +65,7 @@ def test_power_of_the_innovations_is_their_weighted_mean():
     for i in (0, 1, 17, 900, 2199):
         # weights of all samples so far: products of the factors from each to the one before this
         weight = np.concatenate([np.cumprod(forgetting[:i][::-1])[::-1], [1.0]])
-        mean = weight @ squares[: i + 1] / weight.sum() / packed[-1]
+        mean = weight @ squares[: i + 1] / weight.sum() / packed.noise_variance
         assert ratio[i] == pytest.approx(mean, rel=1e-9), i
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter, MMAEFilterBank
 
+from core.plain import plain
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
@@ -161,18 +162,14 @@ def test_a_dropped_measurement_only_widens_the_filter():
     n = len(NAMES)
     board = make(BENCH)
     play(board, 200)
-    bank = board.wiring.instances[board.wiring.row("kalman")]
-    context = board.spec.context()
-    p, s = bank.block.pack(bank.params, context), board.wiring.state_of("kalman").copy()
-    w = board.wiring.w.copy()
-    row = board.wiring.row("kalman")
-    start, end = board.wiring.table[row, 3], board.wiring.table[row + 1, 3]
-    io = board.wiring.io[start:end]
-    before = w[io[3] : io[3] + n].copy()
-    w[io[0]] = math.nan
-    bank.block.step(p, s, w, io)
-    assert np.all(np.isfinite(s)) and np.all(np.isfinite(w[io[3] : io[3] + n]))
-    np.testing.assert_allclose(w[io[3] : io[3] + n], before, rtol=0.01)  # the floor is shared out anew
+    wiring, row = board.wiring, board.wiring.row("kalman")
+    bank = wiring.instances[row].block
+    s, x = bank.State(wiring.state_of("kalman").copy()), bank.Ports(wiring.w.copy(), wiring.ports(row))
+    before = x.probability[:n].copy()
+    x.measured = math.nan
+    plain(bank.step)(wiring.parameters("kalman"), s, x)
+    assert np.all(np.isfinite(s.array)) and np.all(np.isfinite(x.probability[:n]))
+    np.testing.assert_allclose(x.probability[:n], before, rtol=0.01)  # the floor is shared out anew
 
 
 def test_assumed_sensor_noise_follows_the_sensor_unless_given():

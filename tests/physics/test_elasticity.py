@@ -12,9 +12,8 @@ from scipy import integrate, optimize
 from core.board.board import Board
 from core.device.catalogue import device
 from core.device.frame import Damage, stiffness
-from core.plant.suspension import K1, K3, KT, KY
 from scenarios.design import designed, device_figures
-from scenarios.lateral_metrics import lateral_metrics
+from scenarios.measure.lateral import lateral_metrics
 from tests.lab import inject, make, play
 from tests.physics.plane import EPS, STILL, XR, XS, G, N, T, bench
 from tests.physics.plane import KT as HEAT
@@ -34,8 +33,8 @@ def closed_pull_in(scale: float, rotation_nm: float = 4.51e-7) -> float:
 def suspension(board: Board) -> np.ndarray:
     """Return the elasticity of the planar plant in the last sample, N/m, N/m^3 and N m/rad."""
     board.advance(3)
-    state = board.wiring.state_of("plant")
-    return np.array([state[K1], state[KY], state[KT] * 1e-12, state[K3] * 1e12])
+    k = board.wiring.state("plant").suspension
+    return np.array([k.stiffness, k.lateral_stiffness, k.rotation_stiffness * 1e-12, k.cubic * 1e12])
 
 
 CAUSES: dict[str, tuple[dict[str, Any], dict[str, float], float]] = {

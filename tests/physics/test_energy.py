@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from core.plant import body, plane
+from core.plant.body import squeeze_factor
 from core.plant.electrostatics import co_energy, comb
-from core.plant.suspension import elastic_energy, elastic_force
+from core.plant.suspension import Suspension, elastic_energy, elastic_force
 from tests.lab import do, phasor, play
 from tests.physics.plane import STRENGTH, XR, XS, G, N, T, bench, insides
 
@@ -92,19 +92,21 @@ def rows():
     ]
 
 
-def packed_row(row: Row) -> np.ndarray:
-    return np.array(
-        [
-            row.k1,
-            row.k3 * 1e-12,
-            row.ky,
-            row.reach_y**-2,
-            row.kt * 1e12,
-            row.reach_t**-2,
-            row.ys2 * 1e-6,
-            row.th1 * 1e-6,
-            row.th3 * 1e-18,
-        ]
+def packed_row(row: Row) -> Suspension:
+    return Suspension(
+        np.array(
+            [
+                row.k1,
+                row.k3 * 1e-12,
+                row.ky,
+                row.reach_y**-2,
+                row.kt * 1e12,
+                row.reach_t**-2,
+                row.ys2 * 1e-6,
+                row.th1 * 1e-6,
+                row.th3 * 1e-18,
+            ]
+        )
     )
 
 
@@ -114,12 +116,12 @@ def test_elastic_forces_are_the_gradient_of_the_energy(row):
 
     def energy(x, y, theta):
         """The energy as it is written, over any numbers: complex steps give exact derivatives."""
-        off, turned = y - k[6] * x * x, theta - k[7] * x - k[8] * x**3
+        off, turned = y - k.sideways * x * x, theta - k.turn * x - k.turn_cubic * x**3
         return (
-            k[0] * x**2 / 2
-            + k[1] * x**4 / 4
-            + k[2] / (1 + x * x * k[3]) * off**2 / 2
-            + k[4] / (1 + x * x * k[5]) * turned**2 / 2
+            k.stiffness * x**2 / 2
+            + k.cubic * x**4 / 4
+            + k.lateral_stiffness / (1 + x * x * k.lateral_softening) * off**2 / 2
+            + k.rotation_stiffness / (1 + x * x * k.rotation_softening) * turned**2 / 2
         )
 
     for x, y, theta, *_ in random_states():
@@ -147,14 +149,14 @@ def test_energy_is_kept_without_damping(turn):
     )
     p, s = insides(board)
     trace = play(board, 400)
-    k = s[:9].copy()
+    k = Suspension(s.suspension.array.copy())
     x, y, theta = trace["plant.displacement"], trace["plant.shift"], 1e-3 * trace["plant.rotation"]
-    m, j = p[0], 1 / p[plane.PER_INERTIA]
+    m, j = p.mass, 1 / p.per_inertia
     kinetic = 0.5 * m * (trace["plant.velocity"] ** 2 + trace["plant.shift_velocity"] ** 2)
     kinetic += 0.5 * j * (1e-3 * trace["plant.rotation_velocity"]) ** 2
     potential = [elastic_energy(k, *q) for q in zip(x, y, theta, strict=True)]
     tips = (XS, XR, 100.0, 100.0)
-    stored = [co_energy(p[plane.STRENGTH], G * G, 0.9 * G, tips, *q) for q in zip(x, y, theta, strict=True)]
+    stored = [co_energy(p.strength, G * G, 0.9 * G, tips, *q) for q in zip(x, y, theta, strict=True)]
     total = kinetic + np.array(potential) - (np.array(stored) - stored[0])
     assert np.ptp(total) / total[0] < 1e-6
     assert (np.ptp(theta) > 1e-4) == (turn != 0.0)
@@ -175,7 +177,7 @@ def test_without_rotation_it_is_the_linear_plant():
 def test_squeeze_film_between_two_stators():
     for u in (0.0, 0.3, -0.7):
         r = 1 / (1 - u * u)
-        assert body.squeeze_factor(r) == pytest.approx(((1 - u) ** -3 + (1 + u) ** -3) / 2, rel=1e-12)
+        assert squeeze_factor(r) == pytest.approx(((1 - u) ** -3 + (1 + u) ** -3) / 2, rel=1e-12)
 
 
 @pytest.mark.parametrize(("pressure", "fault"), [(101325.0, 0.0), (1e3, 0.0), (1e3, 4.0)])
@@ -187,7 +189,7 @@ def test_squeeze_film_is_rarefied(pressure, fault):
     _, s = insides(board)
     mu, path = 1.8459e-5, 67.0e-3 * 101325.0 / pressure
     film = 4 * N * mu * 40e-6 * (T / G) ** 3 / (1 + 9.638 * (path / G) ** 1.159)
-    assert 2e-3 * s[body.C_SQUEEZE] == pytest.approx((1 + fault) * film, rel=5e-3)
+    assert 2e-3 * s.squeeze == pytest.approx((1 + fault) * film, rel=5e-3)
 
 
 def test_without_any_damping_nothing_shakes_it():

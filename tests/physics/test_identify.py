@@ -13,8 +13,8 @@ from scipy.signal import cont2discrete, lfilter
 from core.errors import InputError
 from core.identify.filtered import noise_gram
 from scenarios.library import get
-from scenarios.peers import estimate_record, estimate_start
 from scenarios.run import run
+from scenarios.speed.peers import estimate_record, estimate_start
 from tests.lab import do, inject, make, play
 
 with warnings.catch_warnings():
@@ -301,18 +301,18 @@ def test_wind_up_is_bounded_and_the_covariance_stays_definite():
     for limit, finite in ((1e10, True), (0.0, False)):
         s = estimate_start(1e8)
         estimate_record(s, h, z, 0.86, limit)
-        assert bool(np.all(np.isfinite(s))) is finite
+        assert bool(np.all(np.isfinite(s.array))) is finite
         if finite:
             matrix = np.zeros((4, 4))
-            matrix[np.tril_indices(4)] = s[4:14]
+            matrix[np.tril_indices(4)] = s.covariance
             matrix += np.tril(matrix, -1).T
             assert np.linalg.eigvalsh(matrix)[0] > 0.0 and np.trace(matrix) <= 1e10
-            assert abs(h[-1] @ s[:4] - z[-1]) < 1e-6
+            assert abs(h[-1] @ s.theta - z[-1]) < 1e-6
     s = estimate_start(1e8)
     zeros = np.zeros((1_000_000, 4))
     for _ in range(10):
         estimate_record(s, zeros, zeros[:, 0], 0.86, 1e10)
-    assert np.all(np.isfinite(s)) and 0.0 < s[4] <= 1e10
+    assert np.all(np.isfinite(s.array)) and 0.0 < s.covariance[0] <= 1e10
 
 
 # -- adaptive forgetting

@@ -12,7 +12,7 @@ from core.device.catalogue import device
 from core.plant.planar import Planar
 from core.plant.suspension import elastic_force
 from core.sense.single_beam import SingleBeam
-from scenarios.sensing_metrics import lost_samples
+from scenarios.measure.sensing import lost_samples
 from tests.core.sense.bench import errors
 from tests.lab import do, play, rms
 from tests.physics.large_displacement import Frame
@@ -34,8 +34,8 @@ def ours(fault: str, parameters: dict[str, str], travel: float) -> tuple[float, 
     board = bench(0.0)
     do(board, {"kind": "inject", "fault": fault, "severity": 1.0, "parameters": parameters})
     board.advance(2)
-    k = board.wiring.state_of("plant")[:9]
-    shift, turn = k[6] * travel * travel, (k[7] + k[8] * travel * travel) * travel
+    k = board.wiring.state("plant").suspension
+    shift, turn = k.sideways * travel * travel, (k.turn + k.turn_cubic * travel * travel) * travel
     along, across, torque = elastic_force(k, travel, shift, turn)
     assert (across, torque) == pytest.approx((0.0, 0.0), abs=1e-15)
     return -along, shift, turn

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.plant.equilibrium import bias_pull_in
-from scenarios.lateral_metrics import lateral_metrics
+from scenarios.measure.lateral import lateral_metrics
 from tests.lab import do, play, rms
 from tests.physics.plane import EPS, KT, XR, XS, G, N, T, bench, insides
 
@@ -48,29 +48,34 @@ def test_thermal_motion_obeys_equipartition(factor):
 # -- pull-in by the bias
 
 
+def pull_in(board):
+    p, s = insides(board)
+    return bias_pull_in(p, s.suspension)
+
+
 def test_pull_in_by_the_bias_alone():
     closed = math.sqrt(4.51e-7 * (G * 1e-6) ** 3 / (4 * N * EPS * T * 1e-6 * (XR**3 - XS**3) * 1e-18 / 3))
     assert closed == pytest.approx(28.08, rel=5e-3)
-    assert bias_pull_in(*insides(bench())) == pytest.approx(closed, rel=1e-4)
+    assert pull_in(bench()) == pytest.approx(closed, rel=1e-4)
     for values, volts in (
         ({"misalignment_mrad": 0.1}, 26.85),
         ({"misalignment_mrad": 0.5}, 24.48),
         ({"misalignment_um": 0.1}, 27.79),
     ):
-        assert bias_pull_in(*insides(bench(**values))) == pytest.approx(volts, rel=0.01)
+        assert pull_in(bench(**values)) == pytest.approx(volts, rel=0.01)
     # sideways alone, with the rotation held: k_y g^3 = 4 n eps t L V^2
-    stiff = insides(bench(rotation_stiffness_nm=1e-5))
+    stiff = bench(rotation_stiffness_nm=1e-5)
     sideways = math.sqrt(205.4 * (G * 1e-6) ** 3 / (4 * N * EPS * T * 1e-6 * 40e-6))
     assert sideways == pytest.approx(87.8, rel=5e-3)
-    assert bias_pull_in(*stiff) == pytest.approx(sideways, rel=1e-3)
+    assert pull_in(stiff) == pytest.approx(sideways, rel=1e-3)
 
 
 def test_fingers_further_apart_than_drawn_pull_in_later():
     """n eps0 t stays and the gap of the closed form is the one given: as of a device etched with that gap."""
     closed = math.sqrt(4.51e-7 * 3e-6**3 / (4 * N * EPS * T * 1e-6 * (XR**3 - XS**3) * 1e-18 / 3))
-    assert bias_pull_in(*insides(bench(gap_um=3.0))) == pytest.approx(closed, rel=5e-3)
+    assert pull_in(bench(gap_um=3.0)) == pytest.approx(closed, rel=5e-3)
     drawn = bench(values={"device.finger_gap_um": 3.0})
-    assert bias_pull_in(*insides(bench(gap_um=3.0))) == pytest.approx(bias_pull_in(*insides(drawn)), rel=1e-9)
+    assert pull_in(bench(gap_um=3.0)) == pytest.approx(pull_in(drawn), rel=1e-9)
 
 
 def test_pull_in_of_a_perfect_device_waits_for_noise():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from scenarios.lateral_metrics import lateral_metrics
-from scenarios.metrics import device_metrics
+from scenarios.measure.lateral import lateral_metrics
+from scenarios.measure.metrics import device_metrics
 from tests.lab import do, make, play
 
 EPS, N, T, L = 8.8541878128e-12, 87, 2.0, 40.0

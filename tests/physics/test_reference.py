@@ -11,7 +11,7 @@ import pytest
 from scipy import signal, stats
 
 from core import registry
-from core.block import Context, Oscillator
+from core.block import Block, BlockParams, Context, Oscillator
 from tests.lab import make, play
 
 DT = 0.01
@@ -20,6 +20,13 @@ T = np.arange(3000) * DT
 
 def voltage(n: int = 3000, **table: Any) -> np.ndarray:
     return play(make({"reference": table, "guard": {"travel_um": 1000.0}}), n)["reference.voltage"]
+
+
+def played(block: type[Block], params: BlockParams, context: Context, tick: int) -> np.ndarray:
+    """Return what plays at a tick: now, half a sample and one sample later."""
+    x = block.Ports(np.array([float(tick), 0.0, 0.0, 0.0, 0.0]), np.array([2, 3, 4]))
+    block.step(block.Packed(block.packed(params, context)), block.state(params, context), x)
+    return x.signals[2:]
 
 
 @pytest.mark.parametrize(("frequency", "phase"), [(1000.0, 0.0), (333.3, 77.0), (0.0, 90.0), (2000.0, -400.0)])
@@ -101,10 +108,7 @@ def test_values_between_samples_are_those_of_a_finer_clock(kind):
 
     def values(tick: int, dt: float, analogue: bool) -> np.ndarray:
         context = Context(dt_ms=dt, every=1, seed=1, device=device, model=device, analogue=analogue)
-        w = np.zeros(5)
-        w[0] = tick
-        block.step(block.pack(params, context), block.state(params, context), w, np.array([2, 3, 4]))
-        return w[2:]
+        return played(block, params, context, tick)
 
     for tick in range(40):
         now, middle, end = values(tick, DT, True)
@@ -119,8 +123,5 @@ def test_sine_is_exact_after_hours():
     device = Oscillator(mass=2.2e-4, damping=7e-4, stiffness=0.0538, force=-0.0162)
     params = block.Params(amplitude_v=1.0, frequency_hz=1000.0)
     context = Context(dt_ms=DT, every=1, seed=1, device=device, model=device)
-    w = np.zeros(5)
-    w[0] = tick
-    block.step(block.pack(params, context), np.zeros(0), w, np.array([2, 3, 4]))
     cycles = Fraction(tick, 100) % 1
-    assert w[2] == pytest.approx(math.sin(2 * math.pi * float(cycles)), abs=1e-6)
+    assert played(block, params, context, tick)[0] == pytest.approx(math.sin(2 * math.pi * float(cycles)), abs=1e-6)

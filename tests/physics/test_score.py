@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.block import Context
-from core.board import score
 from core.diagnose.hypothesis import Hypothesis
 from core.faults.fault import FaultParams
+from core.loop import score
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
@@ -64,7 +64,7 @@ def test_score_against_its_definition(data):
         w[2:5] = 0.1
         w[2 + who] = 0.8
         w[8:11] = factors[what] if what >= 0 else (1.3, 1.0, 1.0)
-        score.Score.step(p, s, w, io)
+        score.Score.step(p, s, score.Score.Ports(w, io))
         assert w[11] == who and w[12] == what
     found = score.read(s, ["0", "1", "2"], winner[-1])
     share, exits, delays = by_definition(np.array(winner), np.array(truth))
@@ -176,7 +176,7 @@ def test_probabilities_that_are_no_numbers_are_not_right():
     w = np.ones(32)
     w[2:4] = math.nan
     w[11] = 0.0
-    score.Score.step(p, s, w, np.array([2, 5, 7, 8, 9, 10, 11, 9, 9, 12, 13, 14, 15, 16]))
+    score.Score.step(p, s, score.Score.Ports(w, np.array([2, 5, 7, 8, 9, 10, 11, 9, 9, 12, 13, 14, 15, 16])))
     assert w[12] == -1.0 and w[13] == 0.0
     found = score.read(s, ["healthy", "m+5"], -1)
     assert found.correct_fraction == 0.0 and found.confusion == [[0, 0], [0, 0]]

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from core.diagnose import self_tuning
 from tests.lab import do, inject, make, play
 from tests.physics.bank import BENCH, FACTORS, NAMES, model, of_bank
 from tests.physics.seeds import HELD_OUT, seven_steps
@@ -61,10 +60,8 @@ def test_estimate_is_the_weighted_batch_solution(forgetting, prefilter):
 def test_likelihood_is_the_distance_in_the_metric_of_the_information():
     """(th - th_k)' eta^-1 (th - th_k) is what the costs over the same memory differ by."""
     board, trace = trace_of(300, 20, {**A, "forgetting": 0.95}, sensor__noise_um=0.05)
-    state = board.wiring.state_of("kalman")
     covariance = np.zeros((4, 4))
-    at = self_tuning.COVARIANCE
-    covariance[np.tril_indices(4)] = state[at : at + 10]
+    covariance[np.tril_indices(4)] = board.wiring.state("kalman").covariance
     information = np.linalg.inv(covariance + np.tril(covariance, -1).T)
     estimate = np.array([trace[f"kalman.estimate.{name}"][-1] for name in COEFFICIENTS])
     own = difference_equation("healthy", 0.05)
@@ -155,9 +152,8 @@ def test_a_long_single_sine_without_noise_winds_nothing_up(bank):
         board.advance(512)
         assert np.all(np.isfinite(board.wiring.state_of("kalman"))) and np.all(np.isfinite(board.wiring.w[own]))
     if bank["kind"] == "self_tuning":
-        at, state = self_tuning.COVARIANCE, board.wiring.state_of("kalman")
         matrix = np.zeros((4, 4))
-        matrix[np.tril_indices(4)] = state[at : at + 10]
+        matrix[np.tril_indices(4)] = board.wiring.state("kalman").covariance
         assert np.linalg.eigvalsh(matrix + np.tril(matrix, -1).T)[0] > 0.0
         assert board.value("kalman.trace") <= 1e10
 

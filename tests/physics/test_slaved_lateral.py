@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize
 
-from core.board import program
 from core.plant import slaved_lateral
 from core.plant.equilibrium import fold, slaved_force, stators_of, voltage_at
-from scenarios.lateral_metrics import lateral_metrics
+from scenarios.measure.lateral import lateral_metrics
 from tests.lab import make, play
 
 EPS, N, T, G = 8.8541878128e-12, 87, 2.0, 2.1
@@ -30,8 +29,7 @@ def slaved(**values):
 
 
 def packed(board):
-    wiring = board.wiring
-    return wiring.p[wiring.table[wiring.row("plant"), program.P_OFFSET] :]
+    return board.wiring.parameters("plant")
 
 
 def textbook_slaved(x, v, k1=0.0784, kappa=0.42, overlap=5.0, bias=5.0, g=G):

@@ -12,7 +12,7 @@ from core.device.geometry import Geometry
 from core.device.pull_in import rotation_pull_in_v
 from core.faults.point_adhesion import PointAdhesion
 from core.faults.structure import linear
-from scenarios.lateral_metrics import geometry_pull_in
+from scenarios.measure.lateral import geometry_pull_in
 from tests.lab import do, inject, make, phasor, play
 
 LCR = device({"id": "lcr-350"}).geometry

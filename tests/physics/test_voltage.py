@@ -13,7 +13,8 @@ from scipy.signal import cont2discrete
 
 from core.control.controller import advance_lag, lag
 from core.device.oscillator import within
-from core.estimation import drive_filter, driven_filter
+from core.estimation import driven_filter_of, filter_voltage
+from core.voltage import Motion
 from tests.lab import inject, make, play
 from tests.physics.bank import BENCH, FACTORS, FORCE, K, M, model
 from tests.physics.bank import BETA as B
@@ -45,16 +46,16 @@ def test_effect_of_a_parabola_by_quadrature(zeta):
 def test_filters_of_a_voltage_follow_a_sine():
     """1/(s + p)^2 and 1/(s + p) of a sine in closed form; a parabola leaves of it what is of fourth order."""
     pole, h, omega = 1.3, 0.1, 0.8
-    two, one = np.array(driven_filter(pole, h, True)), np.array(lag(pole, h, True))
-    s, ticks = np.zeros(3), 400
+    two, one = driven_filter_of(pole, h, True), lag(pole, h, True)
+    motion, lagged, ticks = Motion.zeros(), 0.0, 400
     for i in range(ticks):
         u, middle, end = (math.sin(omega * h * (i + part)) for part in (0.0, 0.5, 1.0))
-        drive_filter(two, 0, s, 0, u, middle - u, end - u)
-        advance_lag(one, 0, s, 2, u, middle - u, end - u)
+        filter_voltage(two, motion, u, middle - u, end - u)
+        lagged = advance_lag(one, lagged, u, middle - u, end - u)
     phase = np.exp(1j * omega * h * ticks)
     response = 1.0 / (1j * omega + pole)
     theory = [(response**2 * phase).imag, (1j * omega * response**2 * phase).imag, (response * phase).imag]
-    np.testing.assert_allclose(s, theory, atol=(omega * h) ** 4 / 100)
+    np.testing.assert_allclose([motion.x, motion.v, lagged], theory, atol=(omega * h) ** 4 / 100)
 
 
 def independent(z: np.ndarray, u: np.ndarray, h: float, q: float, r: float) -> tuple[np.ndarray, np.ndarray]:

@@ -10,9 +10,10 @@ import pytest
 from scipy.linalg import expm
 from scipy.signal import cont2discrete
 
-from core import voltage
+from core.plain import plain
 from core.sense import tracker
-from core.sense.tracker import TrackerParams
+from core.sense.tracker import Filter, TrackerParams
+from core.voltage import AppliedPorts, Gathered
 from tests.lab import make, play
 
 OMEGA, RATE_KHZ = 4.0 * math.pi, 20
@@ -65,21 +66,21 @@ def test_a_sensor_with_a_model_predicts_the_motion_under_a_voltage_that_moves(dr
     document = {**FAST, "sample_rate_khz": 100, "plant": {**FAST["plant"], "drive": drive}}
     spec = make(document).spec
     context, device, h = spec.context(every), spec.context().device, spec.dt_ms
-    p = np.array(tracker.pack_model(TrackerParams(), context))
+    p, s, gathered = tracker.model_of(TrackerParams(), context), Filter.zeros(), Gathered.zeros()
+    tracker.put_at_rest(s, TrackerParams(), context)
     a = np.array([[0.0, 1.0], [-device.stiffness / device.mass, -device.damping / device.mass]])
     b = np.array([0.0, device.force / device.mass])
     turn = np.exp(1j * OMEGA * h)
     phi = expm(a * h)
     held = np.linalg.solve(turn * np.eye(2) - phi, (phi - np.eye(2)) @ np.linalg.solve(a, b))
     state = held if drive == "held" else np.linalg.solve(1j * OMEGA * np.eye(2) - a, b)
-    s = np.array([*tracker.start(TrackerParams(), context), *[0.0] * voltage.STATES])
-    s[[tracker.X, tracker.V]] = state.imag
+    s.x, s.v = state.imag
     for tick in range(1, 601):
         parts = (0.0, 0.0, 0.0) if drive == "held" else (0.0, 0.5, 1.0)
         u = np.array([math.sin(OMEGA * h * (tick - 1 + part)) for part in parts])
-        w, io = np.array([float(tick), 0.0, *u]), np.array([2, 3, 4])
-        if not tracker.gather(p, 0, s, tracker.FILTER, w, io, 0):
-            tracker.predict(p, 0, s, 0, tracker.FILTER)
-            s[tracker.FILTER + voltage.BEGUN] = 0.0
+        x = AppliedPorts(np.array([float(tick), 0.0, *u]), np.array([2, 3, 4]))
+        if not plain(tracker.between_updates)(p, gathered, x):
+            tracker.predict(p, s, gathered)
+            gathered.begun = 0.0
             expected = (state * turn**tick).imag
-            np.testing.assert_allclose(s[[tracker.X, tracker.V]], expected, atol=1e-6 * np.max(np.abs(state)))
+            np.testing.assert_allclose([s.x, s.v], expected, atol=1e-6 * np.max(np.abs(state)))

@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from core import registry
-from core.board.drive import Drive
-from core.board.guard import Guard
-from core.board.model import Model
 from core.device.catalogue import device
 from core.device.device import Device
 from core.device.geometry import Geometry
 from core.errors import InputError
+from core.loop.drive import Drive
+from core.loop.guard import Guard
+from core.loop.model import Model
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, library
 from scenarios.run import run

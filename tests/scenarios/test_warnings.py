@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
+from scenarios.report.run import run_report
 from scenarios.run import build, run
-from scenarios.run_report import run_report
 from scenarios.schema import Scenario
 from scenarios.seeds import run_seeds
 from server.cli import app

@@ -86,13 +86,14 @@ def forks(log: Path) -> Iterator[Forks]:
 
 def main() -> None:
     """Fork a server for each line."""
-    import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
-    from server import app, service  # noqa: F401
+    from scenarios import kernels  # first: it gives compiled kernels their cache
+    from server import app  # noqa: F401
     from server.serve import serve
     from server.settings import Settings
 
-    service.warm_up()
-    service.warm_up = lambda: None  # what is loaded stays so in every fork
+    kernels.load()
+    kernels.load = lambda: None  # every fork has the kernels of its parent
+    kernels.complete = lambda: None  # no fork compiles the others
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     while line := sys.stdin.readline():
         if os.fork():

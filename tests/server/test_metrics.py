@@ -56,7 +56,7 @@ def test_health_says_what_is_wrong(serve: Any, monkeypatch: Any) -> None:
             "ok": True,
             "checks": {"started": True, "engine": True, "database": True, "kernels": True},
         }
-        live.service.has_kernels = False
+        live.service.kernels.are_loaded = False
         bad = stranger.get("/health/ready")
         assert bad.status_code == 503 and bad.json()["checks"]["kernels"] is False
         assert stranger.get("/health/live").status_code == 200

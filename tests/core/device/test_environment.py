@@ -7,10 +7,10 @@ import math
 import pytest
 from scipy.constants import R, k
 
-from core.board.environment import Environment
-from core.board.spec import parse
+from core.board.parse import parse
 from core.device import environment as law
 from core.device.catalogue import device
+from core.loop.environment import Environment
 
 MOLAR = 0.0289647  # kg/mol, dry air
 

@@ -11,7 +11,7 @@ from scipy import integrate, optimize
 from core.device.catalogue import device
 from core.device.geometry import Geometry
 from core.device.lateral import comb_square_um2, lateral, shuttle_moment_um4
-from scenarios.lateral_metrics import device_pull_in, lateral_metrics
+from scenarios.measure.lateral import device_pull_in, lateral_metrics
 from tests.lab import inject, make, play
 
 LCR = device({"id": "lcr-350"}).drawing

@@ -75,7 +75,7 @@ def test_capacitance_goes_with_one_over_the_gap(gap):
 def test_a_wider_gap_feels_less_of_what_is_lateral():
     """Both combs by integration, at twice the gap."""
     p = Capacitive.pack(Capacitive.Params(gap_um=4.2), make().spec.context())
-    own = p[0] * squeezed(p, 1.0, 40.0, 0.7, 1e-3)
+    own = p.gradient * squeezed(p, 1.0, 40.0, 0.7, 1e-3)
 
     def density(xi: float) -> float:
         eta = 0.7 + 1e-3 * xi

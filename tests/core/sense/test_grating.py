@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from core.sense.grating import BeamParams, level, pack_grating, series
+from core.sense.grating import BeamParams, Grating, level, pack_grating, series
 from tests.core.sense.bench import TICKS, make
 from tests.lab import play
 
@@ -36,17 +36,17 @@ def test_visibility_falls_with_the_spot(spot, visibility):
 @pytest.mark.parametrize("spot", [0.3, 1.5, 3.0])
 def test_series_is_the_convolution_of_bars_and_beam(spot):
     params = BeamParams(spot_um=spot, grating_offset_um=0.7)
-    p = np.array(pack_grating(params.mean, 4.0, 0.7, params.harmonics))
+    p = pack_grating(Grating, params.mean, 4.0, 0.7, params.harmonics)
     x = np.linspace(-9, 9, 101)
-    np.testing.assert_allclose([level(p, 0, at) for at in x], smoothed(x, spot, 0.7), atol=1e-8)
+    np.testing.assert_allclose([level(p, at) for at in x], smoothed(x, spot, 0.7), atol=1e-8)
 
 
 def test_slope_and_curvature_are_the_derivatives_of_the_level():
     params = BeamParams(spot_um=0.8, opening=0.4)
-    p = np.array(pack_grating(params.mean, 4.0, 0.3, params.harmonics))
+    p = pack_grating(Grating, params.mean, 4.0, 0.3, params.harmonics)
     for x in np.linspace(-5, 5, 23):
-        before, now, after = (level(p, 0, x + h) for h in (-1e-4, 0.0, 1e-4))
-        value, slope, curvature = series(p, 0, x)
+        before, now, after = (level(p, x + h) for h in (-1e-4, 0.0, 1e-4))
+        value, slope, curvature = series(p, x)
         assert value == now
         assert slope == pytest.approx((after - before) / 2e-4, abs=1e-6)
         assert curvature == pytest.approx((after - 2.0 * now + before) / 1e-8, abs=1e-6)
@@ -59,10 +59,10 @@ def test_third_harmonic_is_below_three_percent():
 
 def test_eight_extremes_and_two_turns_a_cycle_at_four_um():
     params = BeamParams(grating_offset_um=0.5)
-    p = np.array(pack_grating(params.mean, 4.0, 0.5, params.harmonics))
+    p = pack_grating(Grating, params.mean, 4.0, 0.5, params.harmonics)
     phase = np.linspace(0.1, 0.1 + 2 * math.pi, 200_001)
     x = 4.0 * np.sin(phase)
-    light = np.array([level(p, 0, at) for at in x])
+    light = np.array([level(p, at) for at in x])
     at = x[1:-1][np.diff(np.sign(np.diff(light))) != 0]
     turns = np.abs(np.abs(at) - 4.0) < 1e-6
     assert turns.sum() == 2

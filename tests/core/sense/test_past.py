@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from core.board.board import Board
-from core.sense.hypotheses import OWN
 from core.sense.past import KEPT
-from core.sense.tracker import V
 from tests import lab
 from tests.core.sense.bench import DOCUMENT, make
 from tests.lab import do, inner_digest, play
@@ -93,7 +91,7 @@ def test_speed_is_better_than_that_of_a_parabola_through_the_past():
         for at in moments(518.0):
             board = taken_over(SOURCES["ideal"], at, fault={}, seed=seed)
             play(board, 1)
-            off.append(board.wiring.state_of("single_beam")[OWN + V] - board.value("plant.velocity"))
+            off.append(board.wiring.state("single_beam").hypotheses[0].v - board.value("plant.velocity"))
     # the end slope of a least squares parabola through n samples has the variance 192/n^3 (sigma/dt)^2
     parabola = 0.05 * 518.0 * np.sqrt(192.0 / KEPT**3)
     assert np.sqrt(np.mean(np.square(off))) < parabola
@@ -105,7 +103,7 @@ def test_begins_at_rest_where_nothing_was_measured_before():
     always = make({"sensor.kind": "ideal", "sensors.single_beam.always": True})
     play(always, 1)
     np.testing.assert_array_equal(board.wiring.state_of("single_beam"), always.wiring.state_of("single_beam"))
-    assert abs(board.wiring.state_of("single_beam")[OWN + V]) < 1.0
+    assert abs(board.wiring.state("single_beam").hypotheses[0].v) < 1.0
 
 
 @pytest.mark.parametrize("before", [1, KEPT // 2, 3 * KEPT])

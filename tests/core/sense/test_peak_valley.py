@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from core.ports import RESERVED
 from core.sense.grating import level
-from core.sense.peak_valley import DIRECTION, DISPLACEMENT, GRATING, LIGHT, MOVING, TRUE, WRONG_WAY, PeakValley
+from core.sense.peak_valley import PeakValley
 from tests.core.sense.bench import errors, lost, make
 
 COUNTER = {"sensor.kind": "peak_valley"}
@@ -15,14 +16,16 @@ COUNTER = {"sensor.kind": "peak_valley"}
 def recover(x: np.ndarray, offset: float) -> np.ndarray:
     """Let the unit count a noiseless signal along any path that begins at zero."""
     context = make({"sensors.through_wafer.grating_offset_um": offset}).spec.context()
-    p, s = PeakValley.pack(PeakValley.Params(), context), PeakValley.state(PeakValley.Params(), context)
-    w, io = np.zeros(WRONG_WAY + 1), np.arange(WRONG_WAY + 1)
+    p = PeakValley.Packed(PeakValley.packed(PeakValley.Params(), context))
+    s = PeakValley.state(PeakValley.Params(), context)
+    places = RESERVED + np.arange(len(PeakValley.Ports.declared))
+    unit = PeakValley.Ports(np.zeros(places[-1] + 1), places)
     velocity = np.gradient(x)
     found = np.zeros((len(x), 3))
     for i, at in enumerate(x):
-        w[LIGHT], w[TRUE], w[MOVING] = level(p, GRATING, at), at, velocity[i]
-        PeakValley.step(p, s, w, io)
-        found[i] = w[DISPLACEMENT], w[DIRECTION], w[WRONG_WAY]
+        unit.light, unit.true, unit.moving = level(p, at), at, velocity[i]
+        PeakValley.step(p, s, unit)
+        found[i] = unit.displacement, unit.direction, unit.wrong_way
     return found
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from filterpy.kalman import KalmanFilter
 
-from core import voltage
 from core.sense import tracker
-from core.sense.tracker import TrackerParams
+from core.sense.tracker import Filter, TrackerParams
+from core.voltage import Gathered
 from tests.core.sense.bench import errors, lost, make, rms_nm
 from tests.lab import do, play
 
@@ -80,8 +80,8 @@ def test_rests_unless_needed():
 
 def test_one_filter_is_the_filter_of_another_library():
     context = make().spec.context()
-    p = np.array(tracker.pack_model(TrackerParams(), context))
-    s = np.array([*tracker.start(TrackerParams(), context), *[0.0] * voltage.STATES])
+    p, s, drive = tracker.model_of(TrackerParams(), context), Filter.zeros(), Gathered.zeros()
+    tracker.put_at_rest(s, TrackerParams(), context)
     device = context.device
     # exact discretisation of x'' = (F u - b x' - k x)/m + f, f' = 0, by the exponential of the augmented matrix
     from scipy.linalg import expm
@@ -93,20 +93,20 @@ def test_one_filter_is_the_filter_of_another_library():
     discrete = expm(a * context.dt_ms)
     other = KalmanFilter(dim_x=3, dim_z=1, dim_u=1)
     other.x = np.zeros((3, 1))
-    other.P = np.diag([s[tracker.P11], s[tracker.P22], s[tracker.P33]])
+    other.P = np.diag([s.p11, s.p22, s.p33])
     other.F, other.B = discrete[:3, :3], discrete[:3, 3:]
     # white noise of the force's walk: 4000/s times (0.1 w0^2 A)^2 times dt
     other.Q = np.diag([0.0, 0.0, 4.0 * (0.1 * k / m * 4.0) ** 2 * context.dt_ms])
     rng = np.random.default_rng(1)
     for _ in range(200):
         u, z, h, r = rng.normal(0, 3), rng.normal(0, 0.1), rng.normal(0, 0.3), 1e-4
-        s[tracker.FILTER + voltage.START] = u
-        tracker.predict(p, 0, s, 0, tracker.FILTER)
+        drive.start = u
+        tracker.predict(p, s, drive)
         other.predict(u=np.array([[u]]))
-        residual = z - h * s[tracker.X]
-        log = tracker.correct(s, 0, residual, h, r)
+        residual = z - h * s.x
+        log = tracker.correct(s, residual, h, r)
         other.update(np.array([[z]]), R=np.array([[r]]), H=np.array([[h, 0.0, 0.0]]))
-        np.testing.assert_allclose(s[:3], other.x[:, 0], rtol=1e-7, atol=1e-10)
+        np.testing.assert_allclose([s.x, s.v, s.f], other.x[:, 0], rtol=1e-7, atol=1e-10)
         upper = other.P[np.triu_indices(3)]
-        np.testing.assert_allclose(s[3:9], upper, rtol=1e-6, atol=1e-12)
+        np.testing.assert_allclose([s.p11, s.p12, s.p13, s.p22, s.p23, s.p33], upper, rtol=1e-6, atol=1e-12)
         assert log == pytest.approx(other.log_likelihood + 0.5 * np.log(2 * np.pi), abs=1e-6)

@@ -16,6 +16,7 @@ from scenarios.run import build, run
 from scenarios.schema import Scenario
 from server.bench.commands import parse
 from server.bench.events import Event
+from server.bench.portrait import document_of
 from server.bench.session import Session
 from server.metrics import Metrics
 
@@ -120,7 +121,7 @@ def test_a_long_step_is_taken_in_slices_with_commands_between() -> None:
     assert behind.result(0).text == "stepped 0 of 3 ticks"
     assert kinds(bench)[-3:] == ["step", "step", "pause"]
     assert not bench.is_running and bench.status.state == "paused" and bench.board.tick == 1024
-    saved = Scenario.load(bench.document())
+    saved = Scenario.load(document_of(bench))
     assert run(saved).digest == bench.board.digest()
 
 
@@ -234,7 +235,7 @@ def test_what_happened_is_saved_as_a_scenario_with_the_same_bits() -> None:
     bench.execute(parse({"kind": "inject", "fault": "damping", "severity": 0.3}), "test")
     bench.execute(parse({"kind": "set", "values": {"sensor.noise_um": 0.1}}), "test")
     advance(bench, 2501)
-    saved = Scenario.load(Scenario.load(bench.document()).toml())
+    saved = Scenario.load(Scenario.load(document_of(bench)).toml())
     result = run(saved)
     assert result.board.tick == 2501
     assert result.digest == bench.board.digest()

@@ -8,11 +8,11 @@ from typing import Any
 
 from typer.testing import CliRunner
 
-from scenarios.campaign import Campaign
-from scenarios.sweep import Sweep
+from scenarios.campaign.campaign import Campaign
+from scenarios.campaign.sweep import Sweep
 from server.cli import app
-from tests.scenarios.cluster import Cluster
-from tests.scenarios.test_campaign import Memory
+from tests.scenarios.campaign.cluster import Cluster
+from tests.scenarios.campaign.test_campaign import Memory
 from tests.server.runs.test_runs import wait
 
 NAME, SEED = "ch5-seven-step", 23

@@ -13,10 +13,10 @@ from typing import Any
 import pyarrow.csv
 import pytest
 
+from scenarios.campaign.sweep import Sweep
 from scenarios.run import run
 from scenarios.schema import Scenario
-from scenarios.sweep import Sweep
-from tests.scenarios.cluster import Cluster
+from tests.scenarios.campaign.cluster import Cluster
 from tests.server.forks import Served, forks
 
 RUNS = 200

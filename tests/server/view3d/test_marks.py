@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from core import registry
-from core.block import Port
 from core.device.geometry import Geometry
 from core.faults.fault import Fault, FaultParams
+from core.ports import Port
 from server.view3d.layout import UM_PER_UNIT, Layout
 from server.view3d.marks import Marks, marks, words
 from server.view3d.pose import Active

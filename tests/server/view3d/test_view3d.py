@@ -58,7 +58,7 @@ def test_the_page_is_visers_with_our_lines(live: Any) -> None:
 
 def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
     bench = live.bench(time_scale=0.002)
-    show = live.service.theatre.show_of(live.service.benches.get(bench["id"]))
+    show = live.service.viewers.show_of(live.service.benches.get(bench["id"]))
     with join(live, bench) as page:
         assert page.subprotocol == VISER
         assert count(page, 1.0) > 10
@@ -93,7 +93,7 @@ def test_the_scene_is_on_no_port_and_its_socket_is_for_this_user_alone(live: Any
     with join(live, bench) as page:
         count(page, 0.3)
         assert listening() <= before
-        path = live.service.theatre.show_of(live.service.benches.get(bench["id"]))._scene.path
+        path = live.service.viewers.show_of(live.service.benches.get(bench["id"]))._scene.path
         assert path.is_socket()
         folder = path.parent.stat()
         assert folder.st_mode & 0o777 == 0o700 and folder.st_uid == os.getuid()
@@ -164,7 +164,7 @@ def test_faults_and_motion_reach_the_parts(live: Any) -> None:
     session = live.service.benches.get(bench["id"])
     with join(live, bench) as page:
         count(page, 0.5)
-        scene = live.service.theatre.show_of(session)._scene
+        scene = live.service.viewers.show_of(session)._scene
         assert not scene._added and not scene._film.visible
         color, film = tuple(scene._beams[0].color), scene._film.opacity
         for fault in ("added_mass", "stiffness", "damping"):
@@ -186,10 +186,10 @@ def test_faults_and_motion_reach_the_parts(live: Any) -> None:
 
 def pose_of(live: Any, bench: dict[str, Any]) -> tuple[Any, Any]:
     from server.view3d.pose import Observer
-    from server.view3d.theatre import layout_of
+    from server.view3d.viewers import layout_of
 
     session = live.service.benches.get(bench["id"])
-    return session, Observer(session, layout_of(session)).look()
+    return session, Observer(session, layout_of(session)).pose()
 
 
 def test_a_shuttle_in_the_plane_shifts_turns_and_warns(live: Any) -> None:
@@ -241,7 +241,7 @@ def test_the_estimate_is_what_the_winner_predicted(live: Any) -> None:
 def test_the_picture_of_a_pose_is_light(live: Any) -> None:
     """A frame of a plant in the plane: nodes moved, not rebuilt, and well below a frame's time of 16.7 ms."""
     from server.view3d.pose import Observer
-    from server.view3d.theatre import build_scene, layout_of
+    from server.view3d.viewers import build_scene, layout_of
 
     bench = live.bench("ch3-case3-adhesion", paused=True)
     session = live.service.benches.get(bench["id"])
@@ -251,7 +251,7 @@ def test_the_picture_of_a_pose_is_light(live: Any) -> None:
         for _ in range(60):
             live.command(bench["id"], "step", ticks=7)
             start = time.thread_time()
-            scene.show(observer.look())
+            scene.show(observer.pose())
             spent.append(time.thread_time() - start)
     finally:
         scene.close()

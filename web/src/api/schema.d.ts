@@ -113,13 +113,13 @@ export interface paths {
         };
         /**
          * Map Aliases
-         * @description Map the response of every hypothesis to the tones of the drive, and name what has the same.
+         * @description Map the response of every hypothesis to the tones of the drive, and name those with the same response.
          */
         get: operations["map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get"];
         put?: never;
         /**
          * Get Aliases
-         * @description Say which hypotheses of a list the drive does not tell apart.
+         * @description Report the hypotheses of a list that look alike under the drive.
          */
         post: operations["get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post"];
         delete?: never;
@@ -179,7 +179,7 @@ export interface paths {
         put?: never;
         /**
          * Check Scenario
-         * @description Check a scenario without running it; 422 says what is wrong with it.
+         * @description Check a scenario without running it; the answer 422 says what is wrong with it.
          */
         post: operations["check_scenario_api_v1_scenarios_check_post"];
         delete?: never;
@@ -285,7 +285,9 @@ export interface paths {
         };
         /**
          * Save Scenario
-         * @description Return what happened as a scenario in TOML; run headless it gives the same bits, whose digest it begins with.
+         * @description Return what happened as a scenario in TOML.
+         *
+         *     It begins with the digest. Run headless, it gives the same bits.
          */
         get: operations["save_scenario_api_v1_benches__bench_id__scenario_get"];
         put?: never;
@@ -405,7 +407,7 @@ export interface paths {
         };
         /**
          * Plants
-         * @description Measure what a tick costs with each plant.
+         * @description Measure the cost of a tick with each plant.
          */
         get: operations["plants_api_v1_benches__bench_id__plants_get"];
         put?: never;
@@ -425,7 +427,7 @@ export interface paths {
         };
         /**
          * Flops
-         * @description Count the operations of every diagnoser as it is now, and hold them against a board of some speed.
+         * @description Count the operations of every diagnoser as it is now, and compare them with a board of some speed.
          */
         get: operations["flops_api_v1_benches__bench_id__flops_get"];
         put?: never;
@@ -445,7 +447,7 @@ export interface paths {
         };
         /**
          * Explain Sample
-         * @description Work out what a sample did to every hypothesis: prior, residual, likelihood, posterior.
+         * @description Work out how a sample changed every hypothesis: prior, residual, likelihood, posterior.
          */
         get: operations["explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get"];
         put?: never;
@@ -555,7 +557,7 @@ export interface paths {
         put?: never;
         /**
          * Stop Recording
-         * @description End a recording; answers when its file is whole.
+         * @description End a recording; the answer comes when its file is whole.
          */
         post: operations["stop_recording_api_v1_benches__bench_id__recordings__recording_id__stop_post"];
         delete?: never;
@@ -703,7 +705,7 @@ export interface paths {
         put?: never;
         /**
          * Start Run
-         * @description Queue a headless run; it never disturbs the live benches.
+         * @description Queue a headless run; it does not disturb the live benches.
          */
         post: operations["start_run_api_v1_runs_post"];
         delete?: never;
@@ -831,7 +833,7 @@ export interface paths {
         put?: never;
         /**
          * Start Sweep
-         * @description Start a campaign, or go on with one that was stopped; asked twice, the same one answers.
+         * @description Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one.
          */
         post: operations["start_sweep_api_v1_sweeps_post"];
         delete?: never;
@@ -856,7 +858,7 @@ export interface paths {
         post?: never;
         /**
          * Cancel Sweep
-         * @description Stop a campaign; what is done stays.
+         * @description Stop a campaign; the runs that are done stay.
          */
         delete: operations["cancel_sweep_api_v1_sweeps__sweep_id__delete"];
         options?: never;
@@ -873,7 +875,7 @@ export interface paths {
         };
         /**
          * Get Sweep Points
-         * @description Return figures, confusion, delays and receiver operating characteristics, of what is done so far.
+         * @description Return figures, confusion, delays and receiver operating characteristics of the runs done so far.
          */
         get: operations["get_sweep_points_api_v1_sweeps__sweep_id__points_get"];
         put?: never;
@@ -953,7 +955,7 @@ export interface paths {
         };
         /**
          * Get Gallery
-         * @description Show every library scenario: claim, expectations, and what its run gave.
+         * @description Show every library scenario: claim, expectations, and the result of its run.
          */
         get: operations["get_gallery_api_v1_gallery_get"];
         put?: never;
@@ -975,7 +977,7 @@ export interface paths {
         put?: never;
         /**
          * Run Gallery
-         * @description Run the library, or a part of it; what has been run with this version is not run again.
+         * @description Run the library, or a part of it; a scenario that has been run with this version is not run again.
          */
         post: operations["run_gallery_api_v1_gallery_run_post"];
         delete?: never;
@@ -1055,7 +1057,7 @@ export interface paths {
         put?: never;
         /**
          * Map Aliases
-         * @description Map the responses of hypotheses to tones, and name what has the same.
+         * @description Map the responses of hypotheses to tones, and name those with the same response.
          */
         post: operations["map_aliases_api_v1_theory_aliases_post"];
         delete?: never;
@@ -1075,7 +1077,7 @@ export interface paths {
         put?: never;
         /**
          * Map Instability
-         * @description Map where a rule of appendix B is unstable under a sine.
+         * @description Map the region where a rule of appendix B is unstable under a sine.
          */
         post: operations["map_instability_api_v1_theory_instability_map_post"];
         delete?: never;
@@ -1113,7 +1115,7 @@ export interface paths {
         };
         /**
          * Ready
-         * @description Answer 200 when the engine turns, the database can be written and the kernels are loaded.
+         * @description Answer 200 when the engine turns, the database can be written and the kernels of a bench are loaded.
          */
         get: operations["ready_health_ready_get"];
         put?: never;
@@ -1186,7 +1188,7 @@ export interface components {
             };
             /**
              * Parameters
-             * @description What else was chosen for it, or its defaults
+             * @description Its other parameters, chosen or default
              * @default {}
              */
             parameters?: {
@@ -1211,7 +1213,7 @@ export interface components {
         };
         /**
          * AliasReport
-         * @description Where hypotheses lie apart and where they coincide, now and at other drive frequencies.
+         * @description The hypotheses that lie apart and those that coincide, now and at other drive frequencies.
          */
         AliasReport: {
             map: components["schemas"]["AliasMap"];
@@ -1223,7 +1225,7 @@ export interface components {
         };
         /**
          * AliasSource
-         * @description Which hypotheses under which drive; those of the diagnoser under the drive of the bench unless given.
+         * @description Hypotheses and a drive; those of the diagnoser and of the bench unless given.
          */
         AliasSource: {
             /** Hypotheses */
@@ -1461,13 +1463,13 @@ export interface components {
             static_gain_um_per_v: number;
             /**
              * Band
-             * @description What the band is
+             * @description Meaning of the band
              */
             band: string;
         };
         /**
          * BodeOf
-         * @description Which Bode diagram.
+         * @description A request for a Bode diagram.
          */
         BodeOf: {
             /**
@@ -1534,7 +1536,7 @@ export interface components {
         };
         /**
          * Chosen
-         * @description Which scenarios to run.
+         * @description The scenarios to run.
          */
         Chosen: {
             /**
@@ -1557,7 +1559,7 @@ export interface components {
         };
         /**
          * CompareWith
-         * @description What to compare a recording with.
+         * @description The recording to compare with, and the tolerances.
          */
         CompareWith: {
             /**
@@ -1690,7 +1692,7 @@ export interface components {
         };
         /**
          * Devices
-         * @description Every device of the catalogue, and what can be chosen about a drawing.
+         * @description Every device of the catalogue, and the choices of a drawing.
          */
         Devices: {
             /** Devices */
@@ -1727,7 +1729,7 @@ export interface components {
         };
         /**
          * Digest
-         * @description What tells runs apart: SHA-256 over a fold of the outputs of each block at every tick.
+         * @description The digest of a run, equal for equal runs: SHA-256 over a fold of the outputs of each block at every tick.
          */
         Digest: {
             /** Tick */
@@ -1763,7 +1765,7 @@ export interface components {
         };
         /**
          * Evaluation
-         * @description What a device would be.
+         * @description The figures of a device, worked out before it is built.
          */
         Evaluation: {
             /** Title */
@@ -1902,7 +1904,7 @@ export interface components {
         };
         /**
          * Expected
-         * @description An expectation, and what was measured.
+         * @description An expectation, and the measured value.
          */
         Expected: {
             /** Metric */
@@ -1966,7 +1968,7 @@ export interface components {
         };
         /**
          * FoldPoint
-         * @description Where the rest under a slowly rising drive ends: travel, voltage, place of the worst corner sideways.
+         * @description The last rest position under a slowly rising drive: travel, voltage, place of the worst corner sideways.
          */
         FoldPoint: {
             /** X Um */
@@ -1978,7 +1980,7 @@ export interface components {
         };
         /**
          * ForkFrom
-         * @description Where a fork begins.
+         * @description The start of a fork.
          */
         ForkFrom: {
             /**
@@ -2152,7 +2154,7 @@ export interface components {
         };
         /**
          * Identification
-         * @description What a swept sine tells of a bench as it is now.
+         * @description The device that a swept sine identifies on a bench as it is now.
          */
         Identification: {
             /** Tick */
@@ -2333,7 +2335,7 @@ export interface components {
         };
         /**
          * MapSource
-         * @description Which rule, on which plant kv/(b2 s^2 + b1 s + 1), and the axes of the map.
+         * @description A rule, a plant kv/(b2 s^2 + b1 s + 1), and the axes of the map.
          */
         MapSource: {
             /**
@@ -2486,7 +2488,7 @@ export interface components {
         };
         /**
          * NewBench
-         * @description What to make a bench from.
+         * @description The scenario of a new bench, and how it starts.
          */
         NewBench: {
             /**
@@ -2520,7 +2522,7 @@ export interface components {
         };
         /**
          * NewRun
-         * @description What to run.
+         * @description A scenario to run.
          */
         NewRun: {
             /**
@@ -2548,7 +2550,7 @@ export interface components {
         };
         /**
          * NewSnapshot
-         * @description What to call this moment.
+         * @description The name of this moment.
          */
         NewSnapshot: {
             /**
@@ -2559,7 +2561,7 @@ export interface components {
         };
         /**
          * NewSweep
-         * @description What to run.
+         * @description A campaign to run.
          */
         NewSweep: {
             /**
@@ -2835,7 +2837,7 @@ export interface components {
         };
         /**
          * RecordingDetail
-         * @description A recording with all that it takes to understand and repeat it.
+         * @description A recording with the data needed to understand and repeat it.
          */
         RecordingDetail: {
             /** Id */
@@ -2901,7 +2903,7 @@ export interface components {
         };
         /**
          * Replay
-         * @description How to play a recording.
+         * @description The speed of a replay.
          */
         Replay: {
             /**
@@ -3266,7 +3268,7 @@ export interface components {
         };
         /**
          * SpreadOf
-         * @description Which devices to draw from the process.
+         * @description A request for devices drawn from the process.
          */
         SpreadOf: {
             /**
@@ -3298,7 +3300,7 @@ export interface components {
         };
         /**
          * SpreadStatistics
-         * @description How far one parameter lies apart.
+         * @description The spread of one parameter.
          */
         SpreadStatistics: {
             /** Variation Pct */
@@ -3407,7 +3409,7 @@ export interface components {
         };
         /**
          * SweptSine
-         * @description How to sweep.
+         * @description The settings of a swept sine.
          */
         SweptSine: {
             /**
@@ -3533,7 +3535,7 @@ export interface components {
         };
         /**
          * UnstableRegionMap
-         * @description Where a bench as it is now pulls in; empty where its plant cannot.
+         * @description The region where a bench as it is now pulls in; empty if its plant cannot.
          */
         UnstableRegionMap: {
             /** Tick */
@@ -3562,7 +3564,7 @@ export interface components {
         };
         /**
          * Wanted
-         * @description What to record: from now, or from when a condition holds, with some of the past.
+         * @description A recording to make: from now or from a condition on, with some of the past.
          */
         Wanted: {
             /**
@@ -3700,7 +3702,7 @@ export interface components {
         };
         /**
          * TriggerSpec
-         * @description When a panel takes its picture.
+         * @description The trigger of a panel; it sets the moment of the picture.
          */
         TriggerSpec: {
             /** Signal */
@@ -3754,7 +3756,7 @@ export interface components {
         ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Resume"] | components["schemas"]["CommandMessage"];
         /**
          * ErrorBody
-         * @description What went wrong, in one line; which field; what to do.
+         * @description An error: one line, the field at fault, a hint.
          */
         ErrorBody: {
             /** Code */
@@ -3868,7 +3870,7 @@ export interface components {
         };
         /**
          * Status
-         * @description What changes on a bench: five times a second, and after events at most twenty times.
+         * @description The changing part of a bench: sent five times a second, and after events at most twenty times.
          */
         Status: {
             /**
@@ -4743,9 +4745,9 @@ export interface operations {
     flops_api_v1_benches__bench_id__flops_get: {
         parameters: {
             query?: {
-                /** @description What the board does per second */
+                /** @description Millions of operations per second */
                 board_mflops?: number;
-                /** @description What an exponential is worth */
+                /** @description Operations for one exponential */
                 function_flops?: number;
             };
             header?: never;

@@ -1,0 +1,80 @@
+"""One way to change a board: by the difference of two benches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from core.board import program
+from core.board.instances import Instance, instances, usual_params
+from core.board.spec import Spec
+from core.board.wiring import Wiring, engage, every_of, ports_of, unread
+
+
+def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
+    """Make the wiring of one bench that of another with the same blocks, in place; say whether that was possible.
+
+    It is not where a block reads more numbers than before.
+
+    Only rows whose parameters or context differ are packed again; states go on. When a block refuses its parameters
+    nothing has changed.
+
+    Raises
+    ------
+    InputError
+        As ``Block.pack``.
+    """
+    order, rows = _after(wiring, before, spec)
+    if any(order[row].block is not wiring.instances[row].block for row in rows):
+        return False
+    other = {every for every in {order[row].every for row in rows} if spec.context(every) != before.context(every)}
+    packed = {
+        row: order[row].block.packed(order[row].params, spec.context(order[row].every))
+        for row in rows
+        if order[row].every in other or order[row] != wiring.instances[row]
+    }
+    if any(len(numbers) != len(wiring.packed(row)) for row, numbers in packed.items()):
+        return False
+    for row, numbers in packed.items():
+        wiring.packed(row)[:] = numbers
+        wiring.table[row, program.EVERY] = every_of(order[row])
+    wiring.instances = order
+    if spec.active != before.active or spec.measuring != before.measuring:
+        for row, instance in enumerate(order):
+            if any(port.source.startswith("@") for port in instance.block.inputs):
+                wiring.ports(row)[:] = ports_of(spec, instance, wiring.index)
+        engage(spec, wiring.index, wiring.w)
+    if spec.sensors is not before.sensors or spec.measuring != before.measuring:
+        wiring.unread = unread(spec, order)
+    return True
+
+
+def _after(wiring: Wiring, before: Spec, spec: Spec) -> tuple[list[Instance], Iterable[int]]:
+    """Return the blocks of a bench, and the rows that may differ: most often it is only that of a fault."""
+    if any(getattr(spec, name) is not getattr(before, name) for name in PARTS):
+        order = instances(spec)
+        return order, range(len(order))
+    order = [*wiring.instances]
+    rows = [wiring.rows[f"faults.{name}"] for name in {**before.faults, **spec.faults}]
+    for row in rows:
+        key, prefix, block, _, every = order[row]
+        order[row] = Instance(key, prefix, block, spec.faults.get(block.name) or usual_params(block), every)
+    return order, rows
+
+
+PARTS = (
+    "frame",
+    "device",
+    "environment",
+    "plant",
+    "reference",
+    "model",
+    "drive",
+    "guard",
+    "measuring",
+    "sensors",
+    "active",
+    "controllers",
+    "identifiers",
+    "diagnosers",
+)
+"""Parts of a bench without its faults."""

@@ -1,0 +1,96 @@
+"""Drive: limiter and converter between the controller that drives and the plant."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+from core.block import Block, BlockParams, Context, parameter
+from core.elementary import floor
+from core.kernel import kernel
+from core.noise import key, uniform
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Record
+
+
+class Converter(Record):
+    """Limit to either side, step of the converter, 0 for none."""
+
+    limit_v: float
+    quantum_v: float
+
+
+@kernel
+def convert(p: Converter, u: float) -> float:
+    """Clip to the limit and round to the converter's step; nothing comes out for what is not a number."""
+    if not math.isfinite(u):
+        return 0.0
+    u = min(max(u, -p.limit_v), p.limit_v)
+    if p.quantum_v > 0.0:
+        u = p.quantum_v * floor(u / p.quantum_v + 0.5)
+    return u
+
+
+class Drive(Block):
+    """Limiter and digital-to-analogue converter; holds the voltage for one sample."""
+
+    title = "Drive"
+
+    class Params(BlockParams):
+        """The output stage."""
+
+        limit_v: float = parameter(30.0, "limit to either side", "V", gt=0, le=1000)
+        quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
+        dither_v: float = parameter(
+            0.0,
+            "random signs added to what the controller asks for, so that a constant drive tells something",
+            "V",
+            ge=0,
+            le=100,
+        )
+        dither_rate_hz: float = parameter(10_000.0, "signs per second", "Hz", gt=0, le=1e6)
+        kind: Literal["held", "analogue"] = parameter(
+            "held", "held by a converter, or an analogue generator (open loop only)", live=False
+        )
+
+    class Packed(Converter):
+        """The converter, size and rate per ms of the dither, its key."""
+
+        dither_v: float
+        dither_per_ms: float
+        dither_key: float
+
+    class Ports(BlockPorts):
+        """What is asked for, what is applied."""
+
+        command: float = reads("@active", "V", "voltage asked for by the controller that drives")
+        command_middle: float = reads("@active_middle", "V", "the same half a sample later")
+        command_end: float = reads("@active_end", "V", "the same one sample later")
+        voltage: float = output("V", "applied voltage")
+        middle: float = output("V", "applied voltage half a sample later", hidden=True)
+        end: float = output("V", "applied voltage one sample later", hidden=True)
+        saturated: float = tap("1", "1 while more voltage is asked for than the drive has")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the parameters for the step."""
+        p = cls.Packed.blank()
+        p.dither_per_ms = params.dither_rate_hz / 1e3
+        p.dither_key = key(context.seed, "drive.dither")
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: Ports) -> None:
+        """Apply the voltage asked for, as far as the drive can."""
+        dither = 0.0
+        if p.dither_v > 0.0:
+            dither = p.dither_v if uniform(p.dither_key, floor(x.time_ms * p.dither_per_ms)) < 0.5 else -p.dither_v
+        u = x.command + dither
+        x.voltage = convert(p, u)
+        if x.command_middle == x.command and x.command_end == x.command:
+            x.middle = x.voltage
+            x.end = x.voltage
+        else:
+            x.middle = convert(p, x.command_middle + dither)
+            x.end = convert(p, x.command_end + dither)
+        x.saturated = 1.0 if abs(u) > p.limit_v else 0.0

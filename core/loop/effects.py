@@ -1,0 +1,106 @@
+"""Effect channels: through which faults reach the plant and the measurement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from core.block import Block, BlockParams
+from core.ports import OUTPUT, BlockPorts, Port, reads
+from core.record import Record
+
+
+@dataclass(frozen=True)
+class Channel(Port):
+    """An effect channel: faults multiply it if its neutral value is 1, and add to it if that is 0."""
+
+    neutral: float = 1.0
+
+
+def _scale(meaning: str, *, hidden: bool = True) -> Any:
+    return Channel("", "1", meaning, hidden=hidden, kind=OUTPUT)
+
+
+def _sum(unit: str, meaning: str) -> Any:
+    return Channel("", unit, meaning, hidden=True, neutral=0.0, kind=OUTPUT)
+
+
+class Effects(Block):
+    """The channels through which faults reach plant and measurement, set back to neutral before those of each tick.
+
+    Stiffness, elasticity, damping, friction and squeeze film start from what the environment makes of the device; for a
+    new one at 300 K and 1 atm only the last is not neutral, by its rarefaction. Stiffness is the whole of that along x,
+    elasticity the part of it that is the material: every other stiffness of the suspension goes with it.
+    """
+
+    title = "Effect channels"
+
+    class Params(BlockParams):
+        """Nothing to choose."""
+
+    class Ports(BlockPorts):
+        """Factors of the environment in, channels out."""
+
+        stiffness: float = reads("environment.stiffness_scale", "1", "stiffness over nominal in this environment")
+        damping: float = reads("environment.damping_scale", "1", "damping over nominal in this environment")
+        rubbing: float = reads("environment.friction", "uN", "friction in this environment")
+        rarefied: float = reads("environment.squeeze", "1", "squeeze film in this environment, over the damping")
+        mass_scale: float = _scale("true mass over nominal", hidden=False)
+        stiffness_scale: float = _scale("true stiffness over nominal", hidden=False)
+        damping_scale: float = _scale("true damping over nominal", hidden=False)
+        drive_gain: float = _scale("voltage at the comb over the voltage applied")
+        drive_offset: float = _sum("V", "voltage at the comb that nobody applied")
+        acceleration: float = _sum("um/ms^2", "acceleration of the frame along x")
+        acceleration_side: float = _sum("um/ms^2", "acceleration of the frame along y")
+        friction: float = _sum("uN", "Coulomb friction")
+        short: float = _sum("1", "combs that are shorted: 1 at +x, 2 at -x, 3 both")
+        cubic: float = _sum("uN/um^3", "cubic stiffness along x")
+        lateral_scale: float = _scale("stiffness along y over nominal")
+        lateral_reach: float = _scale("travel over which the stiffness along y falls, over nominal")
+        rotation_scale: float = _scale("stiffness against rotation over nominal")
+        rotation_reach: float = _scale("travel over which the stiffness against rotation falls, over nominal")
+        sideways: float = _sum("1/um", "sideways shift per squared travel")
+        turn: float = _sum("rad/um", "rotation per travel")
+        turn_cubic: float = _sum("rad/um^3", "rotation per cubed travel")
+        other: float = _sum("1", "not zero while something is wrong that no hypothesis of a bank can say")
+        vacuum: float = _scale("share of the vacuum that is left")
+        sensor_offset: float = _sum("um", "added to what is measured")
+        sensor_quantum: float = _sum("um", "step what is measured is rounded to, 0 for none")
+        sensor_held: float = _sum("1", "not zero while the sample is lost")
+        squeeze_scale: float = _scale("squeeze film over that of a continuous gas at 300 K, over the damping")
+        elasticity_scale: float = _scale(
+            "stiffness of all beams alike over nominal: cubic, sideways and in rotation too"
+        )
+
+    @classmethod
+    def neutral(cls) -> dict[str, float]:
+        """Return the value of each channel without any fault."""
+        return {port.name: port.neutral for port in cls.Ports.declared if isinstance(port, Channel)}
+
+    @staticmethod
+    def step(p: Record, s: Record, x: Ports) -> None:
+        """Start the tick without any fault."""
+        x.mass_scale = 1.0
+        x.drive_gain = 1.0
+        x.drive_offset = 0.0
+        x.acceleration = 0.0
+        x.acceleration_side = 0.0
+        x.short = 0.0
+        x.cubic = 0.0
+        x.lateral_scale = 1.0
+        x.lateral_reach = 1.0
+        x.rotation_scale = 1.0
+        x.rotation_reach = 1.0
+        x.sideways = 0.0
+        x.turn = 0.0
+        x.turn_cubic = 0.0
+        x.vacuum = 1.0
+        x.sensor_offset = 0.0
+        x.sensor_quantum = 0.0
+        x.sensor_held = 0.0
+        x.stiffness_scale = x.stiffness
+        x.elasticity_scale = x.stiffness  # temperature and age change the material of every beam
+        x.damping_scale = x.damping
+        x.squeeze_scale = x.rarefied
+        x.friction = x.rubbing
+        x.other = x.rubbing  # no hypothesis says friction

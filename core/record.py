@@ -1,0 +1,252 @@
+"""What a step sees as ``p`` and ``s``: named numbers in a flat array of float64.
+
+The class says which numbers there are; an instance is a view of an array. Compiled steps see the same names at the same
+places (``core.views``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from inspect import get_annotations
+from typing import Any, ClassVar, Generic, Self, TypeVar, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+"""Several numbers under one name, ``s.x1[i]``."""
+
+BLANK = np.uint64(0x7FF8_B1A2_4B1A_24B1)
+"""Bits of a number that nobody has packed yet: not a number, and not the one that arithmetic makes."""
+
+SCALAR, VECTOR, RECORD, RECORDS = "number", "vector", "record", "records"
+"""Kinds of fields."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """Where a field stands.
+
+    Parameters
+    ----------
+    name, kind : str
+    offset : int
+        From the start of the record; for a tail, its turn among the tails.
+    count : int
+        Numbers of a vector, records of several; 0 for a tail, whose length is that of the array.
+    inner : Layout, optional
+        Of the record, or of each of several.
+    tail : bool
+        Whether it stands behind the fixed fields.
+    """
+
+    name: str
+    kind: str
+    offset: int
+    count: int = 0
+    inner: Layout | None = None
+    tail: bool = False
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The fields of a record, and the numbers of the fixed ones.
+
+    Several tails are vectors of one common length; it stands in the last of the fixed numbers.
+    """
+
+    fields: tuple[Field, ...]
+    size: int
+
+    @cached_property
+    def tails(self) -> int:
+        """How many fields stand behind the fixed ones."""
+        return sum(field.tail for field in self.fields)
+
+    @cached_property
+    def scalars(self) -> dict[int, str]:
+        """The names of single numbers by place, those of nested records with a dot."""
+        found = {}
+        for field in self.fields:
+            if field.kind == SCALAR:
+                found[field.offset] = field.name
+            elif field.kind == RECORD and field.inner is not None:
+                found |= {field.offset + at: f"{field.name}.{name}" for at, name in field.inner.scalars.items()}
+        return found
+
+    @cached_property
+    def scalar_places(self) -> NDArray[np.int64]:
+        """The places of single numbers."""
+        return np.array([*self.scalars], dtype=np.int64)
+
+    def numbers(self, length: int) -> int:
+        """Return the numbers of a record whose tails have a length."""
+        each = [field.inner.size if field.inner else 1 for field in self.fields if field.tail]
+        return self.size + length * sum(each)
+
+
+@dataclass(frozen=True)
+class _Many:
+    """How many a field holds; 0 for a tail."""
+
+    count: int
+
+
+def vector(count: int) -> Any:
+    """Declare a vector of so many numbers."""
+    return _Many(count)
+
+
+def several(count: int) -> Any:
+    """Declare so many records of one kind."""
+    return _Many(count)
+
+
+def tail() -> Any:
+    """Declare a vector or records of a length that is known when the record is made; all other fields stand before."""
+    return _Many(0)
+
+
+class Record:
+    """Named numbers; a subclass annotates them: ``float``, ``Vector``, another record or ``Records`` of one kind.
+
+    A view of a flat array. Numbers are read and written by name, vectors and nested records are views again; a nested
+    record that is assigned is copied.
+    """
+
+    layout: ClassVar[Layout] = Layout((), 0)
+
+    def __init__(self, array: Any) -> None:
+        self.array: Any = array
+
+    def __init_subclass__(cls) -> None:
+        """Lay the fields out: those of the bases first, then its own."""
+        declared = {name: many for base in cls.__bases__ for name, many in getattr(base, "_declared", {}).items()}
+        hints = get_type_hints(cls)
+        for name in get_annotations(cls):
+            declared[name] = (hints[name], cls.__dict__.get(name))
+        cls._declared = declared
+        cls.layout = _laid_out(cls.__qualname__, declared)
+        for field in cls.layout.fields:
+            kind = record_of(declared[field.name][0])
+            setattr(cls, field.name, _Scalar(field.offset) if field.kind == SCALAR else _Part(cls.layout, field, kind))
+
+    _declared: ClassVar[dict[str, tuple[Any, Any]]] = {}
+
+    @classmethod
+    def zeros(cls, length: int = 0) -> Self:
+        """Return a record of zeros; ``length`` is that of its tails."""
+        record = cls(np.zeros(cls.layout.numbers(length)))
+        if cls.layout.tails > 1:
+            record.array[cls.layout.size - 1] = length
+        return record
+
+    @classmethod
+    def blank(cls, length: int = 0) -> Self:
+        """Return a record whose fixed numbers are still to be packed."""
+        record = cls.zeros(length)
+        record.array.view(np.uint64)[cls.layout.scalar_places] = BLANK
+        return record
+
+    @cached_property
+    def address(self) -> int:
+        """Where its numbers stand in memory."""
+        return int(self.array.ctypes.data)
+
+    def blanks(self) -> list[str]:
+        """Return the names of the numbers that nobody has packed."""
+        found = np.flatnonzero(self.array[: self.layout.size].view(np.uint64) == BLANK)
+        return [self.layout.scalars[int(at)] for at in found]
+
+
+R = TypeVar("R", bound=Record)
+
+
+class Records(Generic[R]):
+    """Several records of one kind, ``s.filters[i]``."""
+
+    def __init__(self, array: Any, kind: type[R]) -> None:
+        self._array, self._kind = array, kind
+
+    def __len__(self) -> int:
+        return len(self._array) // self._kind.layout.size
+
+    def __iter__(self) -> Iterator[R]:
+        return (self[i] for i in range(len(self)))
+
+    def __getitem__(self, i: int) -> R:
+        size = self._kind.layout.size
+        return self._kind(self._array[i * size : (i + 1) * size])
+
+
+def record_of(hint: Any) -> type[Record] | None:
+    """Return the record that an annotation names, or of which it names several."""
+    inner = get_args(hint)[0] if get_origin(hint) is Records else hint
+    return inner if isinstance(inner, type) and issubclass(inner, Record) else None
+
+
+def _laid_out(owner: str, declared: dict[str, tuple[Any, Any]]) -> Layout:
+    """Lay fields out in their order, tails behind all others."""
+    fields, tails, at = [], 0, 0
+    for name, (hint, many) in declared.items():
+        record = record_of(hint)
+        inner = record.layout if record else None
+        count = many.count if isinstance(many, _Many) else -1
+        if count < 0:
+            if hint is float:
+                fields.append(Field(name, SCALAR, at))
+                at += 1
+            elif inner is not None and get_origin(hint) is None and not inner.tails:
+                fields.append(Field(name, RECORD, at, 1, inner))
+                at += inner.size
+            else:
+                raise TypeError(f"{owner}.{name}: declare float, a record, vector(n), several(n) or tail()")
+            continue
+        kind = RECORDS if inner else VECTOR
+        if count == 0:
+            fields.append(Field(name, kind, tails, 0, inner, tail=True))
+            tails += 1
+        else:
+            fields.append(Field(name, kind, at, count, inner))
+            at += count * (inner.size if inner else 1)
+    if tails > 1 and any(field.tail and field.kind == RECORDS for field in fields):
+        raise TypeError(f"{owner}: several tails must be vectors")
+    return Layout(tuple(fields), at + (tails > 1))
+
+
+class _Scalar:
+    """Reads and writes one number."""
+
+    def __init__(self, place: int) -> None:
+        self._place = place
+
+    def __get__(self, record: Record, owner: type[Record]) -> Any:
+        return record.array[self._place]
+
+    def __set__(self, record: Record, value: Any) -> None:
+        record.array[self._place] = value
+
+
+class _Part:
+    """Finds the numbers of a vector or a record, and writes over all of them."""
+
+    def __init__(self, layout: Layout, field: Field, kind: type[Record] | None) -> None:
+        self._layout, self._field, self._kind = layout, field, kind
+
+    def _slice(self, record: Record) -> slice:
+        layout, field = self._layout, self._field
+        if field.tail:
+            length = (len(record.array) - layout.size) // layout.tails
+            return slice(layout.size + field.offset * length, layout.size + (field.offset + 1) * length)
+        return slice(field.offset, field.offset + field.count * (field.inner.size if field.inner else 1))
+
+    def __get__(self, record: Record, owner: type[Record]) -> Any:
+        part = record.array[self._slice(record)]
+        if self._kind is None:
+            return part
+        return self._kind(part) if self._field.kind == RECORD else Records(part, self._kind)
+
+    def __set__(self, record: Record, value: Any) -> None:
+        record.array[self._slice(record)] = value.array if isinstance(value, Record) else value

@@ -1,0 +1,104 @@
+"""Outcome of a run in a campaign: figures, digest, and the counted verdicts of its diagnosers."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from core.block import FloatArray
+from core.errors import InputError
+from core.loop.score import Scores
+from scenarios.run import Result, run
+from scenarios.schema import Scenario
+
+EVIDENCE = np.linspace(-8.0, 8.0, 161)
+"""Thresholds of the evidence of a fault, decimal logarithm of its odds."""
+LEAST = 1e-300
+
+
+class Diagnosis(BaseModel):
+    """What one diagnoser said, sample by sample, counted.
+
+    Attributes
+    ----------
+    names : list of str
+        Hypotheses, in the order of rows (truth) and columns (verdict) of ``confusion``.
+    delays : list
+        Samples until each change of the truth was found; None for a change that was never found.
+    healthy, faulty : list of int
+        Samples by evidence of a fault (the bins between `EVIDENCE`, and one at either end), while the truth was
+        healthy and while it was not; empty if no hypothesis is that of a healthy device.
+    """
+
+    names: list[str]
+    confusion: list[list[int]]
+    delays: list[int | None]
+    healthy: list[int] = []
+    faulty: list[int] = []
+
+
+class Outcome(BaseModel):
+    """One run of a campaign."""
+
+    seed: int
+    digest: str = ""
+    ticks: int = 0
+    elapsed_s: float = 0.0
+    ok: bool = False
+    trip: str = ""
+    error: str = ""
+    metrics: dict[str, float] = {}
+    diagnosis: dict[str, Diagnosis] = {}
+
+
+def outcome(scenario: Scenario, seed: int) -> Outcome:
+    """Run a scenario and count its results; a scenario that cannot be run gives its error."""
+    began = time.perf_counter()
+    try:
+        result = run(scenario, seed)
+    except InputError as error:
+        return Outcome(seed=seed, error=str(error))
+    summed = Outcome(
+        seed=seed,
+        digest=result.digest,
+        ticks=result.board.tick,
+        ok=all(entry["ok"] for entry in result.expectations()),
+        trip=result.trip.reason if result.trip is not None else "",
+        metrics={name: value for name, value in result.metrics.items() if math.isfinite(value)},
+        diagnosis={name: _diagnosis(result, name, scores) for name, scores in result.board.scores().items()},
+    )
+    summed.elapsed_s = time.perf_counter() - began
+    return summed
+
+
+def _diagnosis(result: Result, name: str, scores: Scores) -> Diagnosis:
+    counted = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
+    params: Any = result.board.spec.diagnosers[name].params
+    healthy = next(
+        (
+            position
+            for position, item in enumerate(params.hypotheses)
+            if item.mass == item.stiffness == item.damping == item.gain == 1.0
+        ),
+        None,
+    )
+    columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
+    if healthy is None or columns[0] not in {signal.name for signal in result.kept} or not len(result.outputs):
+        return counted
+    probability = np.array([result.signal(column) for column in columns])
+    bins = np.digitize(_log_odds(probability, healthy), EVIDENCE)
+    is_healthy = result.signal(f"{name}.truth") == healthy
+    counted.healthy = np.bincount(bins[is_healthy], minlength=len(EVIDENCE) + 1).tolist()
+    counted.faulty = np.bincount(bins[~is_healthy], minlength=len(EVIDENCE) + 1).tolist()
+    return counted
+
+
+def _log_odds(probability: FloatArray, healthy: int) -> FloatArray:
+    """Return the decimal logarithm of the odds of any fault; 0 where there is no verdict."""
+    fault = np.delete(probability, healthy, axis=0).sum(axis=0)
+    odds: FloatArray = np.log10(np.maximum(fault, LEAST)) - np.log10(np.maximum(probability[healthy], LEAST))
+    return np.where(np.isnan(odds), 0.0, odds)

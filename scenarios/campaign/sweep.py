@@ -1,0 +1,283 @@
+"""A campaign: one scenario at many points, each with many seeds."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, ValidationError, model_validator
+
+from core.block import FloatArray
+from core.board.document import with_values as write
+from core.board.spec import MOST_SEED
+from core.device.spread import Tolerances, draw
+from core.errors import InputError, from_validation, short
+from core.nesting import read_toml
+from core.table import Table
+from scenarios.edit import with_values
+from scenarios.key import content_hash, run_key
+from scenarios.library import get
+from scenarios.run import DEFAULT_SAMPLES
+from scenarios.schema import Scenario
+
+MAX_RUNS = 1_000_000
+MAX_POINTS = 20_000
+MAX_RANGES = 50
+"""Values that vary at once."""
+Values = dict[str, Any]
+
+
+class Seeds(Table):
+    """Noise seeds; every point runs with the same ones, so that points differ by their values alone."""
+
+    first: int = Field(1, ge=0, le=MOST_SEED)
+    count: int = Field(1, ge=1, le=MAX_RUNS)
+
+    @model_validator(mode="after")
+    def _reach(self) -> Self:
+        last = self.first + self.count - 1
+        if last > MOST_SEED:
+            raise ValueError(f"the last seed would be {last}; allowed: up to {MOST_SEED}")
+        return self
+
+
+class Range(Table):
+    """Range of a value."""
+
+    min: float
+    max: float
+    scale: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.min >= self.max:
+            raise ValueError("needs min < max")
+        if self.scale == "log" and self.min <= 0:
+            raise ValueError("needs min > 0 for a logarithmic scale")
+        return self
+
+    def at(self, share: FloatArray) -> FloatArray:
+        """Return the values at shares from 0 to 1 of the range."""
+        if self.scale == "linear":
+            return self.min + (self.max - self.min) * share
+        return self.min * np.exp(math.log(self.max / self.min) * share)
+
+
+class LatinHypercube(Table):
+    """Points spread evenly in every value at once (McKay, Beckman, Conover 1979)."""
+
+    points: int = Field(ge=1, le=MAX_POINTS)
+    seed: int = Field(1, ge=0)
+    ranges: dict[str, Range] = Field(min_length=1, max_length=MAX_RANGES)
+
+    def values(self) -> list[Values]:
+        """Return the points: each value has one point in every stratum, in an order of its own."""
+        generator = np.random.default_rng(self.seed)
+        columns = [
+            entry.at((generator.permutation(self.points) + generator.random(self.points)) / self.points)
+            for entry in self.ranges.values()
+        ]
+        return [dict(zip(self.ranges, row, strict=True)) for row in np.array(columns).T.tolist()]
+
+
+class ProcessSpread(Table):
+    """Standard deviations of a process that makes devices of the scenario's drawing."""
+
+    devices: int = Field(ge=1, le=MAX_POINTS)
+    seed: int = Field(1, ge=0)
+    beam_bias_um: float = Field(Tolerances.beam_bias_um, ge=0)
+    comb_bias_um: float = Field(Tolerances.comb_bias_um, ge=0)
+    thickness_um: float = Field(Tolerances.thickness_um, ge=0)
+    film_gap_um: float = Field(Tolerances.film_gap_um, ge=0)
+    youngs_modulus_gpa: float = Field(Tolerances.youngs_modulus_gpa, ge=0)
+
+    def values(self, base: Scenario) -> list[Values]:
+        """Return the numbers of each drawn device."""
+        geometry = base.spec.device.geometry
+        if geometry is None:
+            raise InputError("has no drawing to vary; choose lcr-350", "device.id")
+        tolerances = Tolerances(**self.model_dump(exclude={"devices", "seed"}))
+        drawn = draw(geometry, tolerances, self.devices, self.seed).drawn
+        rows = np.array(list(drawn.values())).T.tolist()
+        return [{f"device.geometry.{name}": value for name, value in zip(drawn, row, strict=True)} for row in rows]
+
+
+class Variant(Table):
+    """One of several alternatives, such as a controller or a set of diagnosers."""
+
+    name: str = Field(min_length=1, max_length=100)
+    set: Values
+
+
+class Head(Table):
+    """The file of a campaign."""
+
+    schema_: Literal[1] = Field(1, alias="schema")
+    id: str = Field("sweep", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")
+    title: str = Field("", max_length=200)
+    scenario: str | dict[str, Any]
+    set: Values = Field({})
+    seeds: Seeds = Seeds()
+    variants: list[Variant] = Field([], max_length=1000)
+    grid: dict[str, list[Any]] = Field({})
+    latin_hypercube: LatinHypercube | None = None
+    process_spread: ProcessSpread | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One set of values: what it is called in tables, and what it writes over a scenario."""
+
+    labels: dict[str, str | float]
+    values: Values
+    base: dict[str, Any]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The scenario with its values; built anew at each call, because thousands of them take much memory."""
+        return write(self.base, self.values) if self.values else self.base
+
+
+class Sweep:
+    """A campaign, checked except for its points.
+
+    Attributes
+    ----------
+    document : dict
+        The document it was read from.
+    head : Head
+        Its tables.
+    points : list of Point
+        Every combination of variant, grid, hypercube and device.
+    """
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document = document
+        try:
+            self.head = Head.model_validate(document)
+        except ValidationError as error:
+            raise from_validation(error, {"": [*FIELDS]}) from None
+        source = self.head.scenario
+        base = get(source) if isinstance(source, str) else Scenario.load(source)
+        self.base = with_values(base, self.head.set)
+        axes = self._axes()
+        self._check_paths(axes)
+        count = math.prod(len(axis) for axis in axes)
+        if count > MAX_POINTS or count * self.head.seeds.count > MAX_RUNS:
+            text = f"{count} points with {self.head.seeds.count} seeds each; at most {MAX_POINTS} points"
+            raise InputError(f"{text} and {MAX_RUNS} runs", "grid", code="too_long")
+        self.points = [self._point(chosen) for chosen in itertools.product(*axes)]
+
+    @classmethod
+    def load(cls, text: str | dict[str, Any]) -> Sweep:
+        """Read a campaign from TOML or from a document, and check its points.
+
+        Raises
+        ------
+        InputError
+            Naming the field, or the line of malformed TOML.
+        """
+        sweep = cls(text if isinstance(text, dict) else read_toml(text, "sweep"))
+        sweep.longest(sweep.points)
+        return sweep
+
+    @staticmethod
+    def longest(points: Sequence[Point]) -> Scenario:
+        """Check some points, one millisecond each; return the longest of them.
+
+        Raises
+        ------
+        InputError
+            For the first point that is not a valid scenario.
+        """
+        return max(
+            (Scenario.load(point.document) for point in points),
+            key=lambda scenario: scenario.samples or DEFAULT_SAMPLES,
+        )
+
+    @cached_property
+    def contents(self) -> list[str]:
+        """The hash of every point, from which the keys of its runs are built; a tenth of a millisecond each."""
+        return [content_hash(point.document) for point in self.points]
+
+    @property
+    def seeds(self) -> range:
+        """The noise seeds of every point."""
+        return range(self.head.seeds.first, self.head.seeds.first + self.head.seeds.count)
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return len(self.points) * len(self.seeds)
+
+    def runs(self) -> Iterator[tuple[str, Point, int]]:
+        """Yield every run: its key, point and seed."""
+        for point, content in zip(self.points, self.contents, strict=True):
+            for seed in self.seeds:
+                yield run_key(content, seed), point, seed
+
+    def _axes(self) -> list[list[tuple[Values, Values]]]:
+        """Return the axes to combine: the steps of each, with their labels and values."""
+        head = self.head
+        axes: list[list[tuple[Values, Values]]] = []
+        if head.variants:
+            _distinct([variant.name for variant in head.variants], "variants", "variants of one name")
+            axes.append([({"variant": variant.name}, variant.set) for variant in head.variants])
+        for path, choices in head.grid.items():
+            if not choices:
+                raise InputError("needs at least one value", f"grid.{path}")
+            labels = [_label(value) for value in choices]
+            _distinct(labels, f"grid.{path}", "points of one value")
+            axes.append([({path: label}, {path: value}) for label, value in zip(labels, choices, strict=True)])
+        if head.latin_hypercube is not None:
+            axes.append([(values, values) for values in head.latin_hypercube.values()])
+        if head.process_spread is not None:
+            drawn = head.process_spread.values(self.base)
+            axes.append([({"device": float(number)}, values) for number, values in enumerate(drawn, 1)])
+        return axes
+
+    def _check_paths(self, axes: list[list[tuple[Values, Values]]]) -> None:
+        """Refuse settings that make the labels of points wrong: seeds that are not used, values written over."""
+        head = self.head
+        ranges = head.latin_hypercube.ranges if head.latin_hypercube is not None else {}
+        tables = {"set": head.set, "grid": head.grid, "latin_hypercube.ranges": ranges}
+        tables |= {f"variants.{position}.set": variant.set for position, variant in enumerate(head.variants)}
+        for where, table in tables.items():
+            if "seed" in table:
+                raise InputError("the noise seeds of a campaign are those of [seeds]", f"{where}.seed", "set [seeds]")
+        taken: set[str] = set()
+        for axis in axes:
+            paths = {path for _, values in axis for path in values}
+            for path in sorted(paths & taken):
+                text = "has values in two of variants, grid, latin_hypercube and process_spread"
+                raise InputError(text, path, "give them in one")
+            taken |= paths
+
+    def _point(self, chosen: tuple[tuple[Values, Values], ...]) -> Point:
+        labels: dict[str, str | float] = {}
+        values: Values = {}
+        for names, written in chosen:
+            labels |= names
+            values |= written
+        return Point(labels, values, self.base.document)
+
+
+FIELDS = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
+
+
+def _distinct(labels: list[str | float], field: str, what: str) -> None:
+    """Refuse repeated entries: their points would count twice in every table."""
+    seen: set[str | float] = set()
+    for position, label in enumerate(labels):
+        if label in seen:
+            raise InputError(f"two {what}: {short(label)}", f"{field}.{position}", "give each once")
+        seen.add(label)
+
+
+def _label(value: Any) -> str | float:
+    """Write a value of a grid for a table."""
+    return value if isinstance(value, str | int | float) and not isinstance(value, bool) else str(value)

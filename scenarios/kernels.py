@@ -1,0 +1,107 @@
+"""Compiles the kernels that are not kept yet, on all cores.
+
+``python -m scenarios.kernels`` prints its progress. All processes load the kernels that one has compiled.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import sys
+import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+
+import numpy as np
+
+from core import registry
+from core.board import fold, program
+from core.board.history import History
+from core.board.rows import Rows
+from core.ports import RESERVED
+from scenarios.kernel_cache import folder
+from scenarios.key import code_version
+from scenarios.library import get
+from scenarios.run import build
+
+HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference")
+"""Families in the order of compilation, so that no core still has a long one at the end."""
+FIRST_BENCH = "first-look"
+LOOP = ("", "loop")
+"""The task that compiles the kernels every bench needs beside its blocks."""
+
+Task = tuple[str, str]
+
+
+def load() -> None:
+    """Load the kernels of a bench, or compile them, and compute one tick with them."""
+    board = build(get(FIRST_BENCH))
+    history = History(board.signals.outputs, len(board.signals.taps), 1)
+    history.append(board.advance(1))
+    history.columns([0], 0, 1, 1)
+
+
+def _loop() -> None:
+    """Compile the loop and the history, with a run of no ticks and no blocks."""
+    none, nothing = np.zeros(RESERVED), np.zeros((0, 0))
+    table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
+    program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
+    history = History(1, 1, 1)
+    history.append(Rows.of(0, np.zeros((1, 2)), 1))
+    history.columns([0], 0, 1, 1)
+
+
+def tasks(*, first_bench_only: bool = False) -> list[Task]:
+    """Return the blocks that have a kernel, by family and name, with the slowest to compile first."""
+    if first_bench_only:
+        wiring = build(get(FIRST_BENCH)).wiring
+        named = {(entry.block.family, entry.block.name) for entry in wiring.instances}
+        return [task for task in tasks() if task in named]
+    return [(family, name) for family in HEAVY_FIRST for name in registry.blocks(family)]
+
+
+def compile_all(work: list[Task], told: Callable[[int, int], None]) -> None:
+    """Compile some kernels in processes of their own; tell how many are done, of how many."""
+    method = "fork" if sys.platform == "linux" else "spawn"
+    with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context(method)) as pool:
+        done = [pool.submit(_compile, task) for task in [LOOP, *work]]
+        for count, future in enumerate(as_completed(done), 1):
+            future.result()
+            told(count, len(done))
+
+
+def _compile(task: Task) -> None:
+    family, name = task
+    if task == LOOP:
+        _loop()
+    else:
+        program.address(registry.block(family, name))
+
+
+def complete() -> Path | None:
+    """Return the file that marks all kernels of this version as kept, or None where no kernels are kept."""
+    path = folder()
+    return path / f"complete-{code_version()}" if path is not None else None
+
+
+def main() -> None:
+    """Compile all kernels, those of the first bench only with ``first``."""
+    sys.dont_write_bytecode = False  # packages come without bytecode, and some environments never write it
+    start = time.monotonic()
+    first = "first" in sys.argv
+
+    def told(count: int, total: int) -> None:
+        sys.stdout.write(f"\rCompiling kernels: {count} of {total}")
+        sys.stdout.flush()
+
+    compile_all(tasks(first_bench_only=first), told)
+    load()
+    sys.stdout.write(f", {time.monotonic() - start:.1f} s\n")
+    done = complete()
+    if done is not None and not first:
+        done.touch()
+
+
+if __name__ == "__main__":
+    main()

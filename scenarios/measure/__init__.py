@@ -1,0 +1,1 @@
+"""Figures measured from a board, or from the trace of a run."""

@@ -1,0 +1,170 @@
+"""Figures of a run, by dotted names."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from core.block import FloatArray
+from core.board.board import Board
+from core.board.spec import Spec
+from core.loop.environment import Environment
+from core.loop.score import Scores
+from scenarios.measure.lateral import lateral_metrics
+from scenarios.measure.sensing import sensing_metrics
+from scenarios.measure.stretch import Stretch
+from scenarios.measure.verdicts import verdict_metrics
+
+IDENTIFIED_PCT = 10.0
+"""Error of the worst coefficient within which an identifier counts as settled."""
+SETTLED = 0.02
+"""Share of the model's amplitude within which a loop counts as settled."""
+
+
+def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tick: int = 0) -> complex:
+    r"""Return the phasor of one tone by least squares, :math:`x\approx\mathrm{Im}\{Ce^{j\omega t}\}`."""
+    t = (first_tick + np.arange(len(signal))) * dt_ms / 1e3
+    angle = 2.0 * math.pi * frequency_hz * t
+    basis = np.column_stack([np.sin(angle), np.cos(angle), np.ones_like(t)])
+    coefficients, *_ = np.linalg.lstsq(basis, signal, rcond=None)
+    return complex(coefficients[0], coefficients[1])
+
+
+def device_metrics(spec: Spec) -> dict[str, float]:
+    """Return the figures of the device in its environment, before any fault."""
+    params = spec.environment.params
+    stiffness, damping = Environment.scales(params, spec.context())
+    temperature = spec.context().temperature_k
+    figures = {f"device.{name}": value for name, value in spec.device.metrics(stiffness, damping, temperature).items()}
+    return {**figures, "environment.stiffness_scale": stiffness, "environment.damping_scale": damping}
+
+
+def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
+    """Return the errors of the shuttle against the model, and the effort.
+
+    The settling time is the last moment at which the error left the band of 2 % of the model's amplitude, counted from
+    ``metrics.since_ms``. The effort is the ratio of the fundamental of the applied voltage to that of the reference in
+    the tail; the displacement ratio compares shuttle and model in the same way. The overshoot is measured at the last
+    step of a reference that is constant in the tail, as a share of the model's motion.
+    """
+    dt = board.dt_ms
+    x, model = trace["plant.displacement"], trace["model.displacement"]
+    u, r = trace["drive.voltage"], trace["reference.voltage"]
+    error = x - model
+    start, tail = stretch.start(len(x), dt), stretch.tail(len(x))
+    swing = float(np.max(np.abs(model[tail])))
+    outside = np.flatnonzero(np.abs(error[start:]) > SETTLED * swing)
+    settling = (float(outside[-1]) + 1.0) * dt if len(outside) else 0.0
+    figures = {
+        "control.rms_error_um": _rms(error[start:]),
+        "control.tail_rms_error_um": _rms(error[tail]),
+        "control.peak_error_um": float(np.max(np.abs(error[start:]))),
+        "control.settling_ms": settling,
+        "control.effort_rms_v": _rms(u[tail]),
+    }
+    step = int(np.max(np.flatnonzero(np.diff(r)), initial=-1)) + 1
+    before = float(model[step - 1]) if step else 0.0
+    rise = float(np.mean(model[tail])) - before
+    if abs(rise) > 1e-9 and np.ptp(r[tail]) == 0.0:
+        peak = float(np.max((x[step:] - before) * math.copysign(1.0, rise)))
+        figures["control.overshoot_pct"] = 100.0 * (peak / abs(rise) - 1.0)
+    if (peak_of := first_peak(x, model)) is not None:
+        figures["control.first_peak_pct"] = peak_of
+    frequency = board.spec.tone_hz
+    if frequency:
+        first = len(u) - len(u[tail])
+        asked = abs(fundamental(r[tail], frequency, dt, first))
+        if asked > 0.0:
+            figures["control.effort_ratio"] = abs(fundamental(u[tail], frequency, dt, first)) / asked
+        phasor = fundamental(x[tail], frequency, dt, first)
+        wanted = abs(fundamental(model[tail], frequency, dt, first))
+        if wanted > 0.0:
+            figures["control.displacement_ratio"] = abs(phasor) / wanted
+        figures["control.amplitude_um"] = abs(phasor)
+        figures["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
+    return {name: value for name, value in figures.items() if math.isfinite(value)}
+
+
+def first_peak(x: FloatArray, model: FloatArray) -> float | None:
+    """Return the excess of the first peak over the model's, %; nothing when the model does not turn twice."""
+    slope = np.sign(np.diff(model))
+    moving = np.flatnonzero(slope)
+    if not len(moving):
+        return None
+    way = slope[moving[0]]
+    back = moving[slope[moving] == -way]
+    again = moving[(slope[moving] == way) & (moving > back[0])] if len(back) else back
+    if not len(again) or model[back[0]] * way <= 0.0:
+        return None
+    return float(100.0 * (np.max(x[: again[0] + 1] * way) / (model[back[0]] * way) - 1.0))
+
+
+def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str, float]:
+    """Return the score of one diagnoser.
+
+    A step that was never figures counts with its whole length in the mean delay, and in ``missed_steps``.
+    """
+    prefix = f"diagnosis.{name}"
+    counted = [length if delay is None else delay for delay, length in zip(scores.delays, lengths, strict=False)]
+    figures: dict[str, float] = {
+        f"{prefix}.correct_fraction": scores.correct_fraction,
+        f"{prefix}.false_switches": float(scores.false_switches),
+        f"{prefix}.missed_steps": float(sum(delay is None for delay in scores.delays)),
+    }
+    if len(counted) > 1:
+        figures[f"{prefix}.mean_delay_samples"] = float(np.mean(counted[1:]))
+    for step, delay in enumerate(counted, 1):
+        figures[f"{prefix}.delay_samples.{step}"] = float(delay)
+    if scores.nis is not None and math.isfinite(scores.nis):
+        figures[f"{prefix}.nis"] = scores.nis
+    return figures
+
+
+def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch: Stretch) -> dict[str, float]:
+    """Return the errors of one identifier, and whether the input lets it identify the device.
+
+    ``error_pct`` is the mean over the tail of the largest relative error of a coefficient; the settling time is the
+    last moment it was above 10 %, counted from ``metrics.since_ms``. ``mass_error_pct`` and the like are errors of the
+    estimates at the end.
+    """
+    prefix = f"identify.{name}"
+    last = {
+        "excitation": board.value(f"{name}.excitation"),
+        "excitation_relative": board.value(f"{name}.excitation_relative"),
+        "identifiable": board.value(f"{name}.identifiable"),
+    }
+    if error is not None:
+        outside = np.flatnonzero(error[stretch.start(len(error), board.dt_ms) :] > IDENTIFIED_PCT)
+        last["settling_ms"] = (float(outside[-1]) + 1.0) * board.dt_ms if len(outside) else 0.0
+        last["error_pct"] = float(np.mean(error[stretch.tail(len(error))]))
+        for part in ("mass", "stiffness", "damping"):
+            estimate, truth = (board.value(f"{name}.{port}.{part}") for port in ("estimate", "truth"))
+            last[f"{part}_error_pct"] = 100.0 * (estimate / truth - 1.0)
+    return {f"{prefix}.{key}": value for key, value in last.items() if math.isfinite(value)}
+
+
+def step_lengths(truth: FloatArray) -> list[int]:
+    """Return the number of samples of each stretch in which one hypothesis is true."""
+    edges = [0, *(np.flatnonzero(np.diff(truth)) + 1).tolist(), len(truth)]
+    return [end - start for start, end in itertools.pairwise(edges) if truth[start] >= 0.0]
+
+
+def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
+    """Return every figure of a run."""
+    figures = device_metrics(board.spec) | lateral_metrics(board)
+    if board.tick > 1:
+        figures |= control_metrics(board, trace, stretch)
+        figures |= sensing_metrics(board, trace, stretch)
+    for name in board.spec.identifiers if board.tick > 1 else ():
+        figures |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
+    scores = board.scores()
+    for name in board.spec.diagnosers:
+        if name in scores:
+            figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
+    return figures | verdict_metrics(board, trace)
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values * values)))

@@ -1,0 +1,26 @@
+"""The part of a run from which its figures are taken."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from core.board.commands import LONGEST_MS
+from core.table import Table
+
+TAIL = 0.25
+"""Share of a run that counts as its tail."""
+
+
+class Stretch(Table):
+    """The options ``[metrics]`` of a scenario."""
+
+    since_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="moment that errors and settling count from")
+    tail_share: float = Field(TAIL, gt=0, le=1, description="share of the run that counts as its tail")
+
+    def start(self, samples: int, dt_ms: float) -> int:
+        """Return the first of a number of samples that counts; the last sample if the run ends before it."""
+        return min(round(self.since_ms / dt_ms), samples - 1)
+
+    def tail(self, samples: int) -> slice:
+        """Return the tail of a number of samples, at least one."""
+        return slice(min(int(samples * (1.0 - self.tail_share)), samples - 1), None)

@@ -1,0 +1,82 @@
+"""Figures of verdicts, alarms and regions, which do not choose between hypotheses."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from core.block import FloatArray
+from core.board.board import Board
+from core.diagnose.consistency import AMBIGUOUS, ISOLATED, NORMAL, UNKNOWN
+
+TRACED_VERDICTS = ("truth", "winner", "verdict", "alarm", "region", "loss", "estimate")
+"""Outputs of diagnosers that figures are made of."""
+
+
+def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, float]:
+    """Return the figures of every diagnoser that has them; stretches run from one fault or healing to the next.
+
+    ``detected``, ``isolated``, ``ambiguous`` and ``unknown`` are shares of the stretches with a fault, by the
+    verdict at their end; isolated counts only if the fault is the right one. ``detection_samples`` is the mean delay
+    from the start of such a stretch after a healthy one to the first alarm, and ``false_alarm_fraction`` the share of
+    healthy samples with an alarm, the second half of each stretch only. ``region.<step>`` and ``loss.<step>`` are the
+    performance at the end of each stretch.
+    """
+    figures: dict[str, float] = {}
+    edges = _edges(board)
+    for name in board.spec.diagnosers:
+        prefix = f"diagnosis.{name}"
+        verdict, alarm = trace.get(f"{name}.verdict"), trace.get(f"{name}.alarm")
+        if verdict is not None:
+            figures |= _verdicts(prefix, verdict, trace[f"{name}.winner"], trace[f"{name}.truth"], edges)
+            alarm = (verdict != NORMAL).astype(np.float64)
+        if alarm is not None:
+            figures |= _alarms(prefix, alarm, trace[f"{name}.truth"], edges)
+        region = trace.get(f"{name}.region")
+        if region is not None:
+            loss = trace[f"{name}.loss"]
+            for step, (_, end) in enumerate(pairwise(edges), 1):
+                figures[f"{prefix}.region.{step}"] = float(region[end - 1])
+                figures[f"{prefix}.loss.{step}"] = float(loss[end - 1])
+        if f"{name}.estimate" in trace:
+            figures[f"{prefix}.estimate"] = float(trace[f"{name}.estimate"][-1])
+    return figures
+
+
+def _edges(board: Board) -> list[int]:
+    """Return the ticks at which a fault came or went, with start and end."""
+    ticks = {entry.tick for entry in board.log if entry.kind in ("inject", "heal") and 0 < entry.tick < board.tick}
+    return [0, *sorted(ticks), board.tick] if board.tick else []
+
+
+def _verdicts(
+    prefix: str, verdict: FloatArray, winner: FloatArray, truth: FloatArray, edges: list[int]
+) -> dict[str, float]:
+    ends = [end - 1 for _, end in pairwise(edges) if truth[end - 1] != 0.0]
+    if not ends:
+        return {}
+    last = verdict[ends]
+    return {
+        f"{prefix}.detected": float(np.mean(last != NORMAL)),
+        f"{prefix}.isolated": float(np.mean((last == ISOLATED) & (winner[ends] == truth[ends]))),
+        f"{prefix}.isolated_wrong": float(np.mean((last == ISOLATED) & (winner[ends] != truth[ends]))),
+        f"{prefix}.ambiguous": float(np.mean(last == AMBIGUOUS)),
+        f"{prefix}.unknown": float(np.mean(last == UNKNOWN)),
+    }
+
+
+def _alarms(prefix: str, alarm: FloatArray, truth: FloatArray, edges: list[int]) -> dict[str, float]:
+    delays, false, quiet = [], 0.0, 0
+    was_healthy = True
+    for start, end in pairwise(edges):
+        healthy = truth[end - 1] == 0.0
+        if healthy:
+            late = alarm[(start + end) // 2 : end]
+            false, quiet = false + float(late.sum()), quiet + len(late)
+        elif was_healthy:
+            raised = np.flatnonzero(alarm[start:end])
+            delays.append(float(raised[0]) if len(raised) else float(end - start))
+        was_healthy = healthy
+    figures = {f"{prefix}.detection_samples": float(np.mean(delays))} if delays else {}
+    return figures | ({f"{prefix}.false_alarm_fraction": false / quiet} if quiet else {})

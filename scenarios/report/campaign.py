@@ -1,0 +1,165 @@
+"""The report of a campaign: one HTML file that needs nothing else, and a table of all runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+import pyarrow as pa
+
+from core.format import format_count, format_number, format_short, format_si
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import DiagnosisTally, PointTally
+from scenarios.report.html import as_toml, page, say, table
+from scenarios.report.svg import Series, chart
+
+USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
+MOST_CURVES = 16
+
+
+def name_of(labels: dict[str, str | float]) -> str:
+    """Name a point."""
+    return ", ".join(f"{key.rsplit('.', 1)[-1]} {say(value)}" for key, value in labels.items()) or "all runs"
+
+
+def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
+    """Return the report of a campaign as one HTML file.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        The campaign.
+    points : sequence of PointTally
+        Its results, those that are there.
+    """
+    head = sweep.base.head
+    done = sum(point.runs for point in points)
+    body = [
+        f"<p>{escape(head.title or sweep.base.id)}: {done} of {len(sweep)} runs, "
+        f"{format_count(len(sweep.points), 'point')} with {format_count(len(sweep.seeds), 'seed')} each "
+        f"({sweep.seeds[0]} to {sweep.seeds[-1]}).</p>"
+    ]
+    measured = {name for point in points for name in point.metrics}
+    shown = [entry.metric for entry in head.expect if entry.metric in measured]
+    shown += [name for name in sorted(measured) if name.endswith(USUAL) and name not in shown]
+    shown = list(dict.fromkeys(shown))
+    axes = list(dict.fromkeys(name for point in points for name in point.labels))
+    body.append("<h2>Points</h2>")
+    body.append(
+        table(
+            [*axes, "runs", "expectations hold", "tripped", *(f"{name} (mean ± std)" for name in shown)],
+            (
+                [
+                    *(point.labels.get(axis, "") for axis in axes),
+                    *(point.runs, point.ok, point.tripped),
+                    *(_mean(point, name) for name in shown),
+                ]
+                for point in points
+            ),
+        )
+    )
+    errors = [f"{name_of(point.labels)}: {text}" for point in points for text in point.errors]
+    if errors:
+        body.append("<h2>Runs that could not be carried out</h2><ul class='miss'>")
+        body += [f"<li>{escape(text)}</li>" for text in errors]
+        body.append("</ul>")
+    body.append(_trends(points, axes, shown))
+    for diagnoser in dict.fromkeys(name for point in points for name in point.diagnosis):
+        body.append(_diagnoser(diagnoser, points))
+    body.append(f"<h2>Campaign</h2><pre>{escape(as_toml(sweep.document))}</pre>")
+    return page(sweep.head.title or sweep.head.id, "".join(body))
+
+
+def _mean(point: PointTally, name: str) -> str:
+    spread = point.metrics.get(name)
+    return "" if spread is None else f"{format_short(spread.mean, '', 5)} ± {format_short(spread.std, '', 2)}"
+
+
+def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[str]) -> str:
+    """Draw every figure shown over every number that was varied, one line for each combination of the rest."""
+    charts = []
+    for axis in axes:
+        values = {point.labels.get(axis) for point in points}
+        if len(values) < 2 or not all(isinstance(value, int | float) for value in values):
+            continue
+        groups: dict[str, list[PointTally]] = {}
+        others = [name for name in axes if name != axis]
+        is_alone = len({name_of({k: p.labels[k] for k in others}) for p in points}) > MOST_CURVES
+        for point in sorted(points, key=lambda p: float(p.labels[axis])):
+            rest = "" if is_alone else name_of({key: point.labels[key] for key in others})
+            groups.setdefault(rest, []).append(point)
+        for name in shown:
+            lines = [
+                Series(
+                    rest,
+                    [float(point.labels[axis]) for point in group if name in point.metrics],
+                    [point.metrics[name].mean for point in group if name in point.metrics],
+                    [point.metrics[name].std for point in group if name in point.metrics],
+                )
+                for rest, group in groups.items()
+            ]
+            charts.append(f"<div>{chart(name, axis, 'mean ± std', lines)}</div>")
+    return f'<h2>Figures</h2><div class="side">{"".join(charts)}</div>' if charts else ""
+
+
+def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
+    """Show one diagnoser: curves of all points, then confusion point by point."""
+    entries = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
+    drawn = entries[:MOST_CURVES]
+    curves = [
+        Series(f"{label} (area {format_si(entry.roc.area, '')})", entry.roc.false_alarm, entry.roc.detection)
+        for label, entry in drawn
+        if entry.roc is not None
+    ]
+    parts = [f'<h2>Diagnoser {escape(name)}</h2><div class="side">']
+    if curves:
+        title = "Receiver operating characteristic, sample by sample"
+        parts.append(f"<div>{chart(title, 'false alarms', 'detections', curves, (0.0, 1.0), (0.0, 1.0))}</div>")
+    delays = [_delay_curve(label, entry) for label, entry in drawn if entry.delays]
+    if delays:
+        longest = max(curve.x[-1] for curve in delays)
+        drawing = chart("Detection delay", "samples", "share entries by then", delays, (0.0, longest), (0.0, 1.0))
+        parts.append(f"<div>{drawing}</div>")
+    parts.append("</div>")
+    if len(entries) > MOST_CURVES:
+        parts.append(f"<p>Of {len(entries)} points the first {MOST_CURVES} are drawn; the table of runs has all.</p>")
+    for label, entry in drawn:
+        total = [max(1, sum(row)) for row in entry.confusion]
+        rows = [
+            [truth, *(format_number(count / all_of, 4) for count in row), sum(row)]
+            for truth, row, all_of in zip(entry.names, entry.confusion, total, strict=True)
+        ]
+        missed = f"; {entry.missed} changes were never found" if entry.missed else ""
+        parts.append(f"<h3>{escape(label)}: truth (rows) and verdict (columns), shares of samples{missed}</h3>")
+        parts.append(table(["truth", *entry.names, "samples"], rows))
+    return "".join(parts)
+
+
+def _delay_curve(label: str, entry: DiagnosisTally) -> Series:
+    """Return the share of changes found within some samples; changes that were never found keep it below one."""
+    total = sum(entry.delays.values()) + entry.missed
+    x, y, sofar = [0.0], [0.0], 0
+    for delay, count in sorted(entry.delays.items()):
+        sofar += count
+        x.append(float(delay))
+        y.append(sofar / total)
+    return Series(label, x, y, is_stepped=True)
+
+
+def results_table(sweep: Sweep, outcomes: dict[str, Outcome]) -> pa.Table:
+    """Return one row for each run that is there: key, point, seed, digest and every figure."""
+    rows = [(key, point, outcomes[key]) for key, point, _ in sweep.runs() if key in outcomes]
+    labels = list(dict.fromkeys(name for _, point, _ in rows for name in point.labels))
+    metrics = sorted({name for _, _, outcome in rows for name in outcome.metrics})
+    columns: dict[str, list[Any]] = {"key": [key for key, _, _ in rows]}
+    for name in labels:
+        values = [point.labels.get(name) for _, point, _ in rows]
+        is_text = any(isinstance(value, str) for value in values)
+        columns[name] = [str(value) for value in values] if is_text else values
+    for name in ("seed", "digest", "ticks", "ok", "trip", "error", "elapsed_s"):
+        columns[name] = [getattr(outcome, name) for _, _, outcome in rows]
+    for name in metrics:
+        columns[name] = [outcome.metrics.get(name) for _, _, outcome in rows]
+    return pa.table(columns)

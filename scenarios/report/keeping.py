@@ -1,0 +1,43 @@
+"""Files kept of a run: its trace, its summary, a report, a drawing, and a script that repeats it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core.signals import CLOCK
+from scenarios.report.run import run_report
+from scenarios.report.script import script
+from scenarios.report.thumbnail import thumbnail
+from scenarios.report.traces import write_json, write_parquet, write_text
+from scenarios.run import Result
+
+
+def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) -> None:
+    """Write the files of a run, each under a temporary name first.
+
+    Parameters
+    ----------
+    result : Result
+        The run, of the first seed if there are several.
+    summary : dict
+        Its summary.
+    seeds : list of int
+        All its seeds.
+    stem : Path
+        Path of the files without their ending; the folder is created.
+    """
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    document = json.loads(json.dumps(result.scenario.document, default=str))
+    ticks = np.arange(len(result.outputs))
+    columns: dict[str, np.ndarray[Any, Any]] = dict(zip(CLOCK, (ticks, ticks * result.board.dt_ms), strict=True))
+    for signal in result.kept:
+        columns[signal.name] = result.signal(signal.name)
+    write_parquet(stem.with_suffix(".parquet"), columns, {"scenario": document, "seed": result.seed})
+    write_text(stem.with_suffix(".html"), run_report(result, summary))
+    write_text(stem.with_suffix(".svg"), thumbnail(result))
+    write_text(stem.with_suffix(".py"), script(document, seeds, summary["digest"], stem.name + ".py"))
+    write_json(stem.with_suffix(".json"), summary)

@@ -1,0 +1,1 @@
+"""Speed of the bench: each figure is a ratio to a peer measured in the same run."""

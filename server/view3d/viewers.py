@@ -1,0 +1,124 @@
+"""The 3D scenes of all benches: each is built for its first viewer, and closed after its last one."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from server.bench.session import Session
+from server.view3d.layout import Layout
+from server.view3d.pose import Observer
+
+if TYPE_CHECKING:
+    from server.view3d.scene import Scene
+
+log = logging.getLogger(__name__)
+
+FRAME_S = 1.0 / 60.0
+
+
+class Show:
+    """The scene of one bench and the number of its viewers.
+
+    Parameters
+    ----------
+    session : Session
+        The bench.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._watchers = 0
+        self._scene: Scene | None = None
+        self._ready = asyncio.Lock()
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def watchers(self) -> int:
+        """Open 3D pages."""
+        return self._watchers
+
+    async def enter(self) -> Path:
+        """Count a new viewer; return the socket of the scene."""
+        self._watchers += 1
+        try:
+            async with self._ready:
+                if self._scene is None:
+                    self._scene = await asyncio.to_thread(build_scene, self._session)
+                    self._task = asyncio.create_task(self._play(self._scene))
+                return self._scene.path
+        except BaseException:
+            self._watchers -= 1
+            raise
+
+    async def leave(self) -> None:
+        """Count a viewer that leaves; close the scene after the last one.
+
+        A scene keeps a number for every message it has sent, and goes through all of them for each new viewer. A new
+        scene keeps that short.
+        """
+        self._watchers -= 1
+        async with self._ready:
+            if self._watchers == 0:
+                await self.close()
+
+    async def close(self) -> None:
+        """Stop moving and close the scene."""
+        task, scene, self._task, self._scene = self._task, self._scene, None, None
+        if task is not None:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+        if scene is not None:
+            await asyncio.to_thread(scene.close)
+
+    async def _play(self, scene: Scene) -> None:
+        """Show the bench 60 times a second."""
+        observer = Observer(self._session, layout_of(self._session))
+        due = time.monotonic()
+        while True:
+            try:
+                scene.show(observer.pose())
+            except Exception:
+                log.exception("the 3D view of bench %s failed", self._session.id)
+                return
+            due = max(due + FRAME_S, time.monotonic())
+            await asyncio.sleep(due - time.monotonic())
+
+
+class Viewers:
+    """One show per bench."""
+
+    def __init__(self) -> None:
+        self._shows: dict[str, Show] = {}
+
+    def show_of(self, session: Session) -> Show:
+        """Return the show of a bench; made on the first visit."""
+        if session.id not in self._shows:
+            self._shows[session.id] = Show(session)
+        return self._shows[session.id]
+
+    async def drop(self, bench_id: str) -> None:
+        """Close the show of a bench that is gone."""
+        show = self._shows.pop(bench_id, None)
+        if show is not None:
+            await show.close()
+
+    async def close(self) -> None:
+        """Close every show."""
+        for bench_id in list(self._shows):
+            await self.drop(bench_id)
+
+
+def build_scene(session: Session) -> Scene:
+    """Build the scene; viser is loaded here, so that nothing else waits for it."""
+    from server.view3d.scene import Scene
+
+    return Scene(layout_of(session))
+
+
+def layout_of(session: Session) -> Layout:
+    """Return where the parts are; a device without a drawing is drawn as the reference device."""
+    return Layout(session.geometry)

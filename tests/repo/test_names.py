@@ -1,0 +1,69 @@
+"""A step that misspells a name does not pass the type checker."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+UNIT = '''
+"""A proportional law."""
+
+from __future__ import annotations
+
+from core.block import Block, BlockParams, parameter
+from core.control.controller import ControllerPorts
+from core.ports import tap
+from core.record import Record, Vector, vector
+
+
+class Proportional(Block):
+    """Proportional to the error."""
+
+    title = "Proportional"
+
+    class Params(BlockParams):
+        """The gain."""
+
+        gain: float = parameter(1.0, "gain", "V/um")
+
+    class Packed(Record):
+        """The gain."""
+
+        gain: float
+
+    class State(Record):
+        """The last errors."""
+
+        last: Vector = vector(2)
+
+    class Ports(ControllerPorts):
+        """The error."""
+
+        error: float = tap("um", "model minus measured displacement")
+
+    @staticmethod
+    def step(p: Packed, s: State, x: Ports) -> None:
+        """Compute one sample."""
+        x.error = x.model - x.measured
+        s.last[0] = x.error
+        x.voltage = p.gain * s.last[0]
+'''
+
+
+def checked(path: Path, text: str) -> str:
+    path.write_text(text)
+    command = [sys.executable, "-m", "mypy", "--no-error-summary", "--follow-imports", "silent", str(path)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout
+
+
+def test_a_misspelt_port_parameter_or_state_is_an_error_before_anything_runs(tmp_path):
+    path = tmp_path / "proportional.py"
+    assert checked(path, UNIT) == ""
+    misspelt = UNIT.replace("x.model - x.measured", "x.model - x.mesured").replace("p.gain *", "p.gian *")
+    misspelt = misspelt.replace("s.last[0] = x", "s.lost[0] = x").replace("x.voltage =", "x.volts =")
+    found = checked(path, misspelt)
+    for name in ("mesured", "gian", "lost", "volts"):
+        assert f'has no attribute "{name}"' in found

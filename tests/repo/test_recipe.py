@@ -1,0 +1,69 @@
+"""The controller in CONTRIBUTING.md, taken from there: it runs, and does what its equation says."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from core import registry
+from core.block import Block
+from tests.lab import RICH, do, make, play
+
+ROOT = Path(__file__).resolve().parents[2]
+CODE = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(), re.DOTALL)[0]
+
+
+@pytest.fixture
+def recipe(monkeypatch) -> type[Block]:
+    module = ModuleType("core.control.pi")
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    exec(compile(CODE, "pi.py", "exec"), vars(module))
+    known = registry.blocks("control")
+    monkeypatch.setattr(
+        registry, "blocks", lambda family: {**known, "pi": module.Pi} if family == "control" else BLOCKS(family)
+    )
+    return module.Pi
+
+
+BLOCKS = registry.blocks
+
+
+def test_the_recipe_obeys_its_equation(recipe):
+    board = make({"controller.kind": "pi", "sample_rate_khz": 100}, base=RICH)
+    trace = play(board, 400)
+    error = trace["model.displacement"] - trace["sensor.displacement"]
+    np.testing.assert_array_equal(trace["pi.error"], error)
+    np.testing.assert_allclose(trace["pi.voltage"], -2.0 * error - 5.0 * np.cumsum(error) * 0.01, rtol=1e-12)
+
+
+def test_it_takes_over_from_the_voltage_that_was_applied(recipe):
+    """In shadow I = u - Kp e at every tick, so that the first voltage is u + Kp (e - e before) + Ki e dt."""
+    board = make({"controller.kind": "open_loop"}, base=RICH)
+    shadow = play(board, 300)
+    do(board, {"kind": "switch", "controller": "pi"})
+    after = play(board, 1)
+    e, e_before = after["pi.error"][0], shadow["pi.error"][-1]
+    applied = shadow["drive.voltage"][-2]  # over the sample that ended with the last tick in shadow
+    assert after["pi.voltage"][0] == pytest.approx(applied - 2.0 * (e - e_before) - 5.0 * e * board.dt_ms, rel=1e-12)
+
+
+def test_it_gives_the_same_bits_in_plain_python(recipe):
+    fast, slow = (make({"controller.kind": "pi"}, base=RICH, compiled=compiled) for compiled in (True, False))
+    play(fast, 60)
+    play(slow, 60)
+    assert fast.digest() == slow.digest()
+
+
+def test_every_name_is_declared_once():
+    """A port or a state is declared once, a parameter in the two tables; beyond that only the step names it."""
+    step = CODE[CODE.index("def step") :]
+    declared = CODE[: CODE.index("    @classmethod")]
+    for name, places in (("error", 1), ("integral", 1), ("proportional_v_um", 2), ("integral_v_um_ms", 2)):
+        assert len(re.findall(rf"^\s+{name}: float", declared, re.MULTILINE)) == places
+        assert re.search(rf"[psx]\.{name}\b", step)
+    assert len([line for line in CODE.splitlines() if line.strip()]) <= 60

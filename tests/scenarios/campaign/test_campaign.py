@@ -1,0 +1,179 @@
+"""A campaign gives what single runs give, wherever it is computed, and repeats nothing that is in the table."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.run import run
+from scenarios.schema import Scenario
+from tests.scenarios.campaign.cluster import Cluster, free_port
+
+
+class Memory:
+    """A run table that remembers what was put into it, and how often."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, Outcome] = {}
+        self.puts: list[str] = []
+
+    def have(self, keys: Sequence[str]) -> set[str]:
+        return self.found.keys() & set(keys)
+
+    def put(self, found: list[tuple[str, dict[str, Any]]]) -> None:
+        for key, entry in found:
+            self.puts.append(key)
+            self.found.setdefault(key, Outcome.model_validate(entry))
+
+
+def small(count: int = 6, samples: int = 1500) -> Sweep:
+    return Sweep(
+        {
+            "schema": 1,
+            "scenario": "ch5-seven-step",
+            "set": {"samples": samples},
+            "seeds": {"count": count},
+            "grid": {"sensor.noise_um": [0.05, 0.3]},
+        }
+    )
+
+
+def digests(sweep: Sweep) -> dict[str, str]:
+    return {key: run(Scenario.load(point.document), seed).digest for key, point, seed in sweep.runs()}
+
+
+def test_processes_give_what_single_runs_give_and_nothing_is_run_twice() -> None:
+    sweep, table, seen = small(), Memory(), list[tuple[int, int]]()
+    assert Campaign(sweep, table, workers=2, on_progress=lambda *now: seen.append(now)).run()
+    assert {key: found.digest for key, found in table.found.items()} == digests(sweep)
+    assert len(table.puts) == 12 and seen[0] == (0, 12) and seen[-1] == (12, 12)
+    # again: everything is there, nothing is computed; with more seeds only those that are new
+    assert Campaign(sweep, table, workers=1).run() and len(table.puts) == 12
+    assert Campaign(small(7), table, workers=1).run() and len(table.puts) == 14
+
+
+def test_a_run_that_cannot_be_carried_out_does_not_stop_the_others() -> None:
+    document = {**small().document, "grid": {"events.0.severity": [0.05, 1e9]}, "seeds": {"count": 2}}
+    table = Memory()
+    assert Campaign(Sweep(document), table, workers=1).run()
+    errors = [found.error for found in table.found.values() if found.error]
+    assert len(table.found) == 4 and len(errors) == 2 and "severity" in errors[0]
+
+
+def test_a_cancelled_campaign_keeps_what_is_done_and_goes_on_from_there() -> None:
+    sweep, table = small(20, 9000), Memory()
+    campaign = Campaign(sweep, table, workers=1, on_progress=lambda done, _: campaign.cancel() if done else None)
+    assert not campaign.run()
+    before = list(table.puts)
+    assert 0 < len(before) < 40 and campaign.done == len(before)
+    assert Campaign(sweep, table, workers=2).run()
+    assert len(table.puts) == len(set(table.puts)) == 40 and table.puts[: len(before)] == before
+
+
+def kill_one_child() -> None:
+    """Kill a worker once there is one."""
+    while not (children := multiprocessing.active_children()):
+        time.sleep(0.05)
+    time.sleep(0.5)
+    os.kill(children[0].pid or 0, signal.SIGKILL)
+
+
+def test_a_worker_process_that_is_killed_is_replaced() -> None:
+    sweep, table = small(), Memory()
+    killer = threading.Thread(target=kill_one_child)
+    killer.start()
+    assert Campaign(sweep, table, workers=2).run()
+    killer.join()
+    assert len(table.puts) == len(set(table.puts)) == 12
+    assert {key: found.digest for key, found in table.found.items()} == digests(sweep)
+
+
+def test_without_a_scheduler_a_campaign_stops_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenarios.campaign.campaign.PATIENCE", 2)
+    monkeypatch.setattr("scenarios.campaign.cluster.CONNECT_S", 0.2)
+    with pytest.raises(Stopped, match=r"lost the scheduler at tcp://127.0.0.1.* 0 of 12"):
+        Campaign(small(), Memory(), scheduler=f"tcp://127.0.0.1:{free_port()}").run()
+
+
+def test_a_batch_that_is_done_but_cannot_be_fetched_is_computed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As when the scheduler goes while it hands over what a worker has done."""
+    from distributed import Client
+
+    gather, failed = Client._gather, list[bool]()
+
+    async def gather_at_last(self: Client, *arguments: Any, **named: Any) -> Any:
+        if not failed:
+            failed.append(True)
+            raise ConnectionResetError("gone")
+        return await gather(self, *arguments, **named)
+
+    monkeypatch.setattr(Client, "_gather", gather_at_last)
+    sweep, table = small(), Memory()
+    with Cluster(tmp_path) as cluster:
+        cluster.start_worker()
+        campaign = Campaign(sweep, table, scheduler=cluster.address)
+        thread = threading.Thread(target=campaign.run, daemon=True)
+        thread.start()
+        thread.join(60)
+        assert not thread.is_alive() and failed
+    assert len(table.puts) == len(set(table.puts)) == 12
+
+
+def test_a_campaign_on_a_cluster_is_cancelled(tmp_path: Path) -> None:
+    table = Memory()
+    with Cluster(tmp_path) as cluster:
+        cluster.start_worker()
+        campaign = Campaign(
+            small(50, 9000),
+            table,
+            scheduler=cluster.address,
+            on_progress=lambda done, _: campaign.cancel() if done else None,
+        )
+        assert not campaign.run()
+    assert 0 < len(table.puts) == campaign.done < 100
+
+
+def test_a_cluster_gives_what_single_runs_give_though_worker_and_scheduler_are_killed(tmp_path: Path) -> None:
+    sweep, table = small(100, 4000), Memory()
+    with Cluster(tmp_path) as cluster:
+        first = [cluster.start_worker(), cluster.start_worker()]
+        campaign = Campaign(sweep, table, scheduler=cluster.address)
+        thread = threading.Thread(target=campaign.run, daemon=True)
+        thread.start()
+
+        def until(done: int) -> None:
+            end = time.monotonic() + 90
+            while campaign.done < done or not table.puts:
+                assert time.monotonic() < end and thread.is_alive(), f"{campaign.done} done"
+                time.sleep(0.02)
+
+        until(2)
+        first[0].kill()
+        until(20)
+        at_the_loss = list(table.puts)
+        cluster.scheduler.kill()
+        cluster.scheduler.wait()
+        for worker in cluster.workers:
+            worker.kill()
+            worker.wait()
+        cluster.start_scheduler()
+        cluster.start_worker()
+        thread.join(90)
+        assert not thread.is_alive()
+    assert len(at_the_loss) < 200
+    assert len(table.puts) == len(set(table.puts)) == len(table.found) == 200
+    some = dict(list(digests(small(100, 4000)).items())[::20])
+    assert {key: table.found[key].digest for key in some} == some
