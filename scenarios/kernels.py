@@ -28,6 +28,8 @@ from scenarios.run import build
 HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference")
 """Families in the order of compilation, so that no core still has a long one at the end."""
 FIRST_BENCH = "first-look"
+NICE = 10
+"""How far compiling steps back behind benches that run."""
 LOOP = ("", "loop")
 """The task that compiles the kernels every bench needs beside its blocks."""
 
@@ -86,10 +88,12 @@ def complete() -> Path | None:
 
 
 def main() -> None:
-    """Compile all kernels, those of the first bench only with ``first``."""
+    """Compile all kernels, those of the first bench only with ``first``, ``behind`` benches that run."""
     sys.dont_write_bytecode = False  # packages come without bytecode, and some environments never write it
     start = time.monotonic()
     first = "first" in sys.argv
+    if "behind" in sys.argv and os.name == "posix":
+        os.nice(NICE)
 
     def told(count: int, total: int) -> None:
         sys.stdout.write(f"\rCompiling kernels: {count} of {total}")
