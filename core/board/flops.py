@@ -133,7 +133,7 @@ class Load(BaseModel):
 
 
 class Budget(BaseModel):
-    """Load of a board by all diagnosers, of some speed, in their order; those that come too late overrun."""
+    """Load of a board of some speed by all diagnosers, in their order; those that come too late overrun."""
 
     board_flops: float
     function_flops: float
