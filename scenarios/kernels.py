@@ -19,6 +19,7 @@ from core import registry
 from core.board import fold, program
 from core.board.history import History
 from core.board.rows import Rows
+from core.board.wiring import wire
 from core.ports import RESERVED
 from scenarios.kernel_cache import folder
 from scenarios.key import code_version
@@ -57,8 +58,10 @@ def _loop() -> None:
 def tasks(*, first_bench_only: bool = False) -> list[Task]:
     """Return the blocks that have a kernel, by family and name, with the slowest to compile first."""
     if first_bench_only:
-        wiring = build(get(FIRST_BENCH)).wiring
-        named = {(entry.block.family, entry.block.name) for entry in wiring.instances}
+        spec = get(FIRST_BENCH).spec
+        wiring = wire(spec)
+        blocks = [wiring.instances[row].block for row in wiring.rest(spec)]
+        named = {(block.family, block.name) for block in blocks}
         return [task for task in tasks() if task in named]
     return [(family, name) for family in HEAVY_FIRST for name in registry.blocks(family)]
 
@@ -100,7 +103,6 @@ def main() -> None:
         sys.stdout.flush()
 
     compile_all(tasks(first_bench_only=first), told)
-    load()
     sys.stdout.write(f", {time.monotonic() - start:.1f} s\n")
     done = complete()
     if done is not None and not first:

@@ -16,6 +16,7 @@ log = logging.getLogger(__name__)
 
 PROGRESS = re.compile(rb"(\d+) of (\d+)")
 
+
 class Kernels:
     """Loads the kernels of the first bench before the server serves anyone, and compiles all others meanwhile."""
 
