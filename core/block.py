@@ -1,4 +1,4 @@
-"""What a block is: parameters, ports, equations and one step.
+"""A block: parameters, ports, equations and one step.
 
 A step is ``step(p, s, x)``: what it reads, its state, and its ports, all by name. A block declares each once, in the
 classes ``Params`` (what people set), ``Packed``, ``State`` and ``Ports``. The same function, run uncompiled, is its own
@@ -114,7 +114,7 @@ class Oscillator:
 
 @dataclass(frozen=True)
 class Context:
-    """What a block may know of the bench when it packs its parameters.
+    """Facts of the bench that a block may use when it packs its parameters.
 
     Parameters
     ----------

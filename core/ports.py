@@ -1,4 +1,4 @@
-"""What a step sees as ``x``: the signals behind its ports, by name.
+"""The signals behind the ports of a block, which its step reads and writes by name, as ``x``.
 
 A block declares each port once, in a class: ``measured: float = reads("sensor.displacement", "um", "measured
 displacement")``. The step reads and writes ``x.measured``.

@@ -1,4 +1,4 @@
-"""What a step sees as ``p`` and ``s``: named numbers in a flat array of float64.
+"""Named numbers in a flat array of float64: the ``p`` and the ``s`` of a step.
 
 The class says which numbers there are; an instance is a view of an array. Compiled steps see the same names at the same
 places (``core.views``).

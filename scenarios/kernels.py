@@ -19,6 +19,7 @@ from core import registry
 from core.board import fold, program
 from core.board.history import History
 from core.board.rows import Rows
+from core.board.wiring import wire
 from core.ports import RESERVED
 from scenarios.kernel_cache import folder
 from scenarios.key import code_version
@@ -28,6 +29,8 @@ from scenarios.run import build
 HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference")
 """Families in the order of compilation, so that no core still has a long one at the end."""
 FIRST_BENCH = "first-look"
+NICE = 10
+"""How far compiling steps back behind benches that run."""
 LOOP = ("", "loop")
 """The task that compiles the kernels every bench needs beside its blocks."""
 
@@ -55,8 +58,10 @@ def _loop() -> None:
 def tasks(*, first_bench_only: bool = False) -> list[Task]:
     """Return the blocks that have a kernel, by family and name, with the slowest to compile first."""
     if first_bench_only:
-        wiring = build(get(FIRST_BENCH)).wiring
-        named = {(entry.block.family, entry.block.name) for entry in wiring.instances}
+        spec = get(FIRST_BENCH).spec
+        wiring = wire(spec)
+        blocks = [wiring.instances[row].block for row in wiring.rest(spec)]
+        named = {(block.family, block.name) for block in blocks}
         return [task for task in tasks() if task in named]
     return [(family, name) for family in HEAVY_FIRST for name in registry.blocks(family)]
 
@@ -86,17 +91,18 @@ def complete() -> Path | None:
 
 
 def main() -> None:
-    """Compile all kernels, those of the first bench only with ``first``."""
+    """Compile all kernels, those of the first bench only with ``first``, ``behind`` benches that run."""
     sys.dont_write_bytecode = False  # packages come without bytecode, and some environments never write it
     start = time.monotonic()
     first = "first" in sys.argv
+    if "behind" in sys.argv and os.name == "posix":
+        os.nice(NICE)
 
     def told(count: int, total: int) -> None:
         sys.stdout.write(f"\rCompiling kernels: {count} of {total}")
         sys.stdout.flush()
 
     compile_all(tasks(first_bench_only=first), told)
-    load()
     sys.stdout.write(f", {time.monotonic() - start:.1f} s\n")
     done = complete()
     if done is not None and not first:

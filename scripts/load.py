@@ -36,6 +36,13 @@ def percentile(values: list[float], share: float) -> float:
     return sorted(values)[min(len(values) - 1, int(share * len(values)))] if values else float("nan")
 
 
+COMMANDS: dict[str, dict[str, object] | None] = {
+    "time_scale": None,
+    "set": {"kind": "set", "values": {"controllers.mrac.adaptation_gain": 1.0}},
+}
+"""Commands of watchers by kind; they leave the bench as it is. The time scale is that of the bench."""
+
+
 class Server:
     """A server of our own: free port, own token, a data folder that is thrown away."""
 
@@ -144,7 +151,7 @@ async def drive(server: Server, told: argparse.Namespace) -> dict[str, Any]:
     for number in range(told.watchers + 1):
         bench = benches[number % len(benches)]["id"]
         address = f"ws://{server.address}/api/v1/benches/{bench}/stream"
-        watcher = Watcher(address, server.token, told.scale)
+        watcher = Watcher(address, server.token, COMMANDS[told.kind] or {"kind": "time_scale", "value": told.scale})
         await loop.create_connection(lambda watcher=watcher: watcher, "127.0.0.1", server.port)  # type: ignore[misc]
         await watcher.opened.wait()
         watchers.append(watcher)
@@ -212,6 +219,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--scale", type=float, default=1.0, help="device seconds per second")
     parser.add_argument("--commands", type=float, default=2.0, help="per second and watcher; each is an event for all")
+    parser.add_argument("--kind", choices=COMMANDS, default="time_scale", help="of the commands")
     parser.add_argument("--flat", action="store_true", help="memory must not grow")
     told = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

@@ -38,12 +38,12 @@ class Watcher(asyncio.Protocol):
         Of the stream.
     token : str
         That opens it.
-    scale : float
-        Time scale its commands ask for: the one the bench has.
+    command : dict
+        The command it sends, over and over.
     """
 
-    def __init__(self, address: str, token: str, scale: float) -> None:
-        self._scale = scale
+    def __init__(self, address: str, token: str, command: dict[str, object]) -> None:
+        self._command = command
         self._lines = ClientProtocol(parse_uri(address), subprotocols=[Subprotocol(SUBPROTOCOL)])
         self._token = token
         self._transport: Transport | None = None
@@ -89,8 +89,7 @@ class Watcher(asyncio.Protocol):
 
     def ask(self) -> None:
         """Send a command; its answer tells how long it took."""
-        command = {"kind": "time_scale", "value": self._scale}
-        self.say({"type": "command", "id": str(time.monotonic()), "command": command})
+        self.say({"type": "command", "id": str(time.monotonic()), "command": self._command})
 
     def forget(self) -> None:
         """Begin to measure anew."""

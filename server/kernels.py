@@ -15,8 +15,6 @@ from scenarios import kernels
 log = logging.getLogger(__name__)
 
 PROGRESS = re.compile(rb"(\d+) of (\d+)")
-NICE = 10
-"""Niceness of the compiler: benches that run come first."""
 
 
 class Kernels:
@@ -41,11 +39,11 @@ class Kernels:
             sys.executable,
             "-m",
             "scenarios.kernels",
+            "behind",
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.DEVNULL,
             start_new_session=True,  # so that the compiler's processes end with it
-            preexec_fn=_step_back if os.name == "posix" else None,
         )
         assert process.stdout is not None
         reported = 0
@@ -71,7 +69,3 @@ class Kernels:
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
-
-
-def _step_back() -> None:
-    os.nice(NICE)

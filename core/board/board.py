@@ -51,7 +51,7 @@ class Board:
     Parameters
     ----------
     bench : dict or Spec
-        What the bench is made of: a document, or what was read from one. A board never changes a bench in place, so
+        The bench: its document, or the spec that was read from it. A board never changes a spec in place, so
         that several may be built from one.
     compiled : bool
         Run compiled blocks; the uncompiled ones are their oracle and give the same bits.

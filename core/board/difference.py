@@ -26,7 +26,11 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     order, rows = _after(wiring, before, spec)
     if any(order[row].block is not wiring.instances[row].block for row in rows):
         return False
-    other = {every for every in {order[row].every for row in rows} if spec.context(every) != before.context(every)}
+    other = {
+        every
+        for every in {order[row].every for row in rows}
+        if spec.context(every) is not before.context(every) and spec.context(every) != before.context(every)
+    }
     packed = {
         row: order[row].block.packed(order[row].params, spec.context(order[row].every))
         for row in rows
@@ -50,7 +54,7 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
 
 def _after(wiring: Wiring, before: Spec, spec: Spec) -> tuple[list[Instance], Iterable[int]]:
     """Return the blocks of a bench, and the rows that may differ: most often it is only that of a fault."""
-    if any(getattr(spec, name) is not getattr(before, name) for name in PARTS):
+    if spec.document is not before.document:
         order = instances(spec)
         return order, range(len(order))
     order = [*wiring.instances]
@@ -59,22 +63,3 @@ def _after(wiring: Wiring, before: Spec, spec: Spec) -> tuple[list[Instance], It
         key, prefix, block, _, every = order[row]
         order[row] = Instance(key, prefix, block, spec.faults.get(block.name) or usual_params(block), every)
     return order, rows
-
-
-PARTS = (
-    "frame",
-    "device",
-    "environment",
-    "plant",
-    "reference",
-    "model",
-    "drive",
-    "guard",
-    "measuring",
-    "sensors",
-    "active",
-    "controllers",
-    "identifiers",
-    "diagnosers",
-)
-"""Parts of a bench without its faults."""

@@ -26,7 +26,7 @@ MOST = 3
 """Twins of a board; four boards together."""
 
 OWN = ("plant", "controller", "controllers", "sensor", "sensors", "diagnosers", "drive", "guard")
-"""What a twin may have of its own; all else they share."""
+"""Sections a twin may have of its own; it shares all others with the board."""
 
 SHOWN = ("plant.displacement", "plant.velocity", "sensor.displacement", "model.displacement", "reference.voltage")
 """Signals of a twin that are always seen, besides its controller, drive and diagnosers."""
@@ -98,7 +98,7 @@ class Ensemble(Board):
     Parameters
     ----------
     bench : dict or Spec
-        What the board is made of; ``twins`` of its document holds what each twin has of its own.
+        The bench; ``twins`` of its document holds the sections each twin has of its own.
     twins : dict of Spec, optional
         The bench of every twin, where it has been read from that document already.
     compiled : bool

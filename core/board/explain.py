@@ -19,7 +19,7 @@ SMALLEST = 1e-30
 
 
 class ModelAccount(BaseModel):
-    """What one sample did to one hypothesis."""
+    """One hypothesis before and after a sample."""
 
     name: str
     residual_um: float
@@ -31,7 +31,7 @@ class ModelAccount(BaseModel):
 
 
 class Account(BaseModel):
-    """What one sample did to all of them; the recorded probabilities stand beside those worked out here.
+    """All hypotheses before and after a sample; the recorded probabilities stand beside those worked out here.
 
     They part where the sample was no evidence, because the drive was off or nothing was measured.
     """

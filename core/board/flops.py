@@ -116,7 +116,7 @@ def plain_step(block: type[Block], tally: Tally) -> Any:
 
 
 class Load(BaseModel):
-    """What a diagnoser costs a board.
+    """Load of a board by one diagnoser.
 
     ``functions`` are exponentials, logarithms, roots, sines; each counts as ``function_flops``.
     """
@@ -133,7 +133,7 @@ class Load(BaseModel):
 
 
 class Budget(BaseModel):
-    """What all diagnosers cost a board of some speed, in their order; those that come too late overrun."""
+    """Load of a board of some speed by all diagnosers, in their order; those that come too late overrun."""
 
     board_flops: float
     function_flops: float

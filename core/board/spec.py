@@ -1,4 +1,4 @@
-"""What a bench is made of, checked: a document in, validated blocks out."""
+"""A bench, ready to be wired: its sections, each a block with validated parameters."""
 
 from __future__ import annotations
 

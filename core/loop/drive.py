@@ -61,7 +61,7 @@ class Drive(Block):
         dither_key: float
 
     class Ports(BlockPorts):
-        """What is asked for, what is applied."""
+        """Voltage asked for, voltage applied."""
 
         command: float = reads("@active", "V", "voltage asked for by the controller that drives")
         command_middle: float = reads("@active_middle", "V", "the same half a sample later")

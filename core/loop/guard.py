@@ -44,7 +44,7 @@ class Guard(Block):
         ticks_at_limit: float
 
     class Ports(BlockPorts):
-        """What is watched, and the verdict."""
+        """Signals the guard watches, and its verdict."""
 
         displacement: float = reads("plant.displacement", "um", "true displacement")
         velocity: float = reads("plant.velocity", "um/ms", "true velocity")

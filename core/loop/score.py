@@ -72,7 +72,7 @@ class Score(Block):
         confusion: Vector = tail()
 
     class Ports(BlockPorts):
-        """What the bank says and what is so; the verdict."""
+        """Probabilities of the bank, the true factors, and the verdict."""
 
         probability: Vector = reads("", "1", "probabilities of the bank")
         nis: Vector = reads("", "1", "normalised residuals of the bank")

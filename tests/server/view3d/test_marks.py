@@ -10,7 +10,7 @@ import pytest
 from core import registry
 from core.device.geometry import Geometry
 from core.faults.fault import Fault, FaultParams
-from core.ports import Port
+from core.ports import BlockPorts, output
 from server.view3d.layout import UM_PER_UNIT, Layout
 from server.view3d.marks import Marks, marks, words
 from server.view3d.pose import Active
@@ -44,7 +44,9 @@ def test_every_fault_says_what_it_is_within_the_picture(name: str) -> None:
 def test_a_fault_nobody_has_drawn_is_a_label_at_its_part(part: str) -> None:
     class Unheard(Fault):
         title, shows, name = "Unheard of", part, "unheard_of"
-        outputs = (Port("severity", "nm", "how bad"),)
+
+        class Ports(BlockPorts):
+            severity: float = output("nm", "how bad")
 
     found = marks([Active(Unheard, FaultParams(severity=3.0), 3.0)], LAYOUT)
     assert list(found.labels.values()) == [["Unheard of 3\u00a0nm"]]

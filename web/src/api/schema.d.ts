@@ -1152,7 +1152,7 @@ export interface components {
     schemas: {
         /**
          * Account
-         * @description What one sample did to all of them; the recorded probabilities stand beside those worked out here.
+         * @description All hypotheses before and after a sample; the recorded probabilities stand beside those worked out here.
          *
          *     They part where the sample was no evidence, because the drive was off or nothing was measured.
          */
@@ -1512,7 +1512,7 @@ export interface components {
         };
         /**
          * Budget
-         * @description What all diagnosers cost a board of some speed, in their order; those that come too late overrun.
+         * @description Load of a board of some speed by all diagnosers, in their order; those that come too late overrun.
          */
         Budget: {
             /** Board Flops */
@@ -2293,7 +2293,7 @@ export interface components {
         };
         /**
          * Load
-         * @description What a diagnoser costs a board.
+         * @description Load of a board by one diagnoser.
          *
          *     ``functions`` are exponentials, logarithms, roots, sines; each counts as ``function_flops``.
          */
@@ -2458,7 +2458,7 @@ export interface components {
         };
         /**
          * ModelAccount
-         * @description What one sample did to one hypothesis.
+         * @description One hypothesis before and after a sample.
          */
         ModelAccount: {
             /** Name */
