@@ -42,7 +42,7 @@ class Wiring:
     rows: dict[str, int]
     """The row of every instance, by its key."""
     unread: list[bool]
-    """Of every row: whether it is a sensor that nobody reads."""
+    """Row by row, whether it is a sensor that nobody reads."""
     tap_rows: IntArray
     """The row that every tap comes from."""
     resting: set[int] = field(default_factory=set)
@@ -162,7 +162,7 @@ def every_of(instance: Instance) -> int:
 
 
 def unread(spec: Spec, order: list[Instance]) -> list[bool]:
-    """Return of every row whether it is a sensor that nobody reads."""
+    """Return, row by row, whether it is a sensor that nobody reads."""
     read = needed(spec)
     return [entry.key in spec.sensors and issubclass(entry.block, Sensor) and entry.key not in read for entry in order]
 

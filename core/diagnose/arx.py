@@ -8,6 +8,7 @@ The two voltages are means over their intervals, weighed as the nominal device d
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from core import voltage
@@ -17,7 +18,7 @@ from core.diagnose.hypothesis import BankParams, assumed_noise
 from core.diagnose.kalman import shuttle_memory
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored
-from core.estimation import triangle
+from core.estimation import diagonal, triangle
 from core.kernel import flush_tiny, kernel
 from core.ports import output, tap
 from core.record import Record, Vector, vector
@@ -42,6 +43,13 @@ def coefficients(device: Oscillator, dt_ms: float) -> tuple[float, float, float,
 def coefficients_of(params: Any, context: Context) -> list[tuple[float, float, float, float]]:
     """Return the coefficients of every hypothesis."""
     return [coefficients(item.oscillator(context.device), context.dt_ms) for item in params.hypotheses]
+
+
+def put_at_hypotheses(banks: Iterable[Estimator], params: Any, context: Context) -> None:
+    """Let the estimator of every hypothesis begin there."""
+    for bank, theta in zip(banks, coefficients_of(params, context), strict=False):
+        bank.theta[:] = theta
+        bank.covariance[:] = diagonal(SIZE, params.initial_covariance)
 
 
 @kernel

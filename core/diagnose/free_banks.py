@@ -12,15 +12,15 @@ from core.diagnose.arx import (
     Estimator,
     WeighedBank,
     between_updates,
-    coefficients_of,
     gather_voltage,
     judge,
+    put_at_hypotheses,
     regress,
     unexplained,
 )
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import take_floored_softmax, winner_of
-from core.estimation import diagonal, estimate
+from core.estimation import estimate
 from core.record import Records, Vector, several, vector
 
 
@@ -85,9 +85,7 @@ class FreeBanks(WeighedBank):
         """Every bank at its hypothesis, all alike."""
         s = cls.State.zeros()
         cls.fill_alike(s, params)
-        for i, theta in enumerate(coefficients_of(params, context)):
-            s.banks[i].theta[:] = theta
-            s.banks[i].covariance[:] = diagonal(SIZE, params.initial_covariance)
+        put_at_hypotheses(s.banks, params, context)
         return s
 
     @staticmethod

@@ -12,16 +12,16 @@ from core.diagnose.arx import (
     Estimator,
     WeighedBank,
     between_updates,
-    coefficients_of,
     gather_voltage,
     judge,
+    put_at_hypotheses,
     regress,
     unexplained,
 )
 from core.diagnose.hypothesis import assumed_noise
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import take_floored_softmax
-from core.estimation import diagonal, estimate
+from core.estimation import estimate
 from core.kernel import flush_tiny
 from core.noise import key, normal
 from core.record import Records, Vector, several, vector
@@ -92,9 +92,7 @@ class ReferenceBanks(WeighedBank):
         """Every bank at its hypothesis, every record at rest."""
         s = cls.State.zeros()
         cls.fill_alike(s, params)
-        for i, theta in enumerate(coefficients_of(params, context)):
-            s.banks[i].theta[:] = theta
-            s.banks[i].covariance[:] = diagonal(SIZE, params.initial_covariance)
+        put_at_hypotheses(s.banks, params, context)
         return s
 
     @staticmethod
