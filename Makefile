@@ -4,6 +4,8 @@
 .DELETE_ON_ERROR:
 SHELL := /bin/sh
 ARGS ?=
+# Packages come without bytecode; where Python may not keep any, every start compiles them anew, for seconds.
+unexport PYTHONDONTWRITEBYTECODE
 
 PYTHON_STAMP  := .venv/.locked
 KERNEL_STAMP  := .venv/.kernels

@@ -107,6 +107,11 @@ class Oscillator:
         return float((self.stiffness / self.mass) ** 0.5)
 
     @property
+    def in_air(self) -> bool:
+        """Whether the air around it damps it; a transfer function is no resonator and has none."""
+        return self.time_unit_ms == 0.0
+
+    @property
     def damping_ratio(self) -> float:
         """Damping ratio."""
         return float(self.damping / (2.0 * (self.stiffness * self.mass) ** 0.5))
@@ -144,6 +149,10 @@ class Context:
         Whether the reference drives the plant between samples.
     limit_v : float
         Limit of the drive to either side.
+    limit_un : float
+        The same for a plant with axes, whose drive is a force.
+    axis : str
+        The axis the block stands at, if it stands at one.
     tone_hz : float
         Frequency of the reference, 0 if it has none.
     sensors : mapping of str to BlockParams
@@ -163,6 +172,8 @@ class Context:
     sensor_every: int = 1
     analogue: bool = False
     limit_v: float = 30.0
+    limit_un: float = 0.0
+    axis: str = ""
     tone_hz: float = 0.0
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
 
@@ -177,6 +188,9 @@ class Block:
     family: ClassVar[str]
     name: ClassVar[str]
     title: ClassVar[str]
+    group: ClassVar[str] = ""
+    place: ClassVar[int] = 1000
+    """Where lists for people have the block: under which heading, and in which order, the usual first."""
     changes: ClassVar[str] = ""
     shows: ClassVar[str] = ""
     suggested: ClassVar[float | None] = None
@@ -191,6 +205,17 @@ class Block:
     equations: ClassVar[tuple[Equation, ...]] = ()
     weaknesses: ClassVar[tuple[str, ...]] = ()
     """Where the block is known to be weak, in plain sentences with figures; read before it is trusted."""
+    axes: ClassVar[tuple[str, ...] | None] = ()
+    """Of a plant: axes it moves along, none for one displacement. Of another block: axes it needs, None for any."""
+    per_axis: ClassVar[bool] = False
+    """Whether the board makes one instance for each axis of the plant."""
+    slot: ClassVar[str] = ""
+    """Of a controller: the slot it stands in."""
+    slots: ClassVar[dict[str, str]] = {"": "open_loop"}
+    """Of a plant: its slots, each with the controller that usually drives; ``controller.kind`` means the last."""
+    generators: ClassVar[dict[str, str]] = {}
+    """Of a plant with axes: what comes from outside besides its forces, and the family of each."""
+    usual_sensor: ClassVar[str] = "ideal"
     lengths: ClassVar[tuple[str, ...]] = ()
     """Parameters that set the length of the tail of ``State``; none of them may change while the board runs."""
     every_tick: ClassVar[bool] = False
@@ -215,6 +240,15 @@ class Block:
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:  # noqa: ARG003 (most blocks suit every device)
         """Say why the block cannot be on a bench with this device and reference model; nothing when it can."""
         return ""
+
+    @classmethod
+    def fits(cls, axes: tuple[str, ...]) -> bool:
+        """Say whether the block goes with a plant that moves along these axes."""
+        if cls.per_axis:
+            return bool(axes)
+        if cls.axes is None:
+            return True
+        return set(cls.axes) <= set(axes) if cls.axes else not axes
 
     @classmethod
     def rests(cls, params: Any) -> bool:  # noqa: ARG003 (most blocks never rest)

@@ -7,6 +7,7 @@ the same text for the same value.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import ROUND_HALF_UP, Context, Decimal
@@ -96,6 +97,23 @@ def format_in(value: float, unit: str, decimals: int) -> str:
     return _with_unit(format_number(value, decimals), unit_text(unit)) if math.isfinite(value) else NOTHING
 
 
+def format_percent(share: float, decimals: int = 1) -> str:
+    """Write a share as a percentage; one close to 0 or 100 % keeps the digits that tell it from them."""
+    return _part(share * 100.0, 100.0, "%", decimals)
+
+
+def format_share(share: float, decimals: int = 4) -> str:
+    """Write a share as a part of one, told from 0 and 1 in the same way."""
+    return _part(share, 1.0, "", decimals)
+
+
+def format_figure(metric: str, value: float, digits: int = 4) -> str:
+    """Write a measured figure by the name of its metric; what is whole, such as a count, is written whole."""
+    if metric.endswith("_fraction"):
+        return format_share(value, digits)
+    return format_number(value, 0) if float(value).is_integer() else format_si(value, "", digits)
+
+
 def format_count(count: float, noun: str) -> str:
     """Write a count with its noun, in the singular or the plural."""
     return _with_unit(format_number(count, 0), noun if abs(count) == 1 else f"{noun}s")
@@ -113,15 +131,29 @@ def unit_text(unit: str) -> str:
     """Return a unit the way people write it; numbers without one, and mixed vectors, have none."""
     if unit in ("", "1", "mixed"):
         return ""
-    parts = unit.replace("*", "·").replace(" ", "·").replace("^2", "²").replace("^3", "³")
-    for micro in ("um", "us", "uN", "uV"):
-        parts = parts.replace(micro, "µ" + micro[1:])
-    return parts
+    parts = re.sub(r"\bu(?=[A-Za-z])", "µ", unit.replace("rt h", "√h").replace("rtHz", "√Hz"))
+    return parts.replace("*", "·").replace(" ", "·").replace("^2", "²").replace("^3", "³")
 
 
 def round_to(value: float, digits: int) -> float:
     """Round a value to a number of significant digits; a half goes away from zero."""
     return float(Context(prec=digits, rounding=ROUND_HALF_UP).create_decimal(Decimal(value)))
+
+
+def _part(part: float, whole: float, unit: str, decimals: int) -> str:
+    """Write a part of a whole; one that would read as none or all of it gets up to two more decimals, then a bound."""
+    if not math.isfinite(part):
+        return NOTHING
+    ends, most = (0.0, whole), decimals + 2
+    for kept in range(decimals, most + 1):
+        if part in ends or float(_fixed(part, kept)) not in ends:
+            return format_in(part, unit, kept)
+    if not 0.0 <= part <= whole:
+        return format_in(part, unit, decimals)
+    least = 10.0**-most
+    if part < whole / 2.0:
+        return f"<{SPACE}{format_in(least, unit, most)}"
+    return f">{SPACE}{format_in(whole - least, unit, most)}"
 
 
 def _plain(size: float) -> tuple[float, str] | None:

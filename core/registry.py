@@ -15,7 +15,7 @@ from core.block import LOOP, Block, BlockParams, Equation
 from core.errors import unknown
 from core.ports import Port
 
-FAMILIES = ("reference", "plant", "sense", "control", "identify", "diagnose", "faults", LOOP)
+FAMILIES = ("reference", "rate", "plant", "sense", "control", "identify", "diagnose", "readout", "faults", LOOP)
 
 
 class PortCard(BaseModel):
@@ -60,11 +60,15 @@ class BlockCard(BaseModel):
     family: str
     name: str
     title: str
+    group: str
     summary: str
     changes: str | None
     shows: str | None
     suggested: float | None
     weaknesses: list[str]
+    axes: list[str] | None
+    per_axis: bool
+    slot: str
     equations: list[EquationCard]
     parameters: list[ParameterCard]
     inputs: list[PortCard]
@@ -131,11 +135,13 @@ def block(family: str, name: object, field: str = "") -> type[Block]:
     if not isinstance(name, str) or name not in known:
         words = {
             "reference": "reference",
+            "rate": "angular rate",
             "plant": "plant model",
             "sense": "sensor",
             "control": "controller",
             "identify": "identifier",
             "diagnose": "diagnoser",
+            "readout": "read-out",
             "faults": "fault",
         }
         raise unknown(words.get(family, family), name, known, field)
@@ -143,9 +149,9 @@ def block(family: str, name: object, field: str = "") -> type[Block]:
 
 
 def catalog(family: str | None = None) -> list[BlockCard]:
-    """Return the cards of one family, or of all."""
+    """Return the cards of one family, or of all, in the order in which people are shown them."""
     chosen = FAMILIES if family is None else (family,)
-    return [card(entry) for name in chosen for entry in blocks(name).values()]
+    return [card(entry) for name in chosen for entry in sorted(blocks(name).values(), key=lambda b: b.place)]
 
 
 def equation_card(e: Equation) -> EquationCard:
@@ -164,11 +170,15 @@ def card(entry: type[Block]) -> BlockCard:
         family=entry.family,
         name=entry.name,
         title=entry.title,
+        group=entry.group,
         summary=" ".join((entry.__doc__ or "").strip().split("\n\n")[0].split()),
         changes=entry.changes or None,
         shows=entry.shows or None,
         suggested=entry.suggested,
         weaknesses=list(entry.weaknesses),
+        axes=None if entry.axes is None else list(entry.axes),
+        per_axis=entry.per_axis,
+        slot=entry.slot,
         equations=[equation_card(equation) for equation in entry.equations],
         parameters=parameter_cards(entry.Params),
         inputs=[_port(port) for port in entry.inputs],

@@ -7,6 +7,8 @@ initial covariances depend on units, and in metres they would have to be of the 
 
 from __future__ import annotations
 
+import math
+
 EPSILON_0 = 8.8541878128e-12
 """Permittivity of vacuum, F/m (CODATA 2018)."""
 
@@ -22,6 +24,15 @@ UN_UM_PER_N_M = 1.0
 UM_PER_M = 1e6
 MS_PER_S = 1e3
 FF_PER_F = 1e15
+PM_PER_UM = 1e6
+DEG_PER_RAD = 180.0 / math.pi
+RAD_MS_PER_DEG_S = math.pi / 180.0 / MS_PER_S
+"""Angular rate: degrees per second to radians per millisecond."""
+DEG_H_PER_DEG_S = 3600.0
+DEG_RT_H_PER_DEG_RT_S = 60.0
+"""Angle random walk: 1 deg/rt s is 1 deg/s/rt Hz, and an hour has 60^2 s."""
+DEG_H_RT_H_PER_DEG_S_RT_S = 216e3
+"""Rate random walk: 1 deg/s/rt s = 3600 deg/h * 60 / rt h."""
 
 
 def mass_mg(mass_kg: float) -> float:
@@ -53,3 +64,36 @@ def thermal_force_un(temperature_k: float, dt_ms: float) -> float:
     per_si_damping: float = 2.0 * BOLTZMANN * temperature_k / (dt_ms / MS_PER_S)
     in_newton_squared_per_internal = per_si_damping / UN_MS_UM_PER_NS_M
     return float(UN_PER_N * in_newton_squared_per_internal**0.5)
+
+
+def um_of_pm(pm: float) -> float:
+    """Picometres to micrometres, or nm/s to um/ms."""
+    return pm * 1e-6
+
+
+def noise_of_sample(density: float, dt_ms: float) -> float:
+    """Return the standard deviation of a sample of noise that is white up to half the sample rate; unit per rtHz."""
+    return float(density * (0.5 * MS_PER_S / dt_ms) ** 0.5)
+
+
+def thermal_density_un(temperature_k: float) -> float:
+    r"""Root of the one-sided density of the thermomechanical force per root of damping, uN / sqrt(Hz uN ms/um).
+
+    It is :math:`\sqrt{4k_BT\beta}`, which is also the standard deviation of that force held over half a second.
+    """
+    return thermal_force_un(temperature_k, 0.5 * MS_PER_S)
+
+
+def rate_rad_ms(deg_per_s: float) -> float:
+    """deg/s to rad/ms."""
+    return deg_per_s * RAD_MS_PER_DEG_S
+
+
+def rate_deg_s(rad_per_ms: float) -> float:
+    """rad/ms to deg/s."""
+    return rad_per_ms / RAD_MS_PER_DEG_S
+
+
+def hz_of_rad_ms(rad_per_ms: float) -> float:
+    """Angular frequency in rad/ms to a frequency in Hz."""
+    return MS_PER_S * rad_per_ms / (2.0 * math.pi)

@@ -83,7 +83,14 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
         Where.
     seed : int
         Of the draw.
+
+    Raises
+    ------
+    InputError
+        For a device without mass, or one that is driven by forces.
     """
+    if spec.device.two_axes is not None:
+        raise InputError("is driven by forces along two axes, so nothing is a displacement per volt", "device.id")
     nominal = parameters(spec)
     if spec.device.geometry is None:
         limits = {name: ((1 - TOLERANCE) * value, value, (1 + TOLERANCE) * value) for name, value in nominal.items()}
@@ -112,9 +119,9 @@ def process(spec: Spec, draws: int, seed: int) -> Spread:
     InputError
         Without a drawing, or if a beam or a gap vanishes in the process.
     """
-    if spec.device.geometry is None:
-        raise InputError("has no drawing to vary", "device.id", "choose lcr-350")
-    spread = _shares(spec.device.geometry, draws, seed)
+    if spec.device.drawn_resonator is None:
+        raise InputError("has no drawing of a resonator to vary", "device.id", "choose lcr-350")
+    spread = _shares(spec.device.drawn_resonator, draws, seed)
     nominal, force = parameters(spec), abs(spec.device.signed_force_n_per_v)
     if force > 0.0:
         nominal["force"] = force

@@ -6,10 +6,16 @@ import contextlib
 import logging
 import os
 import tempfile
+import time
 from functools import cache
 from pathlib import Path
 
 from core.kernel_cache import keep_on
+
+COMPLETE = "complete-"
+"""Beginning of the name of the file that marks all kernels of a version as kept."""
+KEPT_S = 30 * 24 * 3600.0
+"""How long a kernel is kept after its last use."""
 
 
 class Folder:
@@ -19,11 +25,15 @@ class Folder:
         self._path = path
 
     def get(self, name: str) -> bytes | None:
-        """Return a kernel, if it is there."""
+        """Return a kernel, if it is there; its time of change is that of its last use."""
+        path = self._path / name
         try:
-            return (self._path / name).read_bytes()
+            code = path.read_bytes()
         except OSError:
             return None
+        with contextlib.suppress(OSError):
+            os.utime(path)
+        return code
 
     def put(self, name: str, code: bytes) -> None:
         """Keep a kernel, whole or not at all."""
@@ -31,6 +41,19 @@ class Folder:
             with tempfile.NamedTemporaryFile(dir=self._path, delete=False) as part:
                 part.write(code)
             os.replace(part.name, self._path / name)
+
+
+def prune(path: Path) -> None:
+    """Delete the kernels nobody has used for a month; a version may miss one of them, so none counts as complete."""
+    oldest, pruned = time.time() - KEPT_S, False
+    for file in path.iterdir():
+        with contextlib.suppress(OSError):  # another process was faster
+            if file.stat().st_mtime < oldest:
+                file.unlink()
+                pruned = True
+    if pruned:
+        for mark in path.glob(f"{COMPLETE}*"):
+            mark.unlink(missing_ok=True)
 
 
 @cache

@@ -1,6 +1,7 @@
 """Compiles the kernels that are not kept yet, on all cores.
 
-``python -m scenarios.kernels`` prints its progress. All processes load the kernels that one has compiled.
+``python -m scenarios.kernels`` prints its progress, then deletes the kernels that nobody has used for a month. All
+processes load the kernels that one has compiled.
 """
 
 from __future__ import annotations
@@ -21,16 +22,18 @@ from core.board.history import History
 from core.board.rows import Rows
 from core.board.wiring import wire
 from core.ports import RESERVED
-from scenarios.kernel_cache import folder
+from scenarios.kernel_cache import COMPLETE, folder, prune
 from scenarios.key import code_version
 from scenarios.library import get
 from scenarios.run import build
 
-HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference")
+HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference", "rate", "readout")
 """Families in the order of compilation, so that no core still has a long one at the end."""
 FIRST_BENCH = "first-look"
 NICE = 10
 """How far compiling steps back behind benches that run."""
+LINE_EVERY = 10
+"""Kernels from one line of progress to the next, where there is no terminal to write over the last one."""
 LOOP = ("", "loop")
 """The task that compiles the kernels every bench needs beside its blocks."""
 
@@ -87,25 +90,31 @@ def _compile(task: Task) -> None:
 def complete() -> Path | None:
     """Return the file that marks all kernels of this version as kept, or None where no kernels are kept."""
     path = folder()
-    return path / f"complete-{code_version()}" if path is not None else None
+    return path / f"{COMPLETE}{code_version()}" if path is not None else None
 
 
 def main() -> None:
     """Compile all kernels, those of the first bench only with ``first``, ``behind`` benches that run."""
-    sys.dont_write_bytecode = False  # packages come without bytecode, and some environments never write it
     start = time.monotonic()
     first = "first" in sys.argv
     if "behind" in sys.argv and os.name == "posix":
         os.nice(NICE)
 
+    terminal = sys.stdout.isatty()
+
     def told(count: int, total: int) -> None:
-        sys.stdout.write(f"\rCompiling kernels: {count} of {total}")
-        sys.stdout.flush()
+        if terminal or count % LINE_EVERY == 0 or count == total:
+            time_taken = f", {time.monotonic() - start:.1f} s" if count == total else ""
+            text = f"Compiling kernels: {count} of {total}{time_taken}"
+            sys.stdout.write(f"\r{text}" if terminal else f"{text}\n")
+            sys.stdout.flush()
 
     compile_all(tasks(first_bench_only=first), told)
-    sys.stdout.write(f", {time.monotonic() - start:.1f} s\n")
+    if terminal:
+        sys.stdout.write("\n")
     done = complete()
     if done is not None and not first:
+        prune(done.parent)  # those of this version have just been used, every single one
         done.touch()
 
 

@@ -18,6 +18,7 @@ from core.board.observer import cautions
 from core.board.parse import changed
 from core.errors import InputError
 from core.signals import Signal, SignalTable
+from scenarios.measure import rate
 from scenarios.measure.metrics import device_metrics, measure
 from scenarios.measure.verdicts import TRACED_VERDICTS
 from scenarios.schema import Scenario
@@ -150,8 +151,8 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
         spec = changed(spec, {"seed": seed})
         twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
     board = make(spec, twins, compiled=compiled)
-    for position, event in enumerate(scenario.head.events):
-        for command in event.commands():
+    for position, commands in enumerate(scenario.events):
+        for command in commands:
             try:
                 board.apply(command, "scenario")
             except InputError as error:
@@ -234,7 +235,8 @@ def _figures(
 ) -> dict[str, float]:
     """Return the figures of a board from the trace, or those of a twin from the trace of all boards."""
     table = signals or board.signals
-    names = [*TRACED_FIGURES, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
+    moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
+    names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]
     known = set(table.names)
     names = [name for name in names if prefix + name in known]

@@ -7,11 +7,11 @@ from typing import Any, Literal, Self
 import tomlkit
 from pydantic import Field, ValidationError, model_validator
 
-from core.board.commands import LONGEST_MS, Command, Timed, parse_command
+from core.board.commands import LONGEST_MS, Command, parse_event
 from core.board.document import Document
 from core.board.ensemble import twin_specs
 from core.board.parse import parse
-from core.board.spec import FIELDS
+from core.board.spec import fields
 from core.errors import InputError, from_validation, unknown_field
 from core.format import format_short
 from core.nesting import read_toml
@@ -21,55 +21,6 @@ from scenarios.studies import parse_study
 
 Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
 MAX_SAMPLES = 200_000_000
-
-
-class Event(Table):
-    """Something that happens: a fault, a healing, new values, another controller; several at once if it says so."""
-
-    at_sample: int | None = Field(None, ge=0)
-    at_ms: float | None = Field(None, ge=0, le=LONGEST_MS)
-    when: str | None = None
-    heal: list[str] | Literal["all"] | None = None
-    fault: str | None = None
-    severity: float | None = None
-    profile: dict[str, Any] | None = None
-    parameters: dict[str, Any] | None = None
-    set: dict[str, Any] | None = None
-    switch: str | None = None
-    cold: bool = False
-    reset_trip: bool = False
-
-    @model_validator(mode="after")
-    def _says_something(self) -> Self:
-        if (self.fault is None) != (self.severity is None):
-            raise ValueError("fault and severity go together")
-        if self.profile is not None and self.fault is None:
-            raise ValueError("profile belongs to a fault")
-        if self.parameters is not None and self.fault is None:
-            raise ValueError("parameters belong to a fault")
-        if not (self.heal or self.fault or self.set or self.switch or self.reset_trip):
-            raise ValueError("needs one of fault, heal, set, switch, reset_trip")
-        if self.at_sample is None and self.at_ms is None and self.when is None:
-            raise ValueError("needs one of at_sample, at_ms, when")
-        return self
-
-    def commands(self) -> list[Command]:
-        """Return the commands of the event, in the order they take effect."""
-        commands: list[dict[str, Any]] = []
-        if self.reset_trip:
-            commands.append({"kind": "reset_trip"})
-        if self.heal:
-            commands.append({"kind": "heal", "faults": self.heal})
-        if self.fault is not None:
-            profile = {"profile": self.profile} if self.profile is not None else {}
-            chosen = {"parameters": self.parameters} if self.parameters else {}
-            commands.append({"kind": "inject", "fault": self.fault, "severity": self.severity, **profile, **chosen})
-        if self.set:
-            commands.append({"kind": "set", "values": self.set})
-        if self.switch:
-            commands.append({"kind": "switch", "controller": self.switch, "cold": self.cold})
-        moment = self.model_dump(include=set(Timed.model_fields), exclude_none=True)
-        return [parse_command({**command, **moment}) for command in commands]
 
 
 class Expectation(Table):
@@ -128,7 +79,7 @@ class Head(Table):
     verdict: Verdict | None = None
     samples: int | None = Field(None, ge=1, le=MAX_SAMPLES)
     duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
-    events: list[Event] = Field([], max_length=100_000)
+    events: list[dict[str, Any]] = Field([], max_length=100_000)
     expect: list[Expectation] = Field([], max_length=1000)
     metrics: Stretch = Stretch()
     study: dict[str, Any] | None = None
@@ -154,6 +105,8 @@ class Scenario:
         The bench of every twin, checked.
     study : tuple, optional
         The study to make of the bench instead of a run, and its parameters.
+    events : list of list of Command
+        The commands of every event, in the order they take effect.
     """
 
     def __init__(self, document: Document) -> None:
@@ -165,21 +118,21 @@ class Scenario:
         try:
             self.head = Head.model_validate(head)
         except ValidationError as error:
-            raise from_validation(error, {"": (*HEAD, *FIELDS), "metrics": [*Stretch.model_fields]}) from None
+            raise from_validation(error, {"": (*HEAD, *fields()), "metrics": [*Stretch.model_fields]}) from None
         if self.head.samples is not None and self.head.duration_ms is not None:
             raise InputError("give samples or duration_ms, not both", "duration_ms")
-        unknown = [key for key in self.bench if key not in FIELDS]
+        unknown = [key for key in self.bench if key not in fields()]
         if unknown:
-            raise unknown_field(unknown[0], (*HEAD, *FIELDS), unknown[0])
+            raise unknown_field(unknown[0], (*HEAD, *fields()), unknown[0])
         self.spec = parse(self.bench)
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
         self.twins = twin_specs(self.bench)
         self.study = parse_study(self.head.study) if self.head.study is not None else None
-        self.commands: list[Command] = []
+        self.events: list[list[Command]] = []
         for position, event in enumerate(self.head.events):
             try:
-                self.commands += event.commands()
+                self.events.append(_commands(event))
             except InputError as error:
                 raise error.under(f"events.{position}") from None
 
@@ -209,3 +162,11 @@ class Scenario:
     def toml(self) -> str:
         """Return the scenario as TOML."""
         return tomlkit.dumps(self.document)
+
+
+def _commands(event: Document) -> list[Command]:
+    """Return the commands of an event; unlike what is done by hand it must say when."""
+    commands = parse_event(event)
+    if all(moment is None for moment in (commands[0].at_sample, commands[0].at_ms, commands[0].when)):
+        raise InputError("needs one of at_sample, at_ms, when")
+    return commands

@@ -38,7 +38,7 @@ def percentile(values: list[float], share: float) -> float:
 
 COMMANDS: dict[str, dict[str, object] | None] = {
     "time_scale": None,
-    "set": {"kind": "set", "values": {"controllers.mrac.adaptation_gain": 1.0}},
+    "set": {"set": {"controllers.mrac.adaptation_gain": 1.0}},
 }
 """Commands of watchers by kind; they leave the bench as it is. The time scale is that of the bench."""
 

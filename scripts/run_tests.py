@@ -1,6 +1,7 @@
-"""Run every check and test, one after the other, and say plainly how each went.
+"""Run every check and test, and say plainly how each went.
 
-``run_tests.py quick`` leaves out slow tests and the browser. A failing step does not stop the next ones.
+``run_tests.py quick`` leaves out slow tests and the browser. A failing step does not stop the next ones. Steps that
+need one core run beside the tests of Python, which wait a third of their time for servers and other processes.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import os
 import re
 import subprocess
 import sys
+import threading
 import time
 from collections import Counter
 from dataclasses import dataclass, field
@@ -24,18 +26,21 @@ CLOSING = re.compile(r"^(=+ .*\bin [\d.]+s.*=+|\s*Tests\s+.*\(\d+\)|\s+\d+ (pass
 
 @dataclass
 class Step:
-    """One command; ``tests`` when it prints how many tests passed."""
+    """One command; ``tests`` when it prints how many tests passed, ``aside`` when it may run beside others."""
 
     name: str
     command: list[str]
     tests: bool = False
+    aside: bool = False
     code: int = 0
     seconds: float = 0.0
     closing: list[str] = field(default_factory=list)
 
     def run(self) -> None:
-        """Run the command, showing its output as it comes and keeping its closing lines."""
-        print(f"\n== {self.name}: {' '.join(self.command)}", flush=True)
+        """Run the command, showing its output as it comes, or all at the end if it runs aside; keep closing lines."""
+        said = [f"\n== {self.name}: {' '.join(self.command)}\n"]
+        if not self.aside:
+            print(*said, end="", flush=True)
         start = time.monotonic()
         with subprocess.Popen(
             self.command,
@@ -48,12 +53,17 @@ class Step:
         ) as process:
             assert process.stdout is not None
             for line in process.stdout:
-                print(line, end="", flush=True)
+                if self.aside:
+                    said.append(line)
+                else:
+                    print(line, end="", flush=True)
                 plain = COLOUR.sub("", line).rstrip()
                 if self.tests and CLOSING.match(plain):
                     self.closing.append(plain.strip())
         self.code = process.returncode
         self.seconds = time.monotonic() - start
+        if self.aside:
+            print("".join(said), end="", flush=True)
         if self.tests and self.code == 0 and not self.count()["passed"]:
             print(f"{self.name}: no test was run")
             self.code = 1
@@ -73,12 +83,19 @@ def steps(quick: bool) -> list[Step]:
         Step("format", [f"{BIN}ruff", "format", "--check", "."]),
         Step("lint", [f"{BIN}ruff", "check", "."]),
         Step("imports", [f"{BIN}lint-imports"]),
-        Step("types", [f"{BIN}mypy"]),
-        Step("page-check", [*NPM, "run", "check"]),
-        Step("page", [*NPM, "run", "test"], tests=True),
-        Step("python", [f"{BIN}pytest", "-n", "2", "--dist", "worksteal", *some], tests=True),
+        Step("types", [f"{BIN}mypy"], aside=True),
+        Step("page-check", [*NPM, "run", "check"], aside=True),
+        Step("page", [*NPM, "run", "test"], tests=True, aside=True),
+        # more processes than cores, because they wait for servers and other processes
+        Step("python", [f"{BIN}pytest", "-n", "3", "--dist", "worksteal", *some], tests=True),
     ]
     return listed if quick else [*listed, Step("browser", [*NPM, "run", "e2e"], tests=True)]
+
+
+def run_all(several: list[Step]) -> None:
+    """Run steps one after the other."""
+    for step in several:
+        step.run()
 
 
 def main() -> int:
@@ -91,8 +108,11 @@ def main() -> int:
         os.environ["CHROMIUM"] = browser.stdout.strip()
         if browser.returncode:
             print("No Chromium could be found or installed, so the browser tests will fail.", file=sys.stderr)
-    for step in todo:
-        step.run()
+    beside = threading.Thread(target=run_all, args=([step for step in todo if step.aside],))
+    beside.start()
+    run_all([step for step in todo if not step.aside and step.name != "browser"])
+    beside.join()
+    run_all([step for step in todo if step.name == "browser"])  # with the machine to itself
 
     print("\n== summary")
     total: Counter[str] = Counter(passed=0, failed=0, skipped=0)

@@ -18,7 +18,7 @@ from typer.core import TyperGroup
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.errors import InputError, one_line
-from core.format import format_in, format_short, format_si
+from core.format import format_figure, format_in, format_short, format_si, unit_text
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
@@ -110,9 +110,9 @@ def show_run(summary: dict[str, Any]) -> None:
         say(f"  warning  {text}")
     for name, value in summary["metrics"].items():
         spread = summary.get("metrics_std", {}).get(name)
-        say(f"  {name:<44} {value:.6g}" + (f" ± {spread:.2g}" if spread else ""))
+        say(f"  {name:<44} {format_figure(name, value, 6)}" + (f" ± {format_short(spread, '', 2)}" if spread else ""))
     for entry in summary["expectations"]:
-        measured = "-" if entry["measured"] is None else f"{entry['measured']:.6g}"
+        measured = "-" if entry["measured"] is None else format_figure(entry["metric"], entry["measured"], 6)
         say(f"  {'ok  ' if entry['ok'] else 'MISS'} {entry['metric']} {entry['expected']}: {measured}")
 
 
@@ -173,7 +173,7 @@ def gallery(
             for text in summary["warnings"]:
                 say(f"       warning: {text}")
             for entry in summary["expectations"]:
-                measured = "-" if entry["measured"] is None else f"{entry['measured']:.5g}"
+                measured = "-" if entry["measured"] is None else format_figure(entry["metric"], entry["measured"], 6)
                 say(f"       {entry['metric']:<44} {entry['expected']:<18} {measured}")
     raise typer.Exit(0 if all(summary["ok"] for summary in summaries) else 1)
 
@@ -234,7 +234,8 @@ def show_block(card: BlockCard) -> None:
     for equation in card.equations:
         say(f"  {equation.label}: {equation.latex}" + (f"   [{equation.source}]" if equation.source else ""))
     for entry in card.parameters:
-        limits = " .. ".join("" if bound is None else f"{bound:g}" for bound in (entry.minimum, entry.maximum))
+        bounds = (entry.minimum, entry.maximum)
+        limits = " .. ".join("" if bound is None else format_short(bound, "", 6) for bound in bounds)
         live = "live" if entry.live else "at reset"
         allowed = (
             f" one of {', '.join(entry.choices)}" if entry.choices else f" [{limits}]" if limits.strip(" .") else ""
@@ -242,7 +243,7 @@ def show_block(card: BlockCard) -> None:
         default = (
             "auto" if entry.default is None else entry.default if not isinstance(entry.default, list | dict) else "..."
         )
-        say(f"    {entry.name} = {default} {entry.unit}{allowed} ({live}): {entry.meaning}")
+        say(f"    {entry.name} = {default} {unit_text(entry.unit)}{allowed} ({live}): {entry.meaning}")
 
 
 @app.command(name="catalog")
@@ -273,9 +274,10 @@ def bench(as_json: JsonOption = False) -> None:
         return
     for figure in report["figures"]:
         mark = "ok  " if figure["ok"] else "MISS"
-        say(f"{mark} {figure['name']:<60} {figure['value']:>10.4g} {figure['unit']:<3} {figure['target']}")
+        value, unit = format_si(figure["value"], ""), unit_text(figure["unit"])
+        say(f"{mark} {figure['name']:<60} {value:>10} {unit:<3} {figure['target']}")
     say("cost of each block, ns per tick:")
-    say("  " + "  ".join(f"{name} {value:g}" for name, value in report["blocks_ns"].items()))
+    say("  " + "  ".join(f"{name} {format_si(value, '')}" for name, value in report["blocks_ns"].items()))
     if report["missing"]:
         say(report["missing"])
 

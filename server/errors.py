@@ -224,16 +224,18 @@ class CatchAll:
             started = True
             try:
                 await send(message)
-            except (OSError, RuntimeError):
+            except (OSError, RuntimeError) as error:
                 if scope["type"] != "websocket":
                     raise
                 # The line is cut, or the web server has closed it because the client broke its rules.
-                raise WebSocketDisconnect(1006) from None
+                raise WebSocketDisconnect(1006) from error
 
         try:
             await self._app(scope, receive, watched)
-        except WebSocketDisconnect:
+        except WebSocketDisconnect as gone:
             log.info("a client of %s has gone before it was answered", scope["path"])
+            if isinstance(gone.__cause__, OSError):
+                raise gone.__cause__ from None  # so that the web server does not miss the answer
         except Exception:
             log.exception("unexpected error in %s %s", scope["type"], scope.get("path", ""))
             if started or scope["type"] != "http":

@@ -47,31 +47,69 @@ RICH: dict[str, Any] = {
 }
 """A bench with everything on it."""
 
-STORY: list[dict[str, Any]] = [
-    {"kind": "inject", "fault": "added_mass", "severity": 0.05, "at_sample": 20},
+AXES_RICH: dict[str, Any] = {
+    "sample_rate_khz": 100,
+    "seed": 3,
+    "device": {"id": "gyro-a"},
+    "plant": {"model": "gyroscope_pair", "initial_x_um": 0.5},
+    "rate": {"kind": "constant", "deg_per_s": 50.0, "angle_random_walk_deg_rt_h": 0.1},
+    "slots": {"drive": "drive_tracking"},
+    "controller": {"kind": "force_to_rebalance"},
+    "sensor": {"kind": "pick_off", "noise_pm_rthz": 0.05, "quantum_pm": 1.0},
+    "drive": {"quantum_un": 0.001},
+    "diagnosers": {
+        "kalman": {"kind": "axes_bank"},
+        "slow": {
+            "kind": "axes_bank",
+            "every": 2,
+            "hypotheses": [{"name": "healthy"}, {"name": "q+500", "quadrature_dps": 500.0}],
+        },
+    },
+    "readouts": {"allan": {"kind": "allan", "interval_ms": 0.1}},
+}
+"""A bench of two devices with two axes each, with everything on it."""
+
+AXES_STORY: list[dict[str, Any]] = [
+    {"fault": "added_mass", "severity": 0.01, "at_sample": 20},
     {
-        "kind": "inject",
+        "fault": "stiffness",
+        "severity": 0.02,
+        "profile": {"kind": "ramp", "duration_ms": 0.4},
+        "at_sample": 30,
+    },
+    {"switch": "sense_axis_sync", "at_sample": 50},
+    {"switch": "drive_loop", "at_sample": 60},
+    {
+        "set": {"rate.angle_random_walk_deg_rt_h": 0.5, "sensors.pick_off.noise_pm_rthz": 0.1},
+        "at_sample": 70,
+    },
+    {"switch": "whole_angle", "at_sample": 90},
+    {"heal": ["added_mass"], "at_sample": 97},
+]
+"""Something of everything there."""
+
+STORY: list[dict[str, Any]] = [
+    {"fault": "added_mass", "severity": 0.05, "at_sample": 20},
+    {
         "fault": "stiffness",
         "severity": 0.2,
         "profile": {"kind": "ramp", "duration_ms": 0.4},
         "at_sample": 30,
     },
     {
-        "kind": "inject",
         "fault": "damping",
         "severity": 0.5,
         "profile": {"kind": "intermittent", "period_ms": 0.2, "duty": 0.3},
         "at_sample": 41,
     },
-    {"kind": "switch", "controller": "mrac", "at_sample": 60},
+    {"switch": "mrac", "at_sample": 60},
     {
-        "kind": "set",
-        "values": {"reference.amplitude_v": 4.0, "sensors.ideal.noise_um": 0.05},
+        "set": {"reference.amplitude_v": 4.0, "sensors.ideal.noise_um": 0.05},
         "when": "plant.velocity > 5",
     },
-    {"kind": "switch", "controller": "pid", "at_sample": 90},
-    {"kind": "heal", "faults": ["added_mass"], "at_sample": 97},
-    {"kind": "switch", "controller": "open_loop", "at_sample": 110},
+    {"switch": "pid", "at_sample": 90},
+    {"heal": ["added_mass"], "at_sample": 97},
+    {"switch": "open_loop", "at_sample": 110},
 ]
 """Something of everything, within the first ms or so."""
 
@@ -102,13 +140,13 @@ def do(board: Board, command: dict[str, Any], actor: str = "test") -> Any:
 
 def fault(name: str, severity: float, **rest: Any) -> dict[str, Any]:
     """Return the command that injects a fault."""
-    return {"kind": "inject", "fault": name, "severity": severity, **rest}
+    return {"fault": name, "severity": severity, **rest}
 
 
 def inject(board: Board, **severities: float) -> None:
     """Inject faults at this tick."""
     for fault, severity in severities.items():
-        do(board, {"kind": "inject", "fault": fault, "severity": severity})
+        do(board, {"fault": fault, "severity": severity})
 
 
 def play(board: Board, ticks: int) -> dict[str, np.ndarray]:

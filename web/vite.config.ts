@@ -10,6 +10,7 @@ export default defineConfig({
   plugins: [react()],
   server: {
     host: "127.0.0.1",
+    fs: { allow: [".", "../scenarios/report"] },
     proxy: {
       "/api": { target: board, ws: true },
       "/benches": { target: board, ws: true },

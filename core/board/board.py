@@ -10,21 +10,20 @@ import numpy as np
 
 from core.block import BlockParams
 from core.board import changes, fold, program, words
-from core.board.commands import Command, LogEntry, Trip
+from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import Document
 from core.board.instances import scored
-from core.board.log import Log
+from core.board.log import Log, LogEntry
 from core.board.observer import Observer
 from core.board.parse import parse
 from core.board.pending import Pending, Queue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
 from core.board.wiring import Wiring, wire
-from core.diagnose.hypothesis import hypotheses_of
+from core.diagnose.hypothesis import names_of
 from core.errors import InputError
 from core.loop import score
-from core.loop.guard import REASONS
 from core.signals import SignalTable
 
 CHUNK = 512
@@ -65,7 +64,8 @@ class Board:
         self.compiled = compiled
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
-        self.log = Log()
+        self.log = Log()  # a live bench puts its own in its place
+        self.done: list[Command] = []  # each with the tick at which it took effect
         self.pending = Queue()
         self.trip: Trip | None = None
         self.folds = fold.begin(self.wiring.signals.outputs)
@@ -118,8 +118,9 @@ class Board:
         for name, section in self.spec.diagnosers.items():
             if not scored(section.block):
                 continue
-            names = [item.name for item in hypotheses_of(section.params)]
-            found[name] = score.read(self.wiring.state(f"{name}.score"), names, int(self.value(f"{name}.winner")))
+            winner, unexplained = int(self.value(f"{name}.winner")), self.value(f"{name}.unexplained") != 0.0
+            names = names_of(section.params)
+            found[name] = score.read(self.wiring.state(f"{name}.score"), names, winner, unexplained)
         return found
 
     # -- time
@@ -144,7 +145,7 @@ class Board:
             for finding in self._observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
                 self.note("board", **finding)
             if ran:
-                self.used |= {self.spec.active, self.spec.measuring}
+                self.used |= {*self.spec.driving.values(), self.spec.measuring}
             done += ran
             self.tick += ran
             if why != program.DONE:
@@ -167,7 +168,7 @@ class Board:
             self._outputs[at:],
             self._taps[at:],
             self.folds,
-            wiring.index["guard.trip"],
+            wiring.trip,
             self.pending.watches(wiring.index),
         )
         return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
@@ -175,6 +176,8 @@ class Board:
     def link(self) -> None:
         """Put the addresses of the compiled steps into the table, and leave out what rests."""
         wiring = self.wiring
+        if wiring is self._linked and not wiring.is_changed:
+            return
         running = wiring.rest(self.spec)
         if wiring is self._linked and running == self._running:
             self._table[:, program.EVERY] = wiring.table[running, program.EVERY]
@@ -227,9 +230,10 @@ class Board:
                 self.note("board", "refused", f"{words.describe(entry.command)}: {error}", command=entry.command)
 
     def _do(self, command: Command, actor: str) -> LogEntry:
-        untimed = command.model_copy(update={"at_sample": None, "at_ms": None, "when": None})
-        old, new = changes.carry_out(self, untimed)
-        return self.note(actor, untimed.kind, words.describe(untimed), command=untimed, old=old, new=new)
+        old, new = changes.carry_out(self, command)
+        self.done.append(command.at(self.tick))
+        text = words.describe(command)
+        return self.note(actor, command.kind, text, command=command.at(None), old=old, new=new)
 
     # -- log
 
@@ -245,17 +249,11 @@ class Board:
         new: Any = None,
     ) -> LogEntry:
         """Write an entry of the log, at this tick unless another is named."""
-        at = self.tick if tick is None else tick
-        return self.log.add(at, at * self.dt_ms, actor, kind, text, command=command, old=old, new=new)
+        document = command.document() if command is not None else None
+        return self.log.add(self.tick if tick is None else tick, actor, kind, text, document, old, new)
 
     def _trip(self) -> None:
-        code = int(self.value("guard.trip"))
-        text, signal = REASONS[code]
-        if code == 1:
-            signal = next(
-                (name for name in ("plant.displacement", "plant.velocity") if not np.isfinite(self.value(name))),
-                f"{self.spec.active}.voltage",
-            )
+        text, signal = changes.cause(self)
         value = self.value(signal)
         reason = text.format(signal=signal)
         self.trip = Trip(
@@ -274,7 +272,7 @@ class Board:
         """Return everything the board is at this tick edge."""
         kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
         shared = {name: getattr(self, name) for name in SHARED}
-        return Checkpoint(self.tick, type(self), {**kept, **shared, "log": self.log.copy()})
+        return Checkpoint(self.tick, type(self), {**kept, **shared, "log": self.log.copy(), "done": list(self.done)})
 
     @staticmethod
     def restore(checkpoint: Checkpoint) -> Board:
@@ -287,7 +285,7 @@ class Board:
 
     def _revive(self) -> None:
         """Make what copies do not share."""
-        self.log = self.log.copy()
+        self.log, self.done = self.log.copy(), list(self.done)
         self._linked = None
         self._allocate()
         self.link()
@@ -297,10 +295,6 @@ class Board:
 
         Run headless it gives the same bits.
         """
-        done = [
-            {**words.event(entry.command), "at_sample": entry.tick}
-            for entry in self.log
-            if entry.command is not None and entry.kind not in ("scheduled", "refused")
-        ]
+        events = [command.document() for command in self.done] + [entry.event() for entry in self.pending.as_asked]
         length = {"samples": self.tick} if self.tick else {}
-        return {**copy.deepcopy(self.base), **length, "events": done + [w.event() for w in self.pending.as_asked]}
+        return {**copy.deepcopy(self.base), **length, "events": events}

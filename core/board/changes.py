@@ -9,15 +9,18 @@ from pydantic import ValidationError
 
 from core import registry
 from core.block import BlockParams
-from core.board.commands import Command, Heal, Inject, LogEntry, Set, Switch, Trip
+from core.board.commands import Command, Heal, Inject, Set, Switch, Trip
 from core.board.difference import change
-from core.board.document import as_written
+from core.board.document import CHOSEN, as_written
+from core.board.fitting import misfit
+from core.board.log import LogEntry
 from core.board.parse import changed
 from core.board.spec import Section, Spec
-from core.board.wiring import Wiring, engage, wire
+from core.board.wiring import Wiring, command_of, engage, wire
 from core.errors import InputError, from_validation, unknown
 from core.faults.fault import FaultParams
 from core.format import format_short
+from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, REASONS
 
 LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "guard")
 
@@ -43,13 +46,13 @@ class Board(Protocol):
 def check(board: Board, command: Command) -> None:
     """Refuse a command for later that could never be carried out."""
     if isinstance(command, Inject):
-        _fault_params(command, 0)
+        _fault_params(board.spec, command, 0)
     elif isinstance(command, Heal):
         _names(command)
     elif isinstance(command, Set):
-        _changed(board.spec, command.values)
+        _changed(board.spec, command.set)
     elif isinstance(command, Switch):
-        _changed(board.spec, {"controller.kind": registry.block("control", command.controller, "controller").name})
+        _changed(board.spec, switched(board.spec, command))
 
 
 def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
@@ -59,7 +62,7 @@ def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
     if isinstance(command, Heal):
         return heal(board, command)
     if isinstance(command, Set):
-        return set_values(board, command.values)
+        return set_values(board, command.set)
     if isinstance(command, Switch):
         return switch(board, command)
     return reset_trip(board)
@@ -67,29 +70,29 @@ def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
 
 def inject(board: Board, command: Inject) -> tuple[Any, Any]:
     """Put a fault on the device from this tick on."""
-    params = _fault_params(command, board.tick)
+    params = _fault_params(board.spec, command, board.tick)
     current = board.spec.faults.get(command.fault)
-    if current is not None and _same_fault(current, params):
+    old, new = current.model_dump() if current is not None else None, params.model_dump()
+    if old is not None and {**old, "start_tick": board.tick} == new:
         raise InputError(
             f"{command.fault} is already there with severity {format_short(command.severity, '')}",
             "fault",
             "heal it first, or give another severity",
             "conflict",
         )
-    old = current.model_dump() if current is not None else None
     _change(board, board.spec.with_faults({**board.spec.faults, command.fault: params}))
-    return old, params.model_dump()
+    return old, new
 
 
 def heal(board: Board, command: Heal) -> tuple[Any, Any]:
     """Take faults away at this tick."""
     names = _names(command)
-    if command.faults == "all":
+    if command.heal == "all":
         names = [name for name in names if name in board.spec.faults]
     absent = [name for name in names if name not in board.spec.faults]
     if absent:
         present = ", ".join(board.spec.faults) or "none"
-        raise InputError(f"{absent[0]} is not there to heal; present: {present}", "faults", code="conflict")
+        raise InputError(f"{absent[0]} is not there to heal; present: {present}", "heal", code="conflict")
     old = {name: board.spec.faults[name].model_dump() for name in names}
     _change(board, board.spec.with_faults({k: v for k, v in board.spec.faults.items() if k not in names}))
     return old, None
@@ -103,12 +106,13 @@ def set_values(board: Board, values: dict[str, Any]) -> tuple[Any, Any]:
 
 
 def switch(board: Board, command: Switch) -> tuple[Any, Any]:
-    """Give the drive to another controller."""
-    name = registry.block("control", command.controller, "controller").name
-    old = board.spec.active
+    """Give the drive of its slot to another controller."""
+    values = switched(board.spec, command)
+    ((path, name),) = values.items()
+    old = _get(board.spec, path)
     if name == old and not command.cold:
-        raise InputError(f"{name} drives already", "controller", "choose another, or a cold start", "conflict")
-    spec = changed(board.spec, {"controller.kind": name})
+        raise InputError(f"{name} drives already", "switch", "choose another, or a cold start", "conflict")
+    spec = changed(board.spec, values)
     _change(board, spec)
     ran_away = not np.all(np.isfinite(board.wiring.state_of(name)))
     if ran_away:  # nothing in shadow trips the board, and no number comes of what is none
@@ -119,25 +123,50 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
     return old, name
 
 
+def switched(spec: Spec, command: Switch) -> dict[str, Any]:
+    """Return the path of the slot that a controller stands in, and its name."""
+    block = registry.block("control", command.switch, "switch")
+    last = list(spec.driving)[-1]
+    path = f"slots.{block.slot}" if block.slot in spec.driving and block.slot != last else "controller.kind"
+    return {path: block.name}
+
+
 def disengage(board: Board) -> None:
     """Take the voltage off: what a trip does."""
-    for name in ("voltage", "middle", "end"):
-        board.wiring.w[board.wiring.index[f"drive.{name}"]] = 0.0
+    for instance in board.wiring.instances:
+        if instance.prefix.split(".")[0] == "drive":
+            for port in instance.block.outputs:
+                board.wiring.w[board.wiring.index[f"{instance.prefix}.{port.name}"]] = 0.0
+
+
+def cause(board: Board) -> tuple[str, str]:
+    """Return why the board stopped, in words, and the signal that says so."""
+    axes = board.spec.axes
+    axis = next((axis for axis in axes if board.value(f"guard.{axis}.trip") != 0.0), "")
+    prefix = f"guard.{axis}" if axis else "guard"
+    code = int(board.value(f"{prefix}.trip"))
+    text, signal = REASONS[code]
+    moved = (f"plant.{axis}", f"plant.{axis}_velocity") if axis else ("plant.displacement", "plant.velocity")
+    if axis:
+        signal = moved[0] if code == BEYOND_TRAVEL else f"drive.{axis}.force"
+    if code == NOT_FINITE:
+        command = command_of(board.spec, axis) if axis else f"{board.spec.active}.voltage"
+        signal = next((name for name in moved if not np.isfinite(board.value(name))), command)
+    return text, signal
 
 
 def reset_trip(board: Board) -> tuple[Any, Any]:
     """Leave the tripped state: every block starts anew, time and faults go on."""
     if board.trip is None:
-        raise InputError("the board has not tripped", "kind", code="conflict")
+        raise InputError("the board has not tripped", "reset_trip", code="conflict")
     old = board.trip.model_dump()
     fresh = wire(board.spec)
-    keep = [instance.key for instance in fresh.instances if instance.key.endswith(".score")]
-    for key in keep:
-        fresh.state_of(key)[:] = board.wiring.state_of(key)
-    index = fresh.index
-    for name in (key.removesuffix(".score") for key in keep):
-        for port in ("correct_fraction", "false_switches", "delay", "truth", "winner"):
-            fresh.w[index[f"{name}.{port}"]] = board.value(f"{name}.{port}")
+    for instance in fresh.instances:
+        if instance.key.endswith(".score"):
+            fresh.state_of(instance.key)[:] = board.wiring.state_of(instance.key)
+            for port in (*instance.block.outputs, *instance.block.taps):
+                name = f"{instance.prefix}.{port.name}"
+                fresh.w[fresh.index[name]] = board.value(name)
     board.wiring = fresh
     board.link()
     board.trip = None
@@ -146,16 +175,19 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
 
 def _names(command: Heal) -> list[str]:
     known = list(registry.blocks("faults"))
-    if command.faults == "all":
+    if command.heal == "all":
         return known
-    for name in command.faults:
+    for name in command.heal:
         if name not in known:
-            raise unknown("fault", name, known, "faults")
-    return list(command.faults)
+            raise unknown("fault", name, known, "heal")
+    return list(command.heal)
 
 
-def _fault_params(command: Inject, tick: int) -> BlockParams:
+def _fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
     block = registry.block("faults", command.fault, "fault")
+    reason = misfit(block, spec.plant.block)
+    if reason:
+        raise InputError(f"{block.name} {reason}", "fault")
     own = [name for name in block.Params.model_fields if name not in FaultParams.model_fields]
     for name in command.parameters:
         if name not in own:
@@ -167,10 +199,6 @@ def _fault_params(command: Inject, tick: int) -> BlockParams:
     except ValidationError as error:
         found = from_validation(error)
         raise (found.under("parameters") if found.field.split(".")[0] in own else found) from None
-
-
-def _same_fault(first: BlockParams, second: BlockParams) -> bool:
-    return first.model_dump(exclude={"start_tick"}) == second.model_dump(exclude={"start_tick"})
 
 
 def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:
@@ -192,11 +220,13 @@ def _check_live(spec: Spec, new: Spec) -> None:
         _check_section(key, getattr(spec, key), getattr(new, key))
     if new.device != spec.device:
         raise _not_live("device")
+    for key, section in new.generators.items():
+        _check_section(key, spec.generators[key], section)
     for key in ("controllers", "sensors"):
         before = getattr(spec, key)
         for name, section in getattr(new, key).items():
             _check_section(f"{key}.{name}", before[name], section)
-    for key in ("identifiers", "diagnosers"):
+    for key in CHOSEN:
         before, after = getattr(spec, key), getattr(new, key)
         if list(after) != list(before):
             raise _not_live(key)
@@ -211,7 +241,7 @@ def _check_section(path: str, old: Section, new: Section) -> None:
         raise _not_live(f"{path}.every")
     if old.block is not new.block:
         ports = [(port.name, port.labels) for port in (*old.block.outputs, *old.block.taps)]
-        if path.startswith(("identifiers", "diagnosers")) or ports != [
+        if path.startswith(tuple(CHOSEN)) or ports != [
             (p.name, p.labels) for p in (*new.block.outputs, *new.block.taps)
         ]:
             raise _not_live(f"{path}.kind")
@@ -229,11 +259,13 @@ def _get(spec: Spec, path: str) -> Any:
     """Return the value a path has now, defaults included."""
     head, _, leaf = path.rpartition(".")
     in_use = {"controller.kind": spec.active, "sensor.kind": spec.measuring}
+    in_use |= {f"slots.{slot}": name for slot, name in spec.driving.items()}
     if path in in_use:
         return in_use[path]
     sections: dict[str, Section] = {key: getattr(spec, key) for key in LIVE_SECTIONS}
-    for key in ("controllers", "sensors", "identifiers", "diagnosers"):
+    for key in ("controllers", "sensors", *CHOSEN):
         sections |= {f"{key}.{name}": section for name, section in getattr(spec, key).items()}
+    sections |= spec.generators
     sections["controller"] = spec.controllers[spec.active]
     sections["sensor"] = spec.sensors[spec.measuring]
     section = sections.get(head)

@@ -1,12 +1,13 @@
-"""Commands: everything that can be done to a running board, and the log of what was done."""
+"""Commands: everything that can be done to a running board, in the notation of a scenario's events."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Any, ClassVar, Literal, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from core.errors import InputError, from_validation, unknown
+from core.board.document import Document
+from core.errors import InputError, from_validation, unknown_field
 from core.faults.fault import Profile
 from core.table import Table
 
@@ -14,12 +15,13 @@ LONGEST_MS = 1e12
 """Latest moment that can be named, device time: beyond any run, and whole in samples."""
 
 
-class _Command(Table):
+class Timed(Table):
+    """When a command takes effect: now, at a sample, at a time, or once a condition holds."""
+
     model_config = ConfigDict(frozen=True)
 
-
-class Timed(_Command):
-    """When a command takes effect: now, at a sample, at a time, or once a condition holds."""
+    kind: ClassVar[str]
+    """What the log calls it."""
 
     at_sample: int | None = Field(None, ge=0, description="sample at which it takes effect")
     at_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="device time at which it takes effect")
@@ -33,89 +35,124 @@ class Timed(_Command):
             raise ValueError("takes one of at_sample, at_ms and when; only at_sample and when go together")
         return self
 
+    def at(self, sample: int | None, when: str | None = None) -> Self:
+        """Return the same command for another moment."""
+        if (self.at_sample, self.at_ms, self.when) == (sample, None, when):
+            return self
+        return self.model_copy(update={"at_sample": sample, "at_ms": None, "when": when})
+
+    def document(self) -> Document:
+        """Return the command as an event of a scenario, without what is left at its default."""
+        fields = type(self).model_fields.items()
+        said = {name for name, info in fields if getattr(self, name) != info.default}
+        return self.model_dump(mode="json", include=said)
+
+
+class ResetTrip(Timed):
+    """Leave the tripped state, with all blocks started anew."""
+
+    kind = "reset_trip"
+    reset_trip: Literal[True]
+
+
+class Heal(Timed):
+    """Take faults away."""
+
+    kind = "heal"
+    heal: list[str] | Literal["all"]
+
 
 class Inject(Timed):
     """Inject a fault, or give one that is there another severity."""
 
-    kind: Literal["inject"] = "inject"
+    kind = "inject"
     fault: str
     severity: float
     profile: Profile = Profile()
     parameters: dict[str, Any] = Field(default={}, max_length=20, description="what else the fault lets one choose")
 
 
-class Heal(Timed):
-    """Take faults away."""
-
-    kind: Literal["heal"] = "heal"
-    faults: list[str] | Literal["all"] = "all"
-
-
 class Set(Timed):
     """Set parameters by their paths, all in one tick."""
 
-    kind: Literal["set"] = "set"
-    values: dict[str, Any] = Field(min_length=1, max_length=100)
+    kind = "set"
+    set: dict[str, Any] = Field(min_length=1, max_length=100)
 
 
 class Switch(Timed):
     """Give the drive to another controller; cold starts it anew, otherwise it takes over as it ran in shadow."""
 
-    kind: Literal["switch"] = "switch"
-    controller: str
+    kind = "switch"
+    switch: str
     cold: bool = False
 
 
-class ResetTrip(Timed):
-    """Leave the tripped state, with all blocks started anew."""
-
-    kind: Literal["reset_trip"] = "reset_trip"
-
-
-Command = Inject | Heal | Set | Switch | ResetTrip
-_ADAPTER: TypeAdapter[Command] = TypeAdapter(Annotated[Command, Field(discriminator="kind")])
-KINDS: dict[str, type[Timed]] = {
-    "inject": Inject,
+Command = ResetTrip | Heal | Inject | Set | Switch
+COMMANDS: dict[str, type[Command]] = {
+    "reset_trip": ResetTrip,
     "heal": Heal,
+    "fault": Inject,
     "set": Set,
     "switch": Switch,
-    "reset_trip": ResetTrip,
 }
+"""The commands by the field that says what is done, in the order in which those of one event take effect."""
+FIELDS = tuple(dict.fromkeys(name for model in COMMANDS.values() for name in model.model_fields))
+T = TypeVar("T", bound=Timed)
 
 
-def parse_command(document: Any) -> Command:
-    """Check a command.
+def parse_event(document: Any) -> list[Command]:
+    """Check an event, which may do several things at once; return its commands in the order they take effect.
 
     Raises
     ------
     InputError
-        For an unknown kind, an unknown field or a value that is not allowed.
+        For an unknown field, a field that nothing in the event needs, or a value that is not allowed.
     """
     if not isinstance(document, dict):
         raise InputError("a command must be a table", "command")
-    kind = document.get("kind")
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise unknown("command", kind, KINDS, "kind")
+    said = {key: value for key, value in document.items() if value is not None}
+    if said.get("reset_trip") is False:
+        del said["reset_trip"]
+    for field in said:
+        if field not in FIELDS:
+            raise unknown_field(field, FIELDS, field)
+    models = [model for field, model in COMMANDS.items() if field in said]
+    if not models:
+        raise InputError(f"needs one of {', '.join(COMMANDS)}")
+    for field in said:
+        if not any(field in model.model_fields for model in models):
+            whose = next(name for name, model in COMMANDS.items() if field in model.model_fields)
+            raise InputError(f"goes with {whose}, which is not there", field)
+    return [check(model, {key: said[key] for key in model.model_fields if key in said}) for model in models]
+
+
+def parse_command(document: Any) -> Command:
+    """Check a command: an event that does a single thing.
+
+    Raises
+    ------
+    InputError
+        As `parse_event`, and when it does several things.
+    """
+    command, *others = parse_event(document)
+    if others:
+        first, second, *_ = [field for field in COMMANDS if field in document]
+        raise InputError(f"a command does one thing: {first} and {second} are two", second)
+    return command
+
+
+def check(model: type[T], document: Document) -> T:
+    """Return a command of a known sort.
+
+    Raises
+    ------
+    InputError
+        For an unknown field or a value that is not allowed.
+    """
     try:
-        return _ADAPTER.validate_python(document)
+        return model.model_validate(document)
     except ValidationError as error:
-        found = from_validation(error, {kind: list(KINDS[kind].model_fields)})
-        found.field = found.field.removeprefix(kind).removeprefix(".")
-        raise InputError(found.message, found.field, found.hint, found.code) from None
-
-
-class LogEntry(BaseModel):
-    """One thing that happened, at a tick; the log is append-only."""
-
-    seq: int
-    tick: int
-    time_ms: float
-    actor: str
-    kind: str
-    text: str
-    command: dict[str, Any] | None = None
-    old: Any = None
-    new: Any = None
+        raise from_validation(error, {"": list(model.model_fields)}) from None
 
 
 class Trip(BaseModel):

@@ -27,28 +27,30 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     if any(order[row].block is not wiring.instances[row].block for row in rows):
         return False
     other = {
-        every
-        for every in {order[row].every for row in rows}
-        if spec.context(every) is not before.context(every) and spec.context(every) != before.context(every)
+        place
+        for place in {(order[row].every, order[row].axis) for row in rows}
+        if spec.context(*place) is not before.context(*place) and spec.context(*place) != before.context(*place)
     }
     packed = {
-        row: order[row].block.packed(order[row].params, spec.context(order[row].every))
+        row: order[row].packed(spec)
         for row in rows
-        if order[row].every in other or order[row] != wiring.instances[row]
+        if (order[row].every, order[row].axis) in other or order[row] != wiring.instances[row]
     }
     if any(len(numbers) != len(wiring.packed(row)) for row, numbers in packed.items()):
         return False
     for row, numbers in packed.items():
         wiring.packed(row)[:] = numbers
-        wiring.table[row, program.EVERY] = every_of(order[row])
+        every, absent = every_of(order[row]), order[row].block.rests(order[row].params)
+        if (wiring.table[row, program.EVERY], wiring.absent[row]) != (every, absent):
+            wiring.table[row, program.EVERY], wiring.absent[row], wiring.is_changed = every, absent, True
     wiring.instances = order
-    if spec.active != before.active or spec.measuring != before.measuring:
+    if spec.driving != before.driving or spec.measuring != before.measuring:
         for row, instance in enumerate(order):
             if any(port.source.startswith("@") for port in instance.block.inputs):
                 wiring.ports(row)[:] = ports_of(spec, instance, wiring.index)
         engage(spec, wiring.index, wiring.w)
     if spec.sensors is not before.sensors or spec.measuring != before.measuring:
-        wiring.unread = unread(spec, order)
+        wiring.unread, wiring.is_changed = unread(spec, order), True
     return True
 
 
@@ -60,6 +62,6 @@ def _after(wiring: Wiring, before: Spec, spec: Spec) -> tuple[list[Instance], It
     order = [*wiring.instances]
     rows = [wiring.rows[f"faults.{name}"] for name in {**before.faults, **spec.faults}]
     for row in rows:
-        key, prefix, block, _, every = order[row]
-        order[row] = Instance(key, prefix, block, spec.faults.get(block.name) or usual_params(block), every)
+        key, prefix, block, _, every, axis = order[row]
+        order[row] = Instance(key, prefix, block, spec.faults.get(block.name) or usual_params(block), every, axis)
     return order, rows

@@ -5,9 +5,12 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Iterable
+from functools import cache
 from typing import Any
 
 from core import registry
+from core.block import Block
+from core.device.catalogue import device
 from core.errors import InputError, short
 from core.nesting import DEEPEST, TOO_DEEP, depth
 
@@ -15,11 +18,14 @@ Document = dict[str, Any]
 IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
 POSITION = re.compile(r"[0-9]{1,9}")
 
-PARKED = {"controller": ("controllers", "control", "open_loop"), "sensor": ("sensors", "sense", "ideal")}
-"""Of these all run, one is in use: table of the one, table of all, family, and the usual one."""
+PARKED = {"controller": ("controllers", "control"), "sensor": ("sensors", "sense")}
+"""Of these all run, one is in use: table of the one, table of all, and family."""
 
-EXCHANGED = {"reference.kind": ("reference", "kind", ()), "plant.model": ("plant", "model", ("drive", "every"))}
-"""Paths that name a block which is alone in its table: the table, the key, and what else may stand there."""
+EXCHANGED = {
+    "reference.kind": ("reference", "reference", "kind", ()),
+    "plant.model": ("plant", "plant", "model", ("drive", "every")),
+}
+"""Paths that name a block which is alone in its table: table, family, key, and what else may stand there."""
 
 ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_um": "amplitude_v"}
 """An amplitude is given in volts or in micrometres; setting one drops the other."""
@@ -30,13 +36,17 @@ ONE_DRIVE = {"plant.drive": ("drive", "kind"), "drive.kind": ("plant", "drive")}
 LONGEST_PATH = 60
 """Characters of a path that is told back because of its length."""
 
-DEFAULTS: Document = {
-    "device": {"id": "ch3"},
-    "plant": {},
-    "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 1000.0},
-    "controller": {"kind": "open_loop"},
-    "sensor": {"kind": "ideal"},
-}
+DEVICE = {"id": "ch3"}
+REFERENCE = {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 1000.0}
+GENERATOR = {"kind": "constant"}
+SILENT: Document = {**GENERATOR, "amplitude_v": 0.0}
+"""A reference that does nothing."""
+
+ONE_DISPLACEMENT = ("reference", "model")
+"""Sections that a bench whose plant has axes cannot have."""
+
+CHOSEN = {"identifiers": "identify", "diagnosers": "diagnose", "readouts": "readout"}
+"""Tables of blocks that a bench has by names of its own, each with its family."""
 
 SECTIONS = (
     "device",
@@ -44,6 +54,7 @@ SECTIONS = (
     "plant",
     "reference",
     "model",
+    "slots",
     "controller",
     "controllers",
     "sensor",
@@ -52,8 +63,49 @@ SECTIONS = (
     "guard",
     "identifiers",
     "diagnosers",
+    "readouts",
     "twins",
 )
+
+
+@cache
+def generators() -> dict[str, str]:
+    """Return the generators of all plants, each with its family."""
+    return {key: family for plant in registry.blocks("plant").values() for key, family in plant.generators.items()}
+
+
+@cache
+def sections() -> tuple[str, ...]:
+    """Return the keys of all tables a bench may have."""
+    return (*SECTIONS, *generators())
+
+
+def plant_of(document: Document) -> type[Block]:
+    """Return the plant of a bench: the one it names, or the usual one of its device."""
+    for key in ("plant", "device"):
+        if not isinstance(document.get(key, {}), dict):
+            raise InputError(f"must be a table, got {short(document[key])}", key)
+    model = document.get("plant", {}).get("model")
+    if model is None:
+        model = device(document.get("device", DEVICE)).usual_plant
+    return registry.block("plant", model, "plant.model")
+
+
+def defaults(plant: type[Block]) -> Document:
+    """Return what a bench with this plant has unless it is told otherwise."""
+    *others, last = plant.slots.items()
+    usual: Document = {
+        "device": DEVICE,
+        "plant": {},
+        "controller": {"kind": last[1]},
+        "sensor": {"kind": plant.usual_sensor},
+        **{key: SILENT if family == "reference" else GENERATOR for key, family in plant.generators.items()},
+    }
+    if others:
+        usual["slots"] = dict(others)
+    if not plant.axes:
+        usual["reference"] = REFERENCE
+    return usual
 
 
 def normal_form(document: Document) -> Document:
@@ -63,26 +115,33 @@ def normal_form(document: Document) -> Document:
 
 def completed(document: Document) -> Document:
     """Return the normal form of a document; it shares the tables that stay as they are."""
-    doc = {**document, **{key: copy.deepcopy(value) for key, value in DEFAULTS.items() if key not in document}}
-    for key in SECTIONS:
-        if key in doc and not isinstance(doc[key], dict):
-            raise InputError(f"must be a table, got {short(doc[key])}", key)
-    for key in ("controllers", "sensors", "identifiers", "diagnosers"):
+    for key in sections():
+        if key in document and not isinstance(document[key], dict):
+            raise InputError(f"must be a table, got {short(document[key])}", key)
+    plant = plant_of(document)
+    usual = defaults(plant)
+    doc = {**document, **{key: copy.deepcopy(value) for key, value in usual.items() if key not in document}}
+    for key in ("controllers", "sensors", *CHOSEN):
         for name, table in doc.get(key, {}).items():
             if not isinstance(table, dict):
                 raise InputError(f"must be a table, got {short(table)}", f"{key}.{name}")
-    for one, (_, family, usual) in PARKED.items():
-        registry.block(family, doc[one].get("kind", usual), f"{one}.kind")
-    _park(doc)
+    for one, (_, family) in PARKED.items():
+        registry.block(family, doc[one].get("kind", usual[one]["kind"]), f"{one}.kind")
+    _park(doc, usual)
+    gaps = [key for key in plant.generators if "kind" not in doc[key]]
+    if not usual.get("slots", {}).keys() <= doc.get("slots", {}).keys():
+        gaps.append("slots")
+    for key in gaps:
+        doc[key] = {**usual[key], **doc[key]}
     return doc
 
 
-def _park(doc: Document) -> None:
+def _park(doc: Document, usual: Document) -> None:
     """Move the parameters of the controller and the sensor in use to where those of all are."""
-    for one, (all_of_them, _, usual) in PARKED.items():
+    for one, (all_of_them, _) in PARKED.items():
         table = doc.get(one)
         if isinstance(table, dict):
-            kind = table.get("kind", usual)
+            kind = table.get("kind", usual[one]["kind"])
             rest = {name: value for name, value in table.items() if name != "kind"}
             if rest and isinstance(kind, str):
                 group = doc.get(all_of_them, {})
@@ -98,7 +157,7 @@ def with_values(document: Document, values: dict[str, Any]) -> Document:
 def written_over(document: Document, values: dict[str, Any]) -> Document:
     """Return the document with dotted paths written over; it shares the tables that stay as they are."""
     doc = dict(document)
-    _park(doc)
+    _park(doc, defaults(plant_of(document)))
     for path, value in values.items():
         _write(doc, path, value)
     return doc
@@ -130,11 +189,21 @@ def _write(doc: Document, path: str, value: Any) -> None:
         section, key = ONE_DRIVE[path]
         if isinstance(doc.get(section), dict):
             doc[section] = {name: entry for name, entry in doc[section].items() if name != key}
-    if path in EXCHANGED:
+    exchanged = _exchanged(path)
+    if exchanged is not None:
         # a new kind keeps what it shares with the old one
-        section, key, shared = EXCHANGED[path]
-        fields = {key, *shared, *registry.block(section, value, path).Params.model_fields}
+        section, family, key, shared = exchanged
+        fields = {key, *shared, *registry.block(family, value, path).Params.model_fields}
         doc[section] = {name: entry for name, entry in table.items() if name in fields}
+
+
+def _exchanged(path: str) -> tuple[str, str, str, tuple[str, ...]] | None:
+    """Return table, family, key and what else may stand there, of a path that names a block alone in its table."""
+    if path in EXCHANGED:
+        return EXCHANGED[path]
+    section, _, key = path.partition(".")
+    family = generators().get(section)
+    return (section, family, key, ()) if family is not None and key == "kind" else None
 
 
 def _position(part: str, items: list[Any], path: str) -> int:
@@ -164,5 +233,6 @@ def _kept(path: str, document: Document) -> str:
     one, _, rest = path.partition(".")
     if one not in PARKED or rest in ("", "kind"):
         return path
-    all_of_them, _, usual = PARKED[one]
-    return f"{all_of_them}.{document.get(one, {}).get('kind', usual)}.{rest}"
+    all_of_them, _ = PARKED[one]
+    kind = document.get(one, {}).get("kind") or defaults(plant_of(document))[one]["kind"]
+    return f"{all_of_them}.{kind}.{rest}"

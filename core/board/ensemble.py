@@ -7,14 +7,17 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
 
 from core.block import FloatArray
 from core.board.board import Board, Checkpoint
-from core.board.commands import LogEntry, parse_command
+from core.board.changes import switched
+from core.board.commands import Command, ResetTrip, Set, Switch
 from core.board.document import IDENTIFIER, Document, with_values
+from core.board.log import LogEntry
 from core.board.parse import parse
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
@@ -25,7 +28,7 @@ from core.signals import Signal, SignalTable
 MOST = 3
 """Twins of a board; four boards together."""
 
-OWN = ("plant", "controller", "controllers", "sensor", "sensors", "diagnosers", "drive", "guard")
+OWN = ("plant", "slots", "controller", "controllers", "sensor", "sensors", "diagnosers", "readouts", "drive", "guard")
 """Sections a twin may have of its own; it shares all others with the board."""
 
 SHOWN = ("plant.displacement", "plant.velocity", "sensor.displacement", "model.displacement", "reference.voltage")
@@ -121,6 +124,7 @@ class Ensemble(Board):
                 raise error.under(f"twins.{name}") from None
         self._own = {name: [path for path, _ in _leaves(with_values(own, {}))] for name, own in values.items()}
         self._mirrored = 0
+        self._warned: set[str] = set()
         self._table_of_all()
 
     def _table_of_all(self) -> None:
@@ -170,55 +174,60 @@ class Ensemble(Board):
         rows = super().advance(n)
         if rows.count == 0:
             return rows
-        todo = [entry for entry in self.log.after(self._mirrored) if _was_done(entry)]
-        self._mirrored = self.log.last
+        todo, self._mirrored = self.done[self._mirrored :], len(self.done)
         outputs, taps, idle = [rows.outputs], [rows.taps], [rows.idle]
         for (name, twin), (shown_outputs, shown_taps) in zip(self.twins.items(), self._columns, strict=True):
-            for entry in todo:
-                self._mirror(name, twin, entry)
+            for command in todo:
+                self._mirror(name, twin, command)
             seen = twin.log.last
             own = twin.advance(rows.count)
-            self._repeat(name, twin.log.after(seen))
+            new = list(takewhile(lambda entry: entry.seq > seen, reversed(twin.log)))  # noqa: B023
+            self._repeat(name, new[::-1])
             outputs.append(_filled(own.outputs[:, shown_outputs], rows.count))
             taps.append(_filled(own.taps[:, shown_taps], rows.count))
             # a twin that tripped in these rows has no numbers for the rest of them
             idle.append(own.idle[shown_taps] & (own.count == rows.count))
         return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps), np.concatenate(idle))
 
-    def _mirror(self, name: str, twin: Board, entry: LogEntry) -> None:
+    def _mirror(self, name: str, twin: Board, command: Command) -> None:
         """Do to a twin at the same tick what was done to the board, but for what it has of its own."""
-        command: dict[str, Any] = dict(entry.command or {})
-        kind = command["kind"]
         own = self._own[name]
-        if kind == "switch" and any(path.split(".")[0] == "controller" for path in own):
+        if isinstance(command, Switch) and any(path in own for path in switched(twin.spec, command)):
             return
-        if kind == "set":
-            command["values"] = {path: value for path, value in command["values"].items() if not _is_own(path, own)}
-            if not command["values"]:
+        if isinstance(command, Set):
+            shared = {path: value for path, value in command.set.items() if not _is_own(path, own)}
+            if not shared:
                 return
-        if kind == "reset_trip" and twin.trip is not None:
-            twin.tick = entry.tick  # it rested meanwhile
+            command = command.model_copy(update={"set": shared})
+        if isinstance(command, ResetTrip) and twin.trip is not None and command.at_sample is not None:
+            twin.tick = command.at_sample  # it rested meanwhile
         with suppress(InputError):  # it need not be possible there, such as healing what tripped it
-            twin.apply(parse_command({**command, "at_sample": entry.tick}), entry.actor)
+            twin.apply(command)
 
     def _repeat(self, name: str, entries: list[LogEntry]) -> None:
         """Note what a twin found, what it warns of that the board does not, and why it rests."""
         for entry in entries:
             kind = NOTED.get(entry.kind)
-            if kind is None or (kind == "warning" and any(entry.text == own.text for own in self.log)):
+            if kind is None or (kind == "warning" and entry.text in self._warned):
                 continue
             self.note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
-        self._mirrored = self.log.last
+
+    def note(self, actor: str, kind: str, text: str, **rest: Any) -> LogEntry:
+        """Write an entry of the log, and remember what the board warns of."""
+        if kind == "warning":
+            self._warned.add(text)
+        return super().note(actor, kind, text, **rest)
 
     def checkpoint(self) -> Checkpoint:
         """Return everything all of them are at this tick edge."""
         whole = super().checkpoint()
         twins = {name: twin.checkpoint() for name, twin in self.twins.items()}
-        whole.parts.update(twins=twins, _own=self._own, _mirrored=self._mirrored)
+        whole.parts.update(twins=twins, _own=self._own, _mirrored=self._mirrored, _warned=set(self._warned))
         return whole
 
     def _revive(self) -> None:
         self.twins = {name: Board.restore(kept) for name, kept in self.twins.items()}  # type: ignore[arg-type]
+        self._warned = set(self._warned)
         super()._revive()
         self._table_of_all()
 
@@ -226,12 +235,11 @@ class Ensemble(Board):
 def _shown(twin: Board) -> list[int]:
     """Return the columns of a twin worth seeing."""
     spec = twin.spec
-    blocks = {spec.active, "drive", *spec.diagnosers, *(f"{name}.score" for name in spec.diagnosers)}
+    blocks = {*spec.driving.values(), "drive", *spec.diagnosers, *(f"{name}.score" for name in spec.diagnosers)}
+    if spec.axes:
+        blocks |= {"plant", *spec.generators, *spec.readouts}
+        blocks |= {f"{part}.{axis}" for part in ("sensor", "drive") for axis in spec.axes}
     return [signal.index for signal in twin.signals if signal.block in blocks or signal.name in SHOWN]
-
-
-def _was_done(entry: LogEntry) -> bool:
-    return entry.command is not None and entry.kind not in ("scheduled", "refused")
 
 
 def _is_own(path: str, own: list[str]) -> bool:

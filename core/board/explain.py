@@ -6,12 +6,14 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel, Field
 
+from core.block import FloatArray
 from core.board.instances import scored
 from core.board.spec import Section, Spec
 from core.diagnose.bank import Bank
-from core.diagnose.hypothesis import hypotheses_of
+from core.diagnose.hypothesis import names_of
 from core.errors import InputError
 
 SMALLEST = 1e-30
@@ -22,8 +24,8 @@ class ModelAccount(BaseModel):
     """One hypothesis before and after a sample."""
 
     name: str
-    residual_um: float
-    covariance_um2: float | None
+    residual_um: list[float] = Field(description="For each displacement measured")
+    covariance_um2: list[list[float]] | None = Field(description="Of the residuals, row by row")
     log_likelihood: float | None
     prior: float
     posterior: float
@@ -40,6 +42,8 @@ class Account(BaseModel):
     tick: int
     time_ms: float
     floor: float
+    residuals: list[str] = Field(description="Signals of the residuals, below the name of the diagnoser")
+    weighed: str = Field(description="What the prior is, in words")
     evidence: str = Field(description="What log_likelihood is, in LaTeX; empty for that of the normal density")
     models: list[ModelAccount]
 
@@ -55,10 +59,10 @@ def signals_of(section: Section) -> list[str]:
     block = section.block
     if not (scored(block) and issubclass(block, Bank) and block.sample_by_sample):
         raise InputError(f"{block.name} does not weigh sample by sample", "name", "look at its signals instead")
-    ports = ["probability", "residual", "nis"]
+    ports = ["probability", *block.residuals, *block.covariances, "nis"]
     if any(port.name == "tone" for port in block.taps):
         ports.append("tone")
-    return [f"{port}.{item.name}" for port in ports for item in hypotheses_of(section.params)]
+    return [f"{port}.{name}" for port in ports for name in names_of(section.params)]
 
 
 def explain(
@@ -80,19 +84,22 @@ def explain(
     block: Any = section.block
     params: Any = section.params
     context = spec.context(spec.turns(section))
-    labels = [item.name for item in params.hypotheses]
+    labels = names_of(params)
 
     def read(values: Mapping[str, float], port: str, label: str) -> float:
         return float(values.get(f"{port}.{label}", 0.0))
 
     last = [1.0 / len(labels)] * len(labels) if before is None else [read(before, "probability", x) for x in labels]
     priors = block.prior(params, last)
-    rows: list[tuple[float, float | None, float | None]] = []
+    rows: list[tuple[FloatArray, FloatArray | None, float | None]] = []
     for label in labels:
-        residual = read(now, "residual", label)
-        covariance = _covariance(residual, read(now, "nis", label))
-        if covariance is None and before is not None:
-            covariance = _covariance(read(before, "residual", label), read(before, "nis", label))
+        residual = np.array([read(now, port, label) for port in block.residuals])
+        if block.covariances:
+            covariance = _symmetric([read(now, port, label) for port in block.covariances], len(residual))
+        else:
+            covariance = _covariance(residual, read(now, "nis", label))
+            if covariance is None and before is not None:
+                covariance = _covariance(np.array([read(before, "residual", label)]), read(before, "nis", label))
         density = (
             block.log_likelihood(params, context, residual, covariance, read(now, "tone", label))
             if covariance is not None
@@ -106,12 +113,14 @@ def explain(
         tick=tick,
         time_ms=tick * spec.dt_ms,
         floor=floor,
+        residuals=list(block.residuals),
+        weighed=block.weighed,
         evidence=block.evidence,
         models=[
             ModelAccount(
                 name=label,
-                residual_um=residual,
-                covariance_um2=covariance,
+                residual_um=residual.tolist(),
+                covariance_um2=None if covariance is None else covariance.tolist(),
                 log_likelihood=density,
                 prior=prior,
                 posterior=posterior,
@@ -124,9 +133,17 @@ def explain(
     )
 
 
-def _covariance(residual: float, nis: float) -> float | None:
-    square = residual * residual
-    return square / nis if square > SMALLEST and nis > 0.0 else None
+def _covariance(residual: FloatArray, nis: float) -> FloatArray | None:
+    """Return the covariance of a single residual from its normalised square; none where it is zero."""
+    square = float(residual @ residual)
+    return np.array([[square / nis]]) if square > SMALLEST and nis > 0.0 else None
+
+
+def _symmetric(upper: list[float], size: int) -> FloatArray | None:
+    """Return a covariance from its upper triangle, row by row; none before the first sample."""
+    found = np.zeros((size, size))
+    found[np.triu_indices(size)] = found.T[np.triu_indices(size)] = upper
+    return found if np.linalg.det(found) > 0.0 else None
 
 
 def _posteriors(priors: list[float], densities: list[float | None], floor: float) -> list[float]:

@@ -12,7 +12,7 @@ from core import elementary
 from core.block import Block, FloatArray
 from core.board import program
 from core.board.board import Board
-from core.diagnose.hypothesis import hypotheses_of
+from core.diagnose.hypothesis import names_of
 from core.errors import InputError, unknown
 from core.plain import rebound
 from core.ports import TICK, TIME_MS
@@ -202,7 +202,7 @@ def budget(board: Board, board_flops: float, function_flops: float = 20.0) -> Bu
     for name, section in board.spec.diagnosers.items():
         operations, functions = count(board, name)
         cost = operations + function_flops * functions
-        models = max(1, len(hypotheses_of(section.params)))
+        models = max(1, len(names_of(section.params)))
         rate = 1e3 / (board.dt_ms * board.spec.turns(section))
         left = max(board_flops - used, 0.0)
         used += cost * rate

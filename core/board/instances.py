@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from functools import cache
+from typing import Any, NamedTuple, cast
 
 from core import registry
-from core.block import Block, BlockParams
-from core.board.spec import Spec
-from core.diagnose.hypothesis import hypotheses_of
+from core.block import Block, BlockParams, FloatArray
+from core.board.spec import Section, Spec
+from core.diagnose.hypothesis import ModelList
+from core.errors import InputError
+from core.loop.axes_score import AxesScore
+from core.loop.axis_measurement import AxisMeasurement
 from core.loop.effects import Effects
 from core.loop.measurement import Measurement
 from core.loop.score import Score
@@ -21,6 +25,26 @@ class Instance(NamedTuple):
     block: type[Block]
     params: BlockParams
     every: int = 1
+    axis: str = ""
+
+    def packed(self, spec: Spec) -> FloatArray:
+        """Return what its step reads on a bench.
+
+        Raises
+        ------
+        InputError
+            For what the parameters do not allow on this bench, with the field below the key.
+        """
+        try:
+            return self.block.packed(self.params, spec.context(self.every, self.axis))
+        except InputError as error:
+            raise error.under(self.key) from None
+
+
+@cache
+def faults_of(axes: tuple[str, ...]) -> dict[str, type[Block]]:
+    """Return the faults that a plant with these axes may have, by name."""
+    return {name: block for name, block in registry.blocks("faults").items() if block.fits(axes)}
 
 
 def instances(spec: Spec) -> list[Instance]:
@@ -30,32 +54,53 @@ def instances(spec: Spec) -> list[Instance]:
     over it. Then the environment and the faults of this moment, what is measured and concluded, and the voltage to hold
     next.
     """
-
-    def usual(key: str, section: Any) -> Instance:
-        return Instance(key, key, section.block, section.params, section.every)
-
-    def waiting(key: str, section: Any) -> Instance:
-        return Instance(key, key, section.block, section.params, spec.turns(section))
-
-    order = [usual("plant", spec.plant), usual("environment", spec.environment)]
+    order = [_usual("plant", spec.plant), _usual("environment", spec.environment)]
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
-    for name, block in registry.blocks("faults").items():
+    for name, block in faults_of(spec.axes).items():
         order.append(Instance(f"faults.{name}", f"faults.{name}", block, spec.faults.get(name) or usual_params(block)))
+    order += _measured(spec)
+    order += [_waiting(spec, name, section) for name, section in spec.identifiers.items()]
+    for name, section in spec.diagnosers.items():
+        order.append(_waiting(spec, name, section))
+        if scored(section.block):
+            order.append(_scoring(spec, name, section))
+    if spec.axes:
+        order += [_usual(name, section) for name, section in spec.generators.items()]
+    else:
+        order += [_usual("reference", spec.reference), _usual("model", spec.model)]
+    for slot in spec.driving:  # a later slot reads what an earlier one puts out
+        order += [_usual(name, section) for name, section in spec.controllers.items() if section.block.slot == slot]
+    order += [_usual(name, section) for name, section in spec.readouts.items()]
+    return [*order, *_at_each_axis("drive", spec.drive, spec.axes), *_at_each_axis("guard", spec.guard, spec.axes)]
+
+
+def _measured(spec: Spec) -> list[Instance]:
+    """Return the sensors, and what passes on that of the one in use."""
+    order: list[Instance] = []
     # first what only detects, then what recovers a displacement from it
     for recovers in (False, True):
-        order += [
-            usual(name, section) for name, section in spec.sensors.items() if recovered(section.block) == recovers
-        ]
-    order.append(Instance("sensor", "sensor", Measurement, Measurement.Params()))
-    order += [waiting(name, section) for name, section in spec.identifiers.items()]
-    for name, section in spec.diagnosers.items():
-        order.append(waiting(name, section))
-        if scored(section.block):
-            order.append(Instance(f"{name}.score", name, Score, _scored(section.params), spec.turns(section)))
-    order += [usual("reference", spec.reference), usual("model", spec.model)]
-    order += [usual(name, section) for name, section in spec.controllers.items()]
-    order += [usual("drive", spec.drive), usual("guard", spec.guard)]
-    return order
+        for name, section in spec.sensors.items():
+            if recovered(section.block) == recovers:
+                order += _at_each_axis(name, section, spec.axes if section.block.per_axis else ())
+    measurement = AxisMeasurement if spec.axes else Measurement
+    return order + _at_each_axis("sensor", Section(measurement, measurement.Params()), spec.axes)
+
+
+def _at_each_axis(key: str, section: Section, axes: tuple[str, ...]) -> list[Instance]:
+    """Return one instance for every axis, or the only one where there are none."""
+    if not axes:
+        return [_usual(key, section)]
+    names = [(f"{key}.{axis}", axis) for axis in axes]
+    return [Instance(name, name, section.block, section.params, section.every, axis) for name, axis in names]
+
+
+def _usual(key: str, section: Section) -> Instance:
+    return Instance(key, key, section.block, section.params, section.every)
+
+
+def _waiting(spec: Spec, key: str, section: Section) -> Instance:
+    """Return what looks at measurements: it waits for the next of the sensor."""
+    return Instance(key, key, section.block, section.params, spec.turns(section))
 
 
 _USUAL: dict[type[Block], BlockParams] = {}
@@ -73,9 +118,11 @@ def recovered(block: type[Block]) -> bool:
     return any(port.name == "displacement" for port in block.outputs)
 
 
-def feeds_forward(block: type[Block]) -> bool:
-    """Say whether a controller puts out its voltage between samples too, so that the drive may be analogue."""
-    return any(port.name == "voltage_middle" for port in block.outputs)
+def feeds_forward(block: type[Block], axes: tuple[str, ...] = ()) -> bool:
+    """Say whether a controller puts out its commands between samples too, so that the drive may be analogue."""
+    outputs = {port.name for port in block.outputs}
+    commands = [axis for axis in axes if axis in outputs] if axes else ["voltage"]
+    return all(f"{command}_middle" in outputs for command in commands)
 
 
 def scored(block: type[Block]) -> bool:
@@ -83,5 +130,8 @@ def scored(block: type[Block]) -> bool:
     return any(port.name == "probability" and port.each == "hypotheses" for port in block.outputs)
 
 
-def _scored(params: BlockParams) -> BlockParams:
-    return Score.Params.model_construct(hypotheses=hypotheses_of(params))
+def _scoring(spec: Spec, name: str, section: Section) -> Instance:
+    """Return the score of a diagnoser: one for plants with axes counts what may change along them."""
+    block: Any = AxesScore if section.block.axes else Score
+    params = block.Params.model_construct(hypotheses=cast(ModelList, section.params).hypotheses)
+    return Instance(f"{name}.score", name, block, params, spec.turns(section))

@@ -2,21 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import takewhile
+from collections.abc import Iterator, MutableSequence, Sequence
 from typing import Any
 
-from core.board.commands import Command, LogEntry
+from pydantic import BaseModel
+
+from core.board.document import Document
 
 KEPT = 4000
-"""Findings kept at least: an intermittent fault makes thousands a second, and to repeat a run only deeds matter."""
+"""Findings kept at least: an intermittent fault makes thousands a second."""
+
+
+class LogEntry(BaseModel):
+    """One thing that happened, at a tick."""
+
+    seq: int
+    tick: int
+    actor: str
+    kind: str
+    text: str
+    command: Document | None = None
+    old: Any = None
+    new: Any = None
 
 
 class Log(Sequence[LogEntry]):
     """Entries in order; what was done, and so has a command, is never forgotten, the oldest of what was found is."""
 
     def __init__(self) -> None:
-        self._entries: list[LogEntry] = []
+        self._entries: MutableSequence[LogEntry] = []
         self._findings = 0
         self.last = 0
 
@@ -32,38 +46,21 @@ class Log(Sequence[LogEntry]):
     def add(
         self,
         tick: int,
-        time_ms: float,
         actor: str,
         kind: str,
         text: str,
-        *,
-        command: Command | None = None,
+        command: Document | None = None,
         old: Any = None,
         new: Any = None,
     ) -> LogEntry:
         """Append an entry and return it with its number."""
-        document = command.model_dump(exclude_none=True, mode="json") if command is not None else None
         self.last += 1
-        entry = LogEntry(
-            seq=self.last,
-            tick=tick,
-            time_ms=time_ms,
-            actor=actor,
-            kind=kind,
-            text=text,
-            command=document,
-            old=old,
-            new=new,
-        )
+        entry = LogEntry(seq=self.last, tick=tick, actor=actor, kind=kind, text=text, command=command, old=old, new=new)
         self._entries.append(entry)
         self._findings += command is None
         if self._findings > 2 * KEPT:
             self._forget()
         return entry
-
-    def after(self, seq: int) -> list[LogEntry]:
-        """Return the entries behind a number, oldest first."""
-        return list(takewhile(lambda entry: entry.seq > seq, reversed(self._entries)))[::-1]
 
     def copy(self) -> Log:
         """Return a log that goes on by itself."""

@@ -13,7 +13,7 @@ from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.diagnose.aliases import equivalents
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
-from core.diagnose.hypothesis import hypotheses_of
+from core.diagnose.hypothesis import hypotheses_of, names_of
 from core.diagnose.regions import REGIONS
 from core.format import format_count, format_short, format_si
 from core.kernel import kernel
@@ -51,7 +51,7 @@ class Observer:
         self._consistent: dict[str, list[int]] = {}
         for name, section in spec.diagnosers.items():
             if scored(section.block):
-                self._names[name] = [item.name for item in section.params.hypotheses]  # type: ignore[attr-defined]
+                self._names[name] = names_of(section.params)
                 self._scored[name] = signals.index(f"{name}.truth"), signals.index(f"{name}.delay")
             for port in ("verdict", "region", "alarm", "unexcited"):
                 if f"{name}.{port}" in known:

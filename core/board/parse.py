@@ -8,32 +8,33 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from core import registry
-from core.block import Block, BlockParams, Oscillator
+from core.block import Block, BlockParams
 from core.board.document import (
+    CHOSEN,
     IDENTIFIER,
-    SECTIONS,
+    SILENT,
     Document,
     as_written,
     completed,
     normal_form,
+    sections,
     written,
     written_over,
 )
-from core.board.instances import feeds_forward, instances
-from core.board.spec import FIELDS, OF_CONTEXT, Frame, Section, Spec
+from core.board.fitting import driving, refuse_what_does_not_fit, suited
+from core.board.instances import instances
+from core.board.spec import OF_CONTEXT, Frame, Section, Spec, fields
 from core.device.catalogue import device as build_device
 from core.device.device import Device
-from core.device.transfer_function import slowest_pole
 from core.errors import InputError, from_validation, short
+from core.loop.axis_drive import AxisDrive
+from core.loop.axis_guard import AxisGuard
 from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.guard import Guard
 from core.loop.model import Model
 from core.plant.shuttle import ShuttleParams
 from core.signals import CLOCK
-
-MOST_GROWTH = 100.0
-"""Exponent of what may grow within a sample: the cube of it is still a number."""
 
 
 def parse(document: Document) -> Spec:
@@ -76,19 +77,22 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     def same(*keys: str) -> bool:
         return before is not None and all(doc.get(key) is known.get(key) for key in keys)
 
-    loose = [key for key in doc if key not in SECTIONS]
-    if before is not None and same(*loose) and loose == [key for key in known if key not in SECTIONS]:
+    tables = sections()
+    loose = [key for key in doc if key not in tables]
+    if before is not None and same(*loose) and loose == [key for key in known if key not in tables]:
         frame = before.frame
     else:
         frame = _frame({key: doc[key] for key in loose})
-    identifiers, diagnosers = doc.get("identifiers", {}), doc.get("diagnosers", {})
-    for name in identifiers:
-        if name in diagnosers:
-            raise InputError("is the name of a diagnoser as well", f"identifiers.{name}", "choose another")
+    named = [(key, name) for key in CHOSEN for name in doc.get(key, {})]
+    if len({name for _, name in named}) < len(named):
+        _refuse_twice(named)
     if before is not None and same("device", "plant", "drive"):
         device, plant, drive = before.device, before.plant, before.drive
     else:
         device, plant, drive = _driven(doc, before if same("device") else None)
+    axes = plant.block.axes or ()
+    in_use = (doc["controller"]["kind"], doc["sensor"]["kind"], *doc.get("slots", {}).values())
+    refuse_what_does_not_fit(doc, plant.block)
 
     def alone(key: str, block: type[Block]) -> Section:
         kept: Section | None = getattr(before, key) if same(key) else None
@@ -105,8 +109,14 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
             name: kept[name]
             if name in kept and tables.get(name) is old.get(name)
             else _section(family, name, tables.get(name, {}), f"{key}.{name}")
-            for name in registry.blocks(family)
+            for name, block in registry.blocks(family).items()
+            if block.fits(axes) or name in tables or name in in_use
         }
+
+    def generator(key: str, family: str) -> Section:
+        if before is not None and same(key) and key in before.generators:
+            return before.generators[key]
+        return _chosen(family, doc[key], key)
 
     def chosen(key: str, family: str) -> dict[str, Section]:
         kept: dict[str, Section] = getattr(before, key, {})
@@ -123,24 +133,22 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         device=device,
         environment=alone("environment", Environment),
         plant=plant,
-        reference=before.reference
-        if before is not None and same("reference")
-        else _chosen("reference", doc["reference"], "reference"),
+        reference=before.reference if before is not None and same("reference") else _reference(doc),
         model=alone("model", Model),
         drive=drive,
-        guard=alone("guard", Guard),
+        guard=alone("guard", AxisGuard if axes else Guard),
         measuring=_measuring(doc["sensor"]["kind"]),
         sensors=all_of("sensors", "sense"),
-        active=registry.block("control", doc["controller"]["kind"], "controller.kind").name,
+        driving=driving(doc, plant.block),
+        generators={key: generator(key, family) for key, family in plant.block.generators.items()},
         controllers=all_of("controllers", "control"),
-        identifiers=chosen("identifiers", "identify"),
-        diagnosers=chosen("diagnosers", "diagnose"),
+        **{key: chosen(key, family) for key, family in CHOSEN.items()},
     )
     if before is not None and spec.device is before.device:
         vars(spec)["nominal"] = before.nominal
-    if before is None or [*before.identifiers, *before.diagnosers] != [*identifiers, *diagnosers]:
+    if before is None or [(key, name) for key in CHOSEN for name in getattr(before, key)] != named:
         _named_apart(spec)
-    return _suited(spec)
+    return suited(spec)
 
 
 def _driven(doc: Document, before: Spec | None) -> tuple[Device, Section, Section]:
@@ -153,22 +161,35 @@ def _driven(doc: Document, before: Spec | None) -> tuple[Device, Section, Sectio
             text = f"plant.drive says {short(here)} and drive.kind {short(there)}"
             raise InputError(text, "drive.kind", "leave one of them out")
     device = build_device(doc["device"])
-    usual = "transfer_function" if device.transfer_function is not None else "linear"
     if "model" not in plant:
-        doc["plant"] = {**doc["plant"], "model": usual}
-    section = _section("plant", plant.pop("model", usual), plant, "plant", "model")
+        doc["plant"] = {**doc["plant"], "model": device.usual_plant}
+    section = _section("plant", plant.pop("model", device.usual_plant), plant, "plant", "model")
     gap = section.params.gap_um if isinstance(section.params, ShuttleParams) else None
     if gap is not None:  # one comb, one gap: of the force, of the sensors, of the model a diagnoser believes in
         device = device.model_copy(update={"finger_gap_um": gap})
     if before is not None and before.device == device:
         device = before.device
-    return device, section, Section(Drive, _params(Drive, drive, "drive"))
+    stage = AxisDrive if section.block.axes else Drive
+    return device, section, Section(stage, _params(stage, drive, "drive"))
+
+
+def _reference(doc: Document) -> Section:
+    """Return the reference, or one that does nothing where a bench has none."""
+    return _chosen("reference", doc.get("reference", SILENT), "reference")
+
+
+def _refuse_twice(named: list[tuple[str, str]]) -> None:
+    """Refuse the first name that another table has as well."""
+    tables = {name: key for key, name in named}
+    key, name = next((key, name) for key, name in named if tables[name] != key)
+    raise InputError(f"is a name of {tables[name]} as well", f"{key}.{name}", "choose another")
 
 
 def _named_apart(spec: Spec) -> None:
-    """Refuse identifiers and diagnosers by the name of another block: signals of both would have the same names."""
-    chosen = [(key, name) for key in ("identifiers", "diagnosers") for name in getattr(spec, key)]
-    others = instances(replace(spec, identifiers={}, diagnosers={})) if chosen else []
+    """Refuse names of the bench's own that are those of another block: signals of both would have the same names."""
+    chosen = [(key, name) for key in CHOSEN for name in getattr(spec, key)]
+    nothing: dict[str, Any] = {key: {} for key in CHOSEN}
+    others = instances(replace(spec, **nothing)) if chosen else []
     taken = {*CLOCK, *(other.prefix.split(".")[0] for other in others)}
     for key, name in chosen:
         if name in taken:
@@ -176,45 +197,11 @@ def _named_apart(spec: Spec) -> None:
             raise InputError(text, f"{key}.{name}", "choose another name")
 
 
-def _suited(spec: Spec) -> Spec:
-    """Leave out controllers and sensors that are not for this device; refuse what was asked for and is not."""
-    nominal = spec.nominal
-    pair = nominal, Model.oscillator(spec.model.params, nominal)
-    for path, grows in zip(("device.transfer_function", "model.denominator"), pair, strict=True):
-        if slowest_pole(grows) * spec.dt_ms > MOST_GROWTH:
-            text = f"grows by more than e^{MOST_GROWTH:g} from one sample to the next"
-            raise InputError(text, path, "sample faster, or slow it down")
-    fields = {
-        "plant.model": spec.plant.block,
-        "controller.kind": spec.controllers[spec.active].block,
-        "sensor.kind": spec.sensors[spec.measuring].block,
-    }
-    if spec.is_analogue and not feeds_forward(spec.controllers[spec.active].block):
-        able = " or ".join(name for name, block in registry.blocks("control").items() if feeds_forward(block))
-        text = f"analogue is for {able} only: what {spec.active} asks for is held over a sample"
-        raise InputError(text, "drive.kind", f"hold the drive, or let {able} drive")
-    for key in ("identifiers", "diagnosers"):
-        fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
-    for path, block in fields.items():
-        reason = block.unsuited(*pair)
-        if reason:
-            raise InputError(f"{block.name}: {reason}", path)
-    controllers, sensors = _for(pair, spec.controllers), _for(pair, spec.sensors)
-    if controllers is spec.controllers and sensors is spec.sensors:
-        return spec
-    return replace(spec, controllers=controllers, sensors=sensors)
-
-
-def _for(pair: tuple[Oscillator, Oscillator], sections: dict[str, Section]) -> dict[str, Section]:
-    suited = {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
-    return sections if len(suited) == len(sections) else suited
-
-
 def _frame(values: Document) -> Frame:
     try:
         return Frame.model_validate(values)
     except ValidationError as error:
-        raise from_validation(error, {"": FIELDS}) from None
+        raise from_validation(error, {"": fields()}) from None
 
 
 def _chosen(family: str, table: Document, field: str) -> Section:

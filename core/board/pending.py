@@ -11,7 +11,6 @@ from itertools import takewhile
 import numpy as np
 
 from core.block import FloatArray
-from core.board import words
 from core.board.commands import Command
 from core.board.condition import Condition
 from core.board.document import Document
@@ -32,13 +31,9 @@ class Pending:
     number: int = 0
 
     def event(self) -> Document:
-        """Return it as an event of a scenario."""
-        document = words.event(self.command.model_dump(exclude_none=True, mode="json"))
-        document.pop("at_ms", None)
-        if self.condition is None:
-            document.pop("when", None)  # met already, or never asked for
-        document["at_sample"] = self.since if self.tick is None else self.tick
-        return document
+        """Return it as an event of a scenario; a condition that has been met is no part of it."""
+        when = self.command.when if self.condition is not None else None
+        return self.command.at(self.since if self.tick is None else self.tick, when).document()
 
 
 class Queue:

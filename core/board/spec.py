@@ -10,11 +10,9 @@ from typing import Any, cast
 from pydantic import Field
 
 from core.block import Block, BlockParams, Context, Oscillator
-from core.board.document import (
-    SECTIONS,
-    Document,
-)
+from core.board.document import Document, sections
 from core.device.device import Device
+from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.model import Model
@@ -41,7 +39,9 @@ class Frame(Table):
     seed: int = Field(1, ge=0, le=MOST_SEED, description="seed of all noise")
 
 
-FIELDS = (*Frame.model_fields, *SECTIONS)
+def fields() -> tuple[str, ...]:
+    """Return the keys a bench may have."""
+    return (*Frame.model_fields, *sections())
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,8 @@ class Spec:
     """A bench, ready to be wired.
 
     ``document`` is what it was made from, in normal form: the parameters of the controller and the sensor in use
-    stand under ``controllers`` and ``sensors``. ``faults`` are those that act.
+    stand under ``controllers`` and ``sensors``. ``driving`` names the controller of each slot, ``faults`` those that
+    act. A plant with axes has neither reference nor model; what stands here in their place does nothing.
     """
 
     document: Document
@@ -63,10 +64,12 @@ class Spec:
     guard: Section
     measuring: str
     sensors: dict[str, Section]
-    active: str
+    driving: dict[str, str]
+    generators: dict[str, Section]
     controllers: dict[str, Section]
     identifiers: dict[str, Section]
     diagnosers: dict[str, Section]
+    readouts: dict[str, Section]
     faults: dict[str, BlockParams] = field(default_factory=dict)
 
     @property
@@ -86,9 +89,19 @@ class Spec:
         return float(reference.tone_hz(self.reference.params))
 
     @property
+    def axes(self) -> tuple[str, ...]:
+        """Axes the plant moves along; none for one displacement."""
+        return self.plant.block.axes or ()
+
+    @property
+    def active(self) -> str:
+        """The controller that drives in the last slot."""
+        return list(self.driving.values())[-1]
+
+    @property
     def is_analogue(self) -> bool:
         """Whether the drive moves between samples."""
-        return bool(cast(Drive.Params, self.drive.params).kind == "analogue")
+        return bool(cast(Drive.Params | AxisDrive.Params, self.drive.params).kind == "analogue")
 
     @cached_property
     def nominal(self) -> Oscillator:
@@ -99,15 +112,16 @@ class Spec:
         """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
         return math.lcm(section.every, self.sensors[self.measuring].every)
 
-    def context(self, every: int = 1) -> Context:
-        """Return what a block that runs every so many ticks may know."""
-        found = self._contexts.get(every)
+    def context(self, every: int = 1, axis: str = "") -> Context:
+        """Return what a block may know that runs every so many ticks, at one axis if it stands at one."""
+        found = self._contexts.get((every, axis))
         if found is None:
-            found = self._contexts[every] = self._context(every)
+            found = replace(self.context(every), axis=axis) if axis else self._context(every)
+            self._contexts[every, axis] = found
         return found
 
     @cached_property
-    def _contexts(self) -> dict[int, Context]:
+    def _contexts(self) -> dict[tuple[int, str], Context]:
         """Contexts worked out so far: every block asks, and whenever a fault comes or goes they do again."""
         return {}
 
@@ -119,7 +133,7 @@ class Spec:
         return replace(self._known(every), sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:
-        nominal = self.nominal
+        nominal, drive = self.nominal, self.drive.params
         return Context(
             dt_ms=self.dt_ms * every,
             every=every,
@@ -131,7 +145,8 @@ class Spec:
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
-            limit_v=cast(Drive.Params, self.drive.params).limit_v,
+            limit_v=drive.limit_v if isinstance(drive, Drive.Params) else 0.0,
+            limit_un=drive.limit_un if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
         )

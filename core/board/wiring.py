@@ -43,9 +43,18 @@ class Wiring:
     """The row of every instance, by its key."""
     unread: list[bool]
     """Row by row, whether it is a sensor that nobody reads."""
+    absent: list[bool]
+    """Row by row, whether its parameters leave it nothing to do, as those of a fault of no severity."""
     tap_rows: IntArray
     """The row that every tap comes from."""
     resting: set[int] = field(default_factory=set)
+    is_changed: bool = True
+    """Whether other rows may have to run than before, or at other ticks."""
+
+    @property
+    def trip(self) -> int:
+        """The place of the signal that stops the board."""
+        return self.index[f"{self.instances[-1].prefix}.trip"]  # the guard comes last
 
     def row(self, key: str) -> int:
         """Return the table row of an instance."""
@@ -84,11 +93,8 @@ class Wiring:
 
     def rest(self, spec: Spec) -> list[int]:
         """Return the rows that run; make those that rest as new, and their signals 0."""
-        running = [
-            row
-            for row, instance in enumerate(self.instances)
-            if not self.unread[row] and not instance.block.rests(instance.params)
-        ]
+        self.is_changed = False
+        running = [row for row in range(len(self.instances)) if not (self.unread[row] or self.absent[row])]
         if len(running) + len(self.resting) != len(self.instances) or not self.resting.isdisjoint(running):
             self._put_to_rest(spec, set(range(len(self.instances))) - {*running} - self.resting)
             self.resting = set(range(len(self.instances))) - {*running}
@@ -97,7 +103,9 @@ class Wiring:
     def _put_to_rest(self, spec: Spec, rows: set[int]) -> None:
         for row in rows:
             instance = self.instances[row]
-            self.state_of(instance.key)[:] = instance.block.initial(instance.params, spec.context(instance.every))
+            self.state_of(instance.key)[:] = instance.block.initial(
+                instance.params, spec.context(instance.every, instance.axis)
+            )
             for port in (*instance.block.outputs, *instance.block.taps):
                 start = self.index[signal_name(instance, port.name)]
                 self.w[start : start + len(port.names(instance.params))] = 0.0
@@ -128,8 +136,8 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
     p_parts, s_parts, io_parts = [], [], []
     p_size = s_size = io_size = 0
     for row, instance in enumerate(order):
-        context = spec.context(instance.every)
-        p, s = instance.block.packed(instance.params, context), instance.block.initial(instance.params, context)
+        p = instance.packed(spec)
+        s = instance.block.initial(instance.params, spec.context(instance.every, instance.axis))
         io = ports_of(spec, instance, index)
         table[row, 1:] = (p_size, s_size, io_size, every_of(instance))
         p_parts.append(p)
@@ -151,6 +159,7 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
         w=w,
         io=np.concatenate(io_parts),
         unread=unread(spec, order),
+        absent=[instance.block.rests(instance.params) for instance in order],
         rows=rows,
         tap_rows=np.array([rows[signal.block] for signal in signals.taps], dtype=np.int64),
     )
@@ -197,9 +206,10 @@ def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str,
 
 
 def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
-    """Tell every controller whether it drives."""
+    """Tell every controller whether it drives in its slot."""
+    driving = spec.driving.values()
     for name in spec.controllers:
-        w[index[f"{name}.engaged"]] = 1.0 if name == spec.active else 0.0
+        w[index[f"{name}.engaged"]] = 1.0 if name in driving else 0.0
 
 
 def needed(spec: Spec) -> set[str]:
@@ -233,16 +243,35 @@ def signal_name(instance: Instance, port: str) -> str:
 
 
 def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -> str:
-    if port.source.endswith("?"):
-        signal = port.source.removesuffix("?")
+    source = port.source.replace("{axis}", instance.axis)
+    if source.endswith("?"):
+        signal = source.removesuffix("?")
         return signal if signal in index else NOTHING
-    if port.source == "@engaged":
+    if not source.startswith("@"):
+        return source or f"{instance.prefix}.{port.name}"
+    slot, dot, name = source[1:].partition(".")
+    if dot:
+        signal = f"{spec.active if slot == 'active' else spec.driving.get(slot, '')}.{name}"
+        return signal if signal in index else NOTHING
+    word, _, rest = slot.partition("_")
+    if word == "engaged":
         return f"{instance.prefix}.engaged"
-    if port.source == "@measuring":
-        return f"{spec.measuring}.displacement"
-    if port.source == "@active":
-        return f"{spec.active}.voltage"
-    if port.source in ("@active_middle", "@active_end"):
-        between = port.source.removeprefix("@active") if feeds_forward(spec.controllers[spec.active].block) else ""
-        return f"{spec.active}.voltage{between}"
-    return port.source or f"{instance.prefix}.{port.name}"
+    if word == "measuring":
+        sensor = f"{spec.measuring}.{instance.axis}" if instance.axis else spec.measuring
+        return f"{sensor}.{rest or 'displacement'}"
+    if word == "command":
+        return command_of(spec, instance.axis, rest)
+    if word == "before":
+        earlier = spec.axes[: spec.axes.index(instance.axis)]
+        return f"guard.{earlier[-1]}.trip" if earlier else NOTHING
+    between = f"_{rest}" if rest and feeds_forward(spec.controllers[spec.active].block) else ""
+    return f"{spec.active}.voltage{between}"
+
+
+def command_of(spec: Spec, axis: str, moment: str = "") -> str:
+    """Return what drives an axis: the controller in the last slot that has an output for it."""
+    for name in reversed(spec.driving.values()):
+        outputs = {port.name for port in spec.controllers[name].block.outputs}
+        if axis in outputs:
+            return f"{name}.{axis}_{moment}" if moment and f"{axis}_{moment}" in outputs else f"{name}.{axis}"
+    return NOTHING

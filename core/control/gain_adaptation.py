@@ -28,6 +28,7 @@ class GainAdaptation(Block):
     """
 
     title = "Gain adaptation (appendix B)"
+    place = 10
     equations = (
         Equation(
             "MIT rule",

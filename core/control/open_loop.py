@@ -11,6 +11,7 @@ class OpenLoop(Block):
     r"""No feedback: the reference is the drive, :math:`u=r`."""
 
     title = "Open loop"
+    place = 1
     equations = (Equation("law", r"u=r"),)
 
     class Params(BlockParams):

@@ -21,6 +21,7 @@ class Pid(Block):
     """
 
     title = "PID"
+    place = 2
     equations = (
         Equation("law", r"u=k_fr+K_pe+K_i\int e\,dt+K_d\dot e_f,\quad e=y_d-y"),
         Equation("pole placement", r"K_p=\frac{3p^2-a_2}{k_p},\;K_i=\frac{p^3}{k_p},\;K_d=\frac{3p-a_1}{k_p}"),

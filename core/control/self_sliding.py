@@ -39,6 +39,7 @@ class SelfSliding(Block):
     """
 
     title = "Self-sliding control"
+    place = 9
     equations = (
         Equation(
             "law",

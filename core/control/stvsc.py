@@ -37,6 +37,7 @@ class Stvsc(Block):
     """
 
     title = "Self-tuning VSC"
+    place = 7
     equations = (
         Equation(
             "law",

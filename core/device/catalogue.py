@@ -11,7 +11,9 @@ from pydantic import ValidationError
 
 from core.block import BlockParams
 from core.device.device import Device, Printed
+from core.device.drawn_gyroscope import DrawnGyroscope
 from core.device.geometry import Geometry
+from core.device.gyroscope import GyroscopeTable
 from core.device.transfer_function import TransferFunction
 from core.errors import from_validation, unknown
 
@@ -46,6 +48,8 @@ def device(overrides: dict[str, Any]) -> Device:
             "": Device,
             "geometry": Geometry,
             "transfer_function": TransferFunction,
+            "gyroscope": GyroscopeTable,
+            "drawn_gyroscope": DrawnGyroscope,
             "printed": Printed,
         }
         fields = {name: list(table.model_fields) for name, table in tables.items()}

@@ -8,9 +8,11 @@ from typing import Any, Self
 from pydantic import ValidationError, model_validator
 
 from core.block import BlockParams, Oscillator, parameter
+from core.device.drawn_gyroscope import DrawnGyroscope
 from core.device.environment import ROOM_K
 from core.device.frequency import figures
 from core.device.geometry import Geometry
+from core.device.gyroscope import GyroscopeTable
 from core.device.ranges import BiasV, DampingNsM, Fingers, ForceNPerV, LengthUm, MassKg, Resonator, StiffnessNM
 from core.device.transfer_function import TransferFunction
 from core.errors import InputError, from_validation
@@ -34,6 +36,20 @@ class Printed(BlockParams):
         return {names[name]: value for name, value in self.model_dump(exclude_none=True).items()}
 
 
+OF_RESONATOR = (
+    "mass_kg",
+    "damping_ns_m",
+    "stiffness_n_m",
+    "force_n_per_v",
+    "fingers",
+    "thickness_um",
+    "finger_gap_um",
+    "transfer_function",
+    "printed",
+)
+"""Fields that a device with two axes has no use for."""
+
+
 class Device(BlockParams):
     r"""A lateral comb resonator, from measured values or from its drawing.
 
@@ -46,7 +62,9 @@ class Device(BlockParams):
     gives no force at all.
 
     Either mass, damping and stiffness are given, or ``geometry``; a value given beside a geometry wins. A
-    ``transfer_function`` stands for a plant that is no resonator, and has none of these.
+    ``transfer_function`` stands for a plant that is no resonator, and has none of these. A gyroscope moves along two
+    axes and is driven by forces: all its numbers stand in the table ``gyroscope``, or follow from ``geometry`` and what
+    ``drawn_gyroscope`` adds.
     """
 
     id: str = parameter("custom", "name in the catalogue", live=False)
@@ -69,11 +87,24 @@ class Device(BlockParams):
     thickness_um: LengthUm | None = parameter(None, "structural thickness", "um", live=False)
     finger_gap_um: LengthUm | None = parameter(None, "gap between fingers as etched", "um", live=False)
     transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
+    gyroscope: GyroscopeTable | None = parameter(None, "of a device with two axes", live=False)
+    drawn_gyroscope: DrawnGyroscope | None = parameter(
+        None, "what a device with two axes has beside the drawing", live=False
+    )
     printed: Printed | None = parameter(None, "what the dissertation prints of it", live=False)
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        if self.transfer_function is not None:
+        if self.usual_plant == "gyroscope":
+            other = "geometry" if self.drawn_gyroscope is None else "gyroscope"
+            besides = [name for name in (*OF_RESONATOR, other) if getattr(self, name) is not None]
+            if besides:
+                where = "its table" if self.drawn_gyroscope is None else "its drawing"
+                raise ValueError(f"all numbers of a gyroscope stand in {where}; leave out {', '.join(besides)}")
+            if self.drawn_gyroscope is not None and self.geometry is None:
+                raise ValueError("drawn_gyroscope needs a geometry, the drawing of its parts")
+            self.oscillator()
+        if self.usual_plant != "linear":
             return self
         missing = [
             name
@@ -94,8 +125,27 @@ class Device(BlockParams):
         return self
 
     @property
+    def usual_plant(self) -> str:
+        """Name of the plant the device is usually simulated by."""
+        if self.gyroscope is not None or self.drawn_gyroscope is not None:
+            return "gyroscope"
+        return "linear" if self.transfer_function is None else "transfer_function"
+
+    @property
+    def two_axes(self) -> GyroscopeTable | None:
+        """Masses, stiffness and damping of a device with two axes, as given or as drawn."""
+        if self.drawn_gyroscope is None or self.geometry is None:
+            return self.gyroscope
+        return self.drawn_gyroscope.table(self.geometry)
+
+    @property
+    def drawn_resonator(self) -> Geometry | None:
+        """Drawing of a resonator; a gyroscope has the parts of its drawing, and other masses and stiffness."""
+        return self.geometry if self.drawn_gyroscope is None else None
+
+    @property
     def resolved(self) -> dict[str, float]:
-        """Mass, damping and stiffness in SI units.
+        """Mass, damping and stiffness in SI units; of a gyroscope those of the driven axis.
 
         Raises
         ------
@@ -104,6 +154,8 @@ class Device(BlockParams):
         """
         if self.transfer_function is not None:
             raise InputError("is a transfer function, without mass or stiffness; choose a resonator", "device.id")
+        if (axes := self.two_axes) is not None:
+            return axes.drive_axis
         drawn: dict[str, Any] = {}
         if self.geometry is not None:
             drawn = {
@@ -139,8 +191,8 @@ class Device(BlockParams):
 
     @property
     def capacitance_gradient(self) -> float:
-        """dC/dx of one comb, F/m; a transfer function has no comb."""
-        if self.transfer_function is not None:
+        """dC/dx of one comb, F/m; a transfer function has no comb, and a gyroscope is driven by forces."""
+        if self.usual_plant != "linear":
             return 0.0
         if self.force_n_per_v is not None:
             return self.force_n_per_v / (2.0 * abs(self.bias_v))
@@ -157,6 +209,8 @@ class Device(BlockParams):
         """Return the device in the units of the loop."""
         if self.transfer_function is not None:
             return self.transfer_function.oscillator()
+        if (axes := self.two_axes) is not None:
+            return axes.two_axis()
         si = self.resolved
         return Oscillator(
             mass=mass_mg(si["mass_kg"]),
@@ -186,11 +240,16 @@ class Device(BlockParams):
             "mass_kg": mass,
             "stiffness_n_m": stiffness,
             "damping_ns_m": damping,
-            "force_n_per_v": abs(force),
-            "static_gain_um_per_v": force / stiffness * 1e6,
             "thermal_rms_nm": math.sqrt(BOLTZMANN * temperature_k / stiffness) * 1e9,
             **figures(mass, damping, stiffness),
         }
+        if (axes := self.two_axes) is not None:
+            quoted |= axes.metrics(stiffness_scale, damping_scale, temperature_k)
+            if self.drawn_gyroscope is not None and self.geometry is not None:
+                scale = quoted["gyro.scale_pm_per_dps"]
+                quoted |= self.drawn_gyroscope.metrics(self.geometry, stiffness_scale, scale)
+            return quoted
+        quoted |= {"force_n_per_v": abs(force), "static_gain_um_per_v": force / stiffness * 1e6}
         if self.printed is not None:
             quoted |= self.printed.metrics()
         return quoted

@@ -92,4 +92,127 @@ QUANTITIES = (
             "turns at a bias without any travel",
         ),
     ),
+    *(
+        Quantity(
+            f"gyro.mode_hz.{n}",
+            f"Mode {n}",
+            "Hz",
+            Equation("coupled mode", r"f=\frac{|\lambda|}{2\pi},\quad\det(M\lambda^2+D\lambda+K)=0", "6.1.3"),
+        )
+        for n in (1, 2)
+    ),
+    *(
+        Quantity(
+            f"gyro.quality_factor.{n}",
+            f"Quality factor of mode {n}",
+            "1",
+            Equation("coupled mode", r"Q=-\frac{|\lambda|}{2\,\mathrm{Re}\,\lambda}", "6.1.3"),
+        )
+        for n in (1, 2)
+    ),
+    Quantity("gyro.split_hz", "Split of the modes", "Hz", Equation("split", r"f_2-f_1", "6.1.3")),
+    Quantity(
+        "gyro.axis_deg",
+        "Axis of stiffness",
+        "deg",
+        Equation("principal axis nearest to x", r"\tfrac12\arctan\frac{2k_{xy}}{k_{xx}-k_{yy}}", "6.1.3"),
+    ),
+    Quantity(
+        "gyro.tilt_deg",
+        "Tilt of the locus",
+        "deg",
+        Equation("long axis", r"\tfrac12\arctan\frac{2\,\mathrm{Re}\,G}{1-|G|^2},\quad G=y/x", "6.1.5"),
+    ),
+    Quantity(
+        "gyro.scale_pm_per_dps",
+        "Scale factor",
+        "pm/(deg/s)",
+        Equation(
+            "open loop", r"\frac{|y|}{\Omega}=\frac{2m_c\omega_1A}{|k_{yy}-m_y\omega_1^2+j\omega_1d_{yy}|}", "6.1.2"
+        ),
+    ),
+    Quantity(
+        "gyro.zero_rate_dps",
+        "Zero rate output",
+        "deg/s",
+        Equation(
+            "open loop",
+            r"\Omega_0=\frac1{2m_c}\left[d_{xy}-\frac{k_{xy}d_{yy}}{k_{yy}-m_y\omega_1^2}\right]",
+            "6.1.2",
+        ),
+    ),
+    Quantity(
+        "gyro.quadrature_dps",
+        "Quadrature as a rate",
+        "deg/s",
+        Equation("cross stiffness, y at rest", r"\Omega_q=\frac{k_{xy}}{2m_c\omega_x}", "6.1.3"),
+    ),
+    Quantity(
+        "gyro.damping_rate_dps",
+        "Cross damping as a rate",
+        "deg/s",
+        Equation("cross damping", r"\Omega_d=\frac{d_{xy}}{2m_c}", "6.1.3"),
+    ),
+    Quantity(
+        "gyro.floor_deg_per_h_rthz",
+        "Thermal floor",
+        "deg/h/rtHz",
+        Equation("Brownian force, one-sided", r"\Omega_n=\frac{\sqrt2\sqrt{4k_BTd_{yy}}}{2m_c\omega_xA}", "6.1.2"),
+    ),
+    Quantity(
+        "gyro.arw_deg_per_rt_h",
+        "Angle random walk",
+        "deg/rt h",
+        Equation("Brownian force, two-sided", r"N=\Omega_n/\sqrt2", "6.1.2"),
+    ),
+    *(
+        Quantity(
+            f"gyro.mass_{axis}_kg",
+            f"Mass along {axis}",
+            "kg",
+            Equation(
+                f"plate, frame of {axis}, flexures",
+                rf"m_{axis}=m_p+m_{{f{axis}}}+2\left(\tfrac{{12}}{{35}}m_{{b{axis}}}+\tfrac14m_{{t{axis}}}\right)"
+                rf"+m_{{b{other}}}+m_{{t{other}}}",
+                "1.3.3",
+            ),
+        )
+        for axis, other in (("x", "y"), ("y", "x"))
+    ),
+    Quantity(
+        "gyro.coriolis_mass_kg",
+        "Mass the rate acts on",
+        "kg",
+        Equation("moves along both axes", r"m_c=m_p+\tfrac12(m_{bx}+m_{tx}+m_{by}+m_{ty})", "6.1.2"),
+    ),
+    *(
+        Quantity(
+            f"gyro.stiffness_{axis}_n_m",
+            f"Stiffness along {axis}",
+            "N/m",
+            Equation("two folded flexures", rf"k_{axis}=2k(L_{axis},w_{axis})", "1.3.4"),
+        )
+        for axis in ("x", "y")
+    ),
+    *(
+        Quantity(
+            f"gyro.force_{axis}_nn_per_v2",
+            f"Comb force along {axis}",
+            "nN/V^2",
+            Equation("per bias and volt", r"\frac{F}{V_bv}=4n\varepsilon_0\frac tg", "1.3.2"),
+        )
+        for axis in ("x", "y")
+    ),
+    Quantity(
+        "gyro.sense_ff_per_um",
+        "Capacitance along y",
+        "fF/um",
+        Equation("difference of the two sides", r"\frac{dC}{dy}=4n\varepsilon_0\frac tg", "2.2.1.1"),
+    ),
+    Quantity(
+        "gyro.sense_af_per_dps",
+        "Capacitance per rate",
+        "aF/(deg/s)",
+        Equation("open loop", r"\frac{dC}{d\Omega}=\frac{dC}{dy}\,\frac{|y|}{\Omega}", "6.1.2"),
+    ),
 )

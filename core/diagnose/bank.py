@@ -5,13 +5,22 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from core.block import Block, Context, Oscillator
+import numpy as np
+
+from core.block import Block, Context, FloatArray, Oscillator
 from core.diagnose.hypothesis import lacking
 
 
-def gaussian(residual: float, covariance: float) -> float:
-    """Return the logarithm of the normal density."""
-    return -0.5 * (residual * residual / covariance + math.log(2.0 * math.pi * covariance))
+def gaussian(residual: FloatArray, covariance: FloatArray) -> float:
+    r"""Return the logarithm of the normal density, :math:`-\tfrac12(r^T\psi^{-1}r+\ln\det2\pi\psi)`.
+
+    Parameters
+    ----------
+    residual : array of shape (n,)
+    covariance : array of shape (n, n)
+    """
+    square = float(residual @ np.linalg.solve(covariance, residual))
+    return -0.5 * (square + math.log(float(np.linalg.det(2.0 * math.pi * covariance))))
 
 
 class Bank(Block):
@@ -21,6 +30,15 @@ class Bank(Block):
 
     sample_by_sample: ClassVar[bool] = True
     """Whether a posterior is a prior times a likelihood, so that a single sample can be explained."""
+
+    residuals: ClassVar[tuple[str, ...]] = ("residual",)
+    """Taps of the residual, one for each displacement measured."""
+
+    covariances: ClassVar[tuple[str, ...]] = ()
+    """Taps of its covariance, upper triangle row by row; none where a single residual and its nis tell it."""
+
+    weighed: ClassVar[str] = "what was believed before"
+    """What the prior of a sample is, in words."""
 
     evidence: ClassVar[str] = ""
     """LaTeX of `log_likelihood`; empty for the logarithm of the normal density."""
@@ -41,6 +59,8 @@ class Bank(Block):
         return 0.0
 
     @classmethod
-    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
+    def log_likelihood(
+        cls, params: Any, context: Context, residual: FloatArray, covariance: FloatArray, tone: float
+    ) -> float:
         """Return the logarithm of the density of a residual."""
         return gaussian(residual, covariance)

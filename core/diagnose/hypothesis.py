@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import Self
 
 from pydantic import Field, model_validator
@@ -11,12 +12,22 @@ from core.block import BlockParams, Context, Oscillator, parameter
 from core.diagnose.lanes import LANE
 
 
-class Hypothesis(BlockParams):
-    """One model of the bank, as factors on the nominal device."""
+class NamedModel(BlockParams):
+    """One model of a bank: what of the nominal device it takes for changed, and a name for that."""
 
     name: str = Field(
         min_length=1, max_length=24, pattern=r"^[^\s.]+$", description="short name, without spaces or dots"
     )
+
+    @property
+    def is_nominal(self) -> bool:
+        """Whether it takes nothing for changed."""
+        return self == type(self)(name=self.name)
+
+
+class Hypothesis(NamedModel):
+    """One model of the bank, as factors on the nominal device."""
+
     mass: float = parameter(1.0, "mass over nominal", gt=0, le=100, live=False)
     stiffness: float = parameter(1.0, "stiffness over nominal", gt=0, le=100, live=False)
     damping: float = parameter(1.0, "damping over nominal", gt=0, le=100, live=False)
@@ -48,7 +59,20 @@ def lacking(device: Oscillator) -> str:
     return "" if device.mass > 0.0 and device.stiffness > 0.0 else "needs a device with mass and spring"
 
 
-class BankParams(BlockParams):
+class ModelList(BlockParams):
+    """Parameters of any diagnoser that chooses between models."""
+
+    hypotheses: Sequence[NamedModel]
+
+    @model_validator(mode="after")
+    def _distinct(self) -> Self:
+        twice = [name for name, count in Counter(item.name for item in self.hypotheses).items() if count > 1]
+        if twice:
+            raise ValueError(f"hypothesis names must differ, {twice[0]} is there twice")
+        return self
+
+
+class BankParams(ModelList):
     """Parameters of any diagnoser with a list of hypotheses."""
 
     hypotheses: list[Hypothesis] = Field(
@@ -59,16 +83,14 @@ class BankParams(BlockParams):
         json_schema_extra={"unit": "", "live": False, "equation": "5.2.4"},
     )
 
-    @model_validator(mode="after")
-    def _distinct(self) -> Self:
-        twice = [name for name, count in Counter(item.name for item in self.hypotheses).items() if count > 1]
-        if twice:
-            raise ValueError(f"hypothesis names must differ, {twice[0]} is there twice")
-        return self
+
+def names_of(params: BlockParams) -> list[str]:
+    """Return the names of the models a diagnoser chooses between; none where it chooses between none."""
+    return [item.name for item in params.hypotheses] if isinstance(params, ModelList) else []
 
 
 def hypotheses_of(params: BlockParams) -> list[Hypothesis]:
-    """Return the hypotheses a diagnoser chooses between; none where it chooses between none."""
+    """Return the factors a diagnoser chooses between; none where it chooses between none."""
     return params.hypotheses if isinstance(params, BankParams) else []
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, FloatArray, parameter
 from core.diagnose import window
 from core.diagnose.filters import between_updates, filters_step, informed
 from core.diagnose.kalman import KalmanBank, KalmanParams
@@ -67,7 +67,9 @@ class LockIn(KalmanBank):
     evidence = r"-\frac{T_k}{2W}"
 
     @classmethod
-    def log_likelihood(cls, params: Any, context: Context, residual: float, covariance: float, tone: float) -> float:
+    def log_likelihood(
+        cls, params: Any, context: Context, residual: FloatArray, covariance: FloatArray, tone: float
+    ) -> float:
         """Return the evidence of a sample: the part of the residuals at the tone, spread over the window."""
         return -0.5 * tone / window.length(params, context)
 

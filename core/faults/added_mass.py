@@ -11,9 +11,11 @@ class AddedMass(ScaleFault):
     r"""Mass on the shuttle, :math:`m\to m(1+s)`."""
 
     title = "Added mass"
+    group, place = "The usual", 1
     shows = "plate"
     changes = "mass of the shuttle; the resonance falls, the displacement at rest stays"
     suggested = 0.05
+    axes = None
     equations = (Equation("effect", r"m\to m\,(1+s)", "5.2.4"),)
 
     class Params(FaultParams):

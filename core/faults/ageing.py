@@ -19,12 +19,14 @@ class Ageing(Fault):
     """
 
     title = "Ageing"
+    group, place = "Suspension", 9
     shows = "beams"
     changes = (
         "displacement the suspension allows, taken as the modulus of all beams; 1.748 times as stiff after four weeks, "
         "sideways and in rotation too in the planar plant"
     )
     suggested = 4.0
+    axes = None
     equations = (
         Equation(
             "effect",

@@ -24,6 +24,7 @@ class BrokenTruss(StructureFault):
     """
 
     title = "Broken truss"
+    group, place = "Suspension", 8
     shows = "trusses"
     changes = (
         "stiffness of the suspension in every plant; the rotation and a pull-in at half the voltage in the planar "
@@ -35,7 +36,7 @@ class BrokenTruss(StructureFault):
             "stiffness",
             r"k\to k\,[1+s(r-1)],\quad r\approx5/6\ \text{(one end)},\ 1/2\ \text{(whole)}",
             "3.1.3.2, case 2",
-            printed=r"\text{efforts about 20 % higher}",
+            printed=r"\text{efforts about 20\,\% higher}",
             why="a suspension that has lost a part is softer, so the effort falls; 1/0.83 = 1.205 is the "
             "displacement at the same voltage",
         ),

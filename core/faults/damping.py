@@ -11,9 +11,11 @@ class Damping(ScaleFault):
     r"""Damping of the gas film, :math:`\beta\to\beta(1+s)`."""
 
     title = "Damping"
+    group, place = "The usual", 3
     shows = "film"
     changes = "damping of the gas film; only what happens near resonance changes much"
     suggested = 0.3
+    axes = None
     equations = (
         Equation("effect", r"\beta\to\beta\,(1+s)", "5.2.4 (the caption of 5.2.4.1.3 calls it spring constant)"),
     )

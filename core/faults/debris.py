@@ -21,6 +21,7 @@ class Debris(Fault):
     """
 
     title = "Debris"
+    group, place = "Drive and combs", 17
     shows = "fingers"
     changes = (
         "stiffness and damping in every plant, and a short of one comb when it conducts; the rotation in the planar "

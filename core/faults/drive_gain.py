@@ -17,6 +17,7 @@ class DriveGain(Fault):
     """
 
     title = "Drive gain"
+    group, place = "Drive and combs", 13
     shows = "drive"
     changes = "voltage that reaches the comb, in every plant; a bank knows a gain as a hypothesis, a stuck drive not"
     suggested = -0.2

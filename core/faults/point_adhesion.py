@@ -23,6 +23,7 @@ class PointAdhesion(StructureFault):
     """
 
     title = "Point adhesion"
+    group, place = "Suspension", 7
     shows = "beams"
     changes = (
         "stiffness of the suspension in every plant; the rotation, the sideways shift and an earlier pull-in in the "

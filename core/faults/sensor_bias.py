@@ -12,9 +12,11 @@ class SensorBias(Fault):
     r"""Everything measured is off by the same, :math:`z\to z+b`; as a ramp, the sensor drifts."""
 
     title = "Sensor bias"
+    group, place = "Measurement", 19
     shows = "sensor"
     changes = "measured displacement, whatever the sensor; a controller moves the shuttle by as much the other way"
     suggested = 0.5
+    axes = None
     equations = (Equation("effect", r"z\to z+b", "not in the text"),)
 
     class Params(FaultParams):

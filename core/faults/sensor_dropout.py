@@ -21,9 +21,11 @@ class SensorDropout(Fault):
     """
 
     title = "Sensor drop-out"
+    group, place = "Measurement", 20
     shows = "sensor"
     changes = "measured displacement, which stays where it was while samples are lost; filters take it for new"
     suggested = 0.2
+    axes = None
     equations = (Equation("effect", r"z_i\to z_{i-1}\ \text{with probability}\ q", "not in the text"),)
 
     class Params(FaultParams):

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from core.block import Context, Equation, parameter
-from core.elementary import floor, sin
 from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
+from core.phase import sine_of
 from core.ports import BlockPorts
 from core.record import Record
 
@@ -19,9 +18,11 @@ class SensorHum(Fault):
     """
 
     title = "Sensor hum"
+    group, place = "Measurement", 22
     shows = "sensor"
     changes = "measured displacement, whatever the sensor; a controller makes the shuttle follow the mains"
     suggested = 0.2
+    axes = None
     equations = (Equation("effect", r"z\to z+a\sin2\pi ft", "not in the text"),)
 
     class Params(FaultParams):
@@ -56,5 +57,5 @@ class SensorHum(Fault):
         x.severity = amplitude
         if amplitude != 0.0:
             turns = p.turns_per_ms * x.time_ms
-            x.sensor_offset += amplitude * sin(2.0 * math.pi * (turns - floor(turns)))
+            x.sensor_offset += amplitude * sine_of(turns)
             x.other += 1.0

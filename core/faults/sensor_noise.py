@@ -19,9 +19,11 @@ class SensorNoise(Fault):
     """
 
     title = "Sensor noise"
+    group, place = "Measurement", 18
     shows = "sensor"
     changes = "measured displacement, whatever the sensor; what filters assume of the noise stays"
     suggested = 0.1
+    axes = None
     equations = (Equation("effect", r"z\to z+\sigma n,\quad n\sim N(0,1)", "not in the text"),)
 
     class Params(FaultParams):

@@ -16,9 +16,11 @@ class SensorQuantisation(Fault):
     """
 
     title = "Sensor quantisation"
+    group, place = "Measurement", 21
     shows = "sensor"
     changes = "measured displacement, in steps; small motion is not seen at all"
     suggested = 0.1
+    axes = None
     equations = (Equation("effect", r"z\to q\lfloor z/q+\tfrac12\rfloor", "not in the text"),)
 
     class Params(FaultParams):

@@ -23,12 +23,14 @@ class Shock(Fault):
     """
 
     title = "Shock"
+    group, place = "Surroundings", 23
     shows = "frame"
     changes = (
         "acceleration along x in every plant; along y in the planar plant only. The stops are in the nonlinear and "
         "planar plants"
     )
     suggested = 20.0
+    axes = None
     equations = (Equation("pulse", r"a=a_0\sin(\pi t/T),\quad m\ddot x=\dots-ma", "1.3.1"),)
 
     class Params(FaultParams):

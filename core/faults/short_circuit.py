@@ -19,6 +19,7 @@ class ShortCircuit(Fault):
     """
 
     title = "Short circuit"
+    group, place = "Drive and combs", 15
     shows = "fingers"
     changes = "force of one comb or of both, in every plant, until the board is reset; the board stops"
     suggested = 1.0

@@ -16,6 +16,7 @@ class Stiction(Fault):
     """
 
     title = "Stiction"
+    group, place = "Gas and friction", 12
     shows = "film"
     changes = (
         "friction along x in every plant: a dead band about rest, flattened peaks, no hypothesis of a bank is true"

@@ -16,12 +16,14 @@ class Stiffness(Fault):
     """
 
     title = "Beam stiffness"
+    group, place = "The usual", 2
     shows = "beams"
     changes = (
         "stiffness of the suspension along x in every plant, sideways and in rotation, and so pull-in, in the planar "
         "plant; resonance and displacement at rest both move"
     )
     suggested = 0.05
+    axes = None
     equations = (Equation("effect", r"k\to k\,(1+s),\quad k_y\to k_y(1+s),\quad k_\theta\to k_\theta(1+s)", "5.2.4"),)
 
     class Params(FaultParams):

@@ -18,6 +18,7 @@ class StiffnessOneSide(StructureFault):
     """
 
     title = "Beam stiffness, one side"
+    group, place = "Suspension", 4
     shows = "beams"
     changes = (
         "stiffness of the suspension, by half the severity, in every plant; stiffness sideways and in rotation, and a "

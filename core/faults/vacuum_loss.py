@@ -18,6 +18,7 @@ class VacuumLoss(Fault):
     """
 
     title = "Loss of vacuum"
+    group, place = "Gas and friction", 10
     shows = "film"
     changes = "pressure at the device, and with it the damping of the gas"
     suggested = 1.0

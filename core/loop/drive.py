@@ -14,10 +14,10 @@ from core.record import Record
 
 
 class Converter(Record):
-    """Limit to either side, step of the converter, 0 for none."""
+    """Limit to either side, step of the converter, 0 for none; volts, or uN for the force along an axis."""
 
-    limit_v: float
-    quantum_v: float
+    limit: float
+    quantum: float
 
 
 @kernel
@@ -25,9 +25,9 @@ def convert(p: Converter, u: float) -> float:
     """Clip to the limit and round to the converter's step; nothing comes out for what is not a number."""
     if not math.isfinite(u):
         return 0.0
-    u = min(max(u, -p.limit_v), p.limit_v)
-    if p.quantum_v > 0.0:
-        u = p.quantum_v * floor(u / p.quantum_v + 0.5)
+    u = min(max(u, -p.limit), p.limit)
+    if p.quantum > 0.0:
+        u = p.quantum * floor(u / p.quantum + 0.5)
     return u
 
 
@@ -75,6 +75,7 @@ class Drive(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
+        p.limit, p.quantum = params.limit_v, params.quantum_v
         p.dither_per_ms = params.dither_rate_hz / 1e3
         p.dither_key = key(context.seed, "drive.dither")
         return p
@@ -93,4 +94,4 @@ class Drive(Block):
         else:
             x.middle = convert(p, x.command_middle + dither)
             x.end = convert(p, x.command_end + dither)
-        x.saturated = 1.0 if abs(u) > p.limit_v else 0.0
+        x.saturated = 1.0 if abs(u) > p.limit else 0.0

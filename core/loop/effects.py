@@ -71,6 +71,11 @@ class Effects(Block):
         elasticity_scale: float = _scale(
             "stiffness of all beams alike over nominal: cubic, sideways and in rotation too"
         )
+        cross_stiffness: float = _sum("uN/um", "added to the stiffness that couples the first two axes")
+        cross_damping: float = _sum("uN ms/um", "added to the damping that couples the first two axes")
+        second_stiffness_scale: float = _scale("stiffness of the second axis over nominal, besides that of all axes")
+        second_damping_scale: float = _scale("damping of the second axis over nominal, besides that of all axes")
+        second_drive_gain: float = _scale("force on the second axis over the one applied")
 
     @classmethod
     def neutral(cls) -> dict[str, float]:
@@ -98,6 +103,11 @@ class Effects(Block):
         x.sensor_offset = 0.0
         x.sensor_quantum = 0.0
         x.sensor_held = 0.0
+        x.cross_stiffness = 0.0
+        x.cross_damping = 0.0
+        x.second_stiffness_scale = 1.0
+        x.second_damping_scale = 1.0
+        x.second_drive_gain = 1.0
         x.stiffness_scale = x.stiffness
         x.elasticity_scale = x.stiffness  # temperature and age change the material of every beam
         x.damping_scale = x.damping

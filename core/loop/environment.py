@@ -58,6 +58,11 @@ class Environment(Block):
     LCR-350. Temperature and age change the modulus of all beams, and with it every stiffness of the suspension.
     Temperature is also that of the thermomechanical noise. Humidity sets the adhesion energy, and with it the friction
     of what touches; its effect on viscosity is below 1 %.
+
+    A device of two axes is sealed in a package, at whose pressure its quality factors hold. No air outside reaches it:
+    its damping depends neither on pressure nor on humidity here, and the fault ``package_leak`` raises the pressure
+    inside. Temperature changes its stiffness and its thermomechanical noise. The drag of a sealed gas grows with
+    :math:`\sqrt T` besides, 8 % from 300 to 350 K; how much of the damping is gas is not known, so that is left out.
     """
 
     title = "Environment"
@@ -91,7 +96,14 @@ class Environment(Block):
         """State of the air and of the device in it."""
 
         temperature_k: float = parameter(300.0, "temperature of device and air", "K", ge=150, le=600)
-        pressure_pa: float = parameter(101325.0, "pressure of the air", "Pa", ge=0.01, le=1e6, equation="1.3.7")
+        pressure_pa: float = parameter(
+            101325.0,
+            "pressure of the air; a device in a sealed package does not feel it",
+            "Pa",
+            ge=0.01,
+            le=1e6,
+            equation="1.3.7",
+        )
         humidity_pct: float = parameter(40.0, "relative humidity", "%", ge=0, le=100, equation="1.4.4")
         friction_nn: float = parameter(
             0.0, "Coulomb friction at 40 % of humidity: the shuttle sticks within F/k", "nN", ge=0, le=1e5
@@ -133,7 +145,7 @@ class Environment(Block):
         friction_scale: float = output("1", "friction at this humidity over that at 40 %", hidden=True)
         age: float = output("week", "age without any fault", hidden=True)
         damping_set: float = output("1", "damping over nominal without any leak", hidden=True)
-        pressure: float = tap("Pa", "pressure at the device")
+        pressure: float = tap("Pa", "pressure of the air around the device or its package")
         adhesion: float = tap("mJ/m^2", "adhesion energy of surfaces that touch")
 
     @classmethod
@@ -148,8 +160,7 @@ class Environment(Block):
         film = p.film
         film.plan_um2, film.film_um, film.comb_um2, film.gap_um = drawn(context).film
         film.omega = 1e3 * device.natural_frequency
-        # what is no resonator has no air around it either
-        film.structural = structural_share(0.5 / device.damping_ratio) if device.time_unit_ms == 0.0 else 1.0
+        film.structural = structural_share(0.5 / device.damping_ratio) if device.in_air else 1.0
         p.damping_set = damping_in(film, params.pressure_pa, params.temperature_k)
         return p
 

@@ -6,10 +6,13 @@ import math
 from typing import Any
 
 from pydantic import BaseModel
+from scipy.special import chdtri
 
-from core.block import Block, Context
+from core.block import Block, Context, Equation
 from core.diagnose.hypothesis import BankParams
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import winner_of
+from core.kernel import inlined
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record, Records, Vector, tail, vector
 
@@ -18,6 +21,12 @@ HELD = 20.0
 TOLERANCE = 1e-3
 STEPS = 64
 """Steps whose delays are kept."""
+SPAN = 25.0
+"""Verdicts over which residuals are averaged, with weights that fall off exponentially."""
+MOST_NIS = 100.0
+"""What a single residual counts at most, so that a verdict is free again a hundred samples after the worst."""
+CHANCE = 1e-6
+"""Chance by which the limit of the average is set; that of weights that fall off is over it in 6e-6 of verdicts."""
 
 
 class Factors(Record):
@@ -29,8 +38,16 @@ class Factors(Record):
     gain: float
 
 
+class Turns(Record):
+    """Number of hypotheses, ticks between two verdicts, limit of an average of normalised residuals squared."""
+
+    count: float
+    every: float
+    limit: float
+
+
 class Score(Block):
-    """Scores a bank: share of right samples, delay of each step, exits from the truth.
+    r"""Scores a bank: share of right samples, delay of each step, exits from the truth.
 
     The delay is the number of samples from the change to the first of 20 right verdicts in a row; a false switch
     is an exit from the truth after that; the share counts every sample, transitions included. The truth is the
@@ -40,21 +57,32 @@ class Score(Block):
     is healthy, while a leak and ageing within the run are faults. The models of a bank stay those of a new device at
     300 K and 1 atm, so that it may well be wrong elsewhere. A bank whose probabilities are no numbers has no winner,
     and is not right.
+
+    A bank divides its belief among the hypotheses it has, and so it names one even if none is true. Its residuals tell:
+    those of a true hypothesis are as large as its filter expects. Verdicts are unexplained while the normalised
+    residuals squared are too large for chance on average, for every hypothesis; an average with weights
+    :math:`(1-1/25)^k` of white residuals is as good as one of :math:`2\cdot25-1` samples.
     """
 
     title = "Score"
     lengths = ("hypotheses",)
+    equations = (
+        Equation("average", r"\bar\epsilon_i\leftarrow\bar\epsilon_i+\tfrac1W(r_i^2/\psi_i-\bar\epsilon_i)"),
+        Equation(
+            "unexplained",
+            r"\min_i\bar\epsilon_i>\chi^2_{2W-1}(1-10^{-6})/(2W-1)",
+            "Bar-Shalom, Li and Kirubarajan 2001, 5.4",
+        ),
+    )
     Params = BankParams
 
-    class Packed(Record):
-        """Number of hypotheses, ticks between two verdicts, the hypotheses."""
+    class Packed(Turns):
+        """In addition the hypotheses."""
 
-        count: float
-        every: float
         hypotheses: Records[Factors] = tail()
 
     class State(Record):
-        """The present truth and how far it is found, counters, delays of the steps, confusion matrix row by row."""
+        """The present truth and how far it is found, counters, delays, average residuals, confusion row by row."""
 
         truth: float
         run: float
@@ -69,6 +97,7 @@ class Score(Block):
         started: float
         was_right: float
         delays: Vector = vector(STEPS)
+        average: Vector = vector(LANE)
         confusion: Vector = tail()
 
     class Ports(BlockPorts):
@@ -88,12 +117,14 @@ class Score(Block):
         correct_fraction: float = tap("1", "share of samples with the right winner")
         false_switches: float = tap("1", "exits from the truth after it was found")
         delay: float = tap("samples", "samples it took to find the present truth, -1 while it is not found")
+        least_nis: float = tap("1", "average normalised residual squared of what fits best; 1 where it is true")
+        unexplained: float = tap("1", "1 while no hypothesis fits: even the least is too large for chance")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the ticks between two verdicts and the factors of the hypotheses."""
         p = cls.Packed.blank(len(params.hypotheses))
-        p.count, p.every = len(params.hypotheses), context.every
+        take_turns(p, len(params.hypotheses), context)
         for factors, item in zip(p.hypotheses, params.hypotheses, strict=True):
             factors.mass, factors.stiffness = item.mass, item.stiffness
             factors.damping, factors.gain = item.damping, item.gain
@@ -102,67 +133,96 @@ class Score(Block):
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
         """Nothing counted."""
-        s = cls.State.zeros(len(params.hypotheses) ** 2)
-        s.truth = -2.0
-        return s
+        return nothing_counted(len(params.hypotheses))
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
         """Name the winner and the truth, and count."""
         n = int(p.count)
-        winner = winner_of(x.probability, n)
-        if not math.isfinite(x.probability[winner]):
-            winner = -1
         truth = -1
-        stiffness = x.set_stiffness
-        damping = x.set_damping
         for i in range(n):
-            h = p.hypotheses[i]
-            if (
-                truth < 0
-                and x.other == 0.0
-                and abs(x.mass_scale - h.mass) <= TOLERANCE * h.mass
-                and abs(x.stiffness_scale - stiffness * h.stiffness) <= TOLERANCE * stiffness * h.stiffness
-                and abs(x.damping_scale - damping * h.damping) <= TOLERANCE * damping * h.damping
-                and abs(x.drive_gain - h.gain) <= TOLERANCE * h.gain
-            ):
+            if truth < 0 and holds(p.hypotheses[i], x):
                 truth = i
-        if s.started == 0.0 or truth != s.truth:
-            s.started = 1.0
-            s.truth = truth
-            s.since = x.tick
-            s.run = 0.0
-            s.found = 0.0
-            s.was_right = 0.0
-            if truth >= 0:  # what no hypothesis names is never found
-                s.steps += 1.0
-                if s.steps <= STEPS:
-                    s.delays[int(s.steps) - 1] = -1.0
-            x.delay = -1.0
-        s.total += 1.0
-        right = winner == truth and truth >= 0
-        if right:
-            s.right += 1.0
-            s.run += 1.0
-            if s.found == 0.0 and s.run >= HELD:
-                s.found = 1.0
-                delay = x.tick - (HELD - 1.0) * p.every - s.since
-                x.delay = delay
-                if s.steps <= STEPS:
-                    s.delays[int(s.steps) - 1] = delay
-        else:
-            s.run = 0.0
-            if s.found != 0.0 and s.was_right != 0.0:
-                s.exits += 1.0
-        s.was_right = 1.0 if right else 0.0
-        if truth >= 0 and winner >= 0:
-            s.confusion[truth * n + winner] += 1.0
-            s.nis_sum += x.nis[truth]
-            s.nis_count += 1.0
-        x.winner = winner
-        x.truth = truth
-        x.correct_fraction = s.right / s.total
-        x.false_switches = s.exits
+        count(p, s, x, n, truth)
+
+
+def take_turns(p: Turns, n: int, context: Context) -> None:
+    """Pack what a score of so many hypotheses has whatever they say."""
+    samples = 2.0 * SPAN - 1.0
+    p.count, p.every, p.limit = n, context.every, float(chdtri(samples, CHANCE)) / samples
+
+
+def nothing_counted(n: int) -> Score.State:
+    """Return the state of a score of so many hypotheses that has counted nothing."""
+    s = Score.State.zeros(n**2)
+    s.truth = -2.0
+    s.average[:] = 1.0
+    return s
+
+
+@inlined
+def holds(h: Factors, x: Score.Ports) -> bool:
+    """Say whether the factors of a hypothesis are those of the plant at this moment."""
+    stiffness = x.set_stiffness * h.stiffness
+    damping = x.set_damping * h.damping
+    return (
+        x.other == 0.0
+        and abs(x.mass_scale - h.mass) <= TOLERANCE * h.mass
+        and abs(x.stiffness_scale - stiffness) <= TOLERANCE * stiffness
+        and abs(x.damping_scale - damping) <= TOLERANCE * damping
+        and abs(x.drive_gain - h.gain) <= TOLERANCE * h.gain
+    )
+
+
+@inlined
+def count(p: Turns, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
+    """Compare the winner with the truth, and count."""
+    winner = winner_of(x.probability, n)
+    if not math.isfinite(x.probability[winner]):
+        winner = -1
+    if s.started == 0.0 or truth != s.truth:
+        s.started = 1.0
+        s.truth = truth
+        s.since = x.tick
+        s.run = 0.0
+        s.found = 0.0
+        s.was_right = 0.0
+        if truth >= 0:  # what no hypothesis names is never found
+            s.steps += 1.0
+            if s.steps <= STEPS:
+                s.delays[int(s.steps) - 1] = -1.0
+        x.delay = -1.0
+    s.total += 1.0
+    right = winner == truth and truth >= 0
+    if right:
+        s.right += 1.0
+        s.run += 1.0
+        if s.found == 0.0 and s.run >= HELD:
+            s.found = 1.0
+            delay = x.tick - (HELD - 1.0) * p.every - s.since
+            x.delay = delay
+            if s.steps <= STEPS:
+                s.delays[int(s.steps) - 1] = delay
+    else:
+        s.run = 0.0
+        if s.found != 0.0 and s.was_right != 0.0:
+            s.exits += 1.0
+    s.was_right = 1.0 if right else 0.0
+    if truth >= 0 and winner >= 0:
+        s.confusion[truth * n + winner] += 1.0
+        s.nis_sum += x.nis[truth]
+        s.nis_count += 1.0
+    least = MOST_NIS
+    for i in range(n):
+        square = x.nis[i] if x.nis[i] < MOST_NIS else MOST_NIS  # also where it is no number
+        s.average[i] += (square - s.average[i]) / SPAN
+        least = min(least, s.average[i])
+    x.winner = winner
+    x.truth = truth
+    x.correct_fraction = s.right / s.total
+    x.false_switches = s.exits
+    x.least_nis = least
+    x.unexplained = 1.0 if least > p.limit else 0.0
 
 
 class Scores(BaseModel):
@@ -176,11 +236,13 @@ class Scores(BaseModel):
     delays: list[int | None]
     since_tick: int
     nis: float | None
+    least_nis: float
+    unexplained: bool
     confusion: list[list[int]]
 
 
-def read(s: Score.State, names: list[str], winner: int) -> Scores:
-    """Read the counters of a score block."""
+def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Scores:
+    """Read the counters of a score block; winner and whether no hypothesis fits are among its signals."""
     n = len(names)
     delays = s.delays[: min(int(s.steps), STEPS)]
     return Scores(
@@ -192,5 +254,7 @@ def read(s: Score.State, names: list[str], winner: int) -> Scores:
         delays=[None if value < 0 else int(value) for value in delays],
         since_tick=int(s.since),
         nis=float(s.nis_sum / s.nis_count) if s.nis_count else None,
+        least_nis=float(min(s.average[:n])),
+        unexplained=unexplained,
         confusion=s.confusion.reshape(n, n).astype(int).tolist(),
     )

@@ -46,7 +46,7 @@ class Planar(Plane):
         ),
         Equation(
             "squeeze film of an arm",
-            r"c=\tfrac12c_0\left[(1-\eta/g)^{-3}+(1+\eta/g)^{-3}\right],\quad"
+            r"c=\tfrac12c_0\left[(1-\eta/g)^{-3}+(1+\eta/g)^{-3}\right],\quad "
             r"c_0=\frac{4n\mu L_0t^3/g^3}{1+9.638K_n^{1.159}}",
             "Veijola, recalled",
         ),

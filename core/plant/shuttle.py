@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Oscillator, parameter
+from core.device.two_axis import TwoAxis
 from core.kernel import inlined, kernel
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads, tap
@@ -87,7 +88,9 @@ class Shuttle(Block):
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse devices that are not resonators."""
+        """Refuse devices that are not resonators along x alone."""
+        if isinstance(device, TwoAxis):
+            return "this device has two axes; choose gyroscope"
         return "" if device.time_unit_ms == 0.0 else "this device is no resonator; choose transfer_function"
 
     @classmethod

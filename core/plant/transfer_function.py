@@ -55,7 +55,9 @@ class TransferFunction(Shuttle):
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
         """Refuse resonators: their force is that of a comb."""
-        return "" if device.time_unit_ms > 0.0 else "this device is a resonator; choose linear"
+        if device.time_unit_ms > 0.0:
+            return ""
+        return super().unsuited(device, model) or "this device is a resonator; choose linear"
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

@@ -10,7 +10,8 @@ from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
 from core.elementary import floor
 from core.kernel import kernel
-from core.reference.waveform import ReferenceParams, Waveform, sine_of
+from core.phase import sine_of
+from core.reference.waveform import ReferenceParams, Waveform
 
 
 class Chirp(Waveform):

@@ -7,8 +7,9 @@ from typing import Any
 from core.block import BlockParams, Context, Equation, parameter
 from core.device.ranges import Sized
 from core.kernel import kernel
+from core.phase import sine_of
 from core.record import Record, Records, tail
-from core.reference.waveform import ReferenceParams, Waveform, line, sine_of
+from core.reference.waveform import ReferenceParams, Waveform, line
 
 
 class Tone(BlockParams):

@@ -7,7 +7,8 @@ from typing import Any
 from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
 from core.kernel import kernel
-from core.reference.waveform import ReferenceParams, Waveform, line, sine_of
+from core.phase import sine_of
+from core.reference.waveform import ReferenceParams, Waveform, line
 
 
 class Sine(Waveform):

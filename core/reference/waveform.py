@@ -9,9 +9,7 @@ from typing import Any, Self
 from pydantic import model_validator
 
 from core.block import Block, BlockParams, Context, parameter
-from core.elementary import floor, sin
 from core.errors import InputError
-from core.kernel import kernel
 from core.ports import BlockPorts, output
 from core.record import Record
 
@@ -35,18 +33,17 @@ class ReferenceParams(BlockParams):
             return self.amplitude_v
         assert self.amplitude_um is not None  # _one_amplitude has checked it
         if context.device.static_gain == 0.0:
-            raise InputError("needs a device that moves; these stators give no force", "reference.amplitude_um")
+            raise InputError("no voltage alone displaces this device at rest; give amplitude_v", "amplitude_um")
         return self.amplitude_um / context.device.static_gain
 
 
-@kernel
-def sine_of(cycles: float) -> float:
-    """Sine of a phase in cycles; the phase is kept below one, so that it is as exact after hours as at the start."""
-    return sin(2.0 * math.pi * (cycles - floor(cycles)))
-
-
 class Waveform(Block):
-    """A reference; a subclass gives ``shape(p, t_ms)`` of unit amplitude."""
+    """A reference; a subclass gives ``shape(p, t_ms)`` of unit amplitude.
+
+    The plant of a bench with axes may have one for a generator beside its rate; a controller makes a force of it.
+    """
+
+    axes = None
 
     class Packed(Record):
         """Every reference: ms of a tick, whether it also plays between ticks, amplitude and constant in V."""

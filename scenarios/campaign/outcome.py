@@ -79,11 +79,7 @@ def _diagnosis(result: Result, name: str, scores: Scores) -> Diagnosis:
     counted = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
     params: Any = result.board.spec.diagnosers[name].params
     healthy = next(
-        (
-            position
-            for position, item in enumerate(params.hypotheses)
-            if item.mass == item.stiffness == item.damping == item.gain == 1.0
-        ),
+        (position for position, item in enumerate(params.hypotheses) if item.is_nominal),
         None,
     )
     columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]

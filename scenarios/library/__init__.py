@@ -1,4 +1,4 @@
-"""The library: every experiment of the dissertation, one TOML file each, with its claim and verdict."""
+"""The library: the experiments of the dissertation and some more, one TOML file each, with claim and verdict."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scenarios.schema import Scenario
 
 @cache
 def ids() -> tuple[str, ...]:
-    """Return the id of every scenario in the order of the text: chapters, then appendices. It names the file."""
+    """Return the id of every scenario in the order of the text: chapters, gyroscopes, appendices. It names the file."""
     names = [entry.name for entry in files(__name__).iterdir() if entry.name.endswith(".toml")]
     ids = [name.removesuffix(".toml") for name in names]
     return tuple(sorted(ids, key=lambda name: (name.startswith("app"), not name.startswith("first"), name)))

@@ -13,6 +13,7 @@ from core.board.spec import Spec
 from core.loop.environment import Environment
 from core.loop.score import Scores
 from scenarios.measure.lateral import lateral_metrics
+from scenarios.measure.rate import rate_metrics
 from scenarios.measure.sensing import sensing_metrics
 from scenarios.measure.stretch import Stretch
 from scenarios.measure.verdicts import verdict_metrics
@@ -37,7 +38,9 @@ def device_metrics(spec: Spec) -> dict[str, float]:
     params = spec.environment.params
     stiffness, damping = Environment.scales(params, spec.context())
     temperature = spec.context().temperature_k
-    figures = {f"device.{name}": value for name, value in spec.device.metrics(stiffness, damping, temperature).items()}
+    quoted = spec.device.metrics(stiffness, damping, temperature)
+    # the figures of a gyroscope have a family of names of their own
+    figures = {name if "." in name else f"device.{name}": value for name, value in quoted.items()}
     return {**figures, "environment.stiffness_scale": stiffness, "environment.damping_scale": damping}
 
 
@@ -155,8 +158,10 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
     """Return every figure of a run."""
     figures = device_metrics(board.spec) | lateral_metrics(board)
     if board.tick > 1:
-        figures |= control_metrics(board, trace, stretch)
-        figures |= sensing_metrics(board, trace, stretch)
+        if board.spec.axes:
+            figures |= rate_metrics(board, trace, stretch)
+        else:
+            figures |= control_metrics(board, trace, stretch) | sensing_metrics(board, trace, stretch)
     for name in board.spec.identifiers if board.tick > 1 else ():
         figures |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
     scores = board.scores()

@@ -34,7 +34,7 @@ def _measure(name: str, title: str, checkpoint: Checkpoint) -> PlantCost:
     board.pending.clear()
     try:
         if board.spec.plant.block.name != name:
-            board.apply(Set(values={"plant.model": name}), "cost")
+            board.apply(Set(set={"plant.model": name}), "cost")
     except InputError as error:
         return PlantCost(name, title, None, str(error))
     board.advance(WARM_TICKS)

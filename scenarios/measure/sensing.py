@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from core.block import FloatArray
 from core.board.board import Board
+from core.board.commands import Set
 from scenarios.measure.stretch import Stretch
 
 
@@ -60,4 +61,5 @@ def _ambiguity_um(board: Board) -> float:
 
 def _chosen_at(board: Board) -> int:
     """Return the tick at which the sensor in use was chosen; before it, another sensor fed the loop."""
-    return max((entry.tick for entry in board.log if entry.kind == "set" and "sensor.kind" in entry.new), default=0)
+    chosen = [command for command in board.done if isinstance(command, Set) and "sensor.kind" in command.set]
+    return chosen[-1].at_sample or 0 if chosen else 0

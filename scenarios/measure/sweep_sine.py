@@ -64,10 +64,18 @@ def sweep_sine(
     Raises
     ------
     InputError
-        When the board trips, the record does not look like a resonator, or the sweep would take too long.
+        When the plant has axes, the board trips, the record does not look like a resonator, or the sweep would take too
+        long.
     """
+    if board.spec.axes:
+        moves = f"{board.spec.plant.block.name} moves along {', '.join(board.spec.axes)}"
+        raise InputError(f"a swept sine is for one displacement; {moves}", "plant.model")
     copy = Board.restore(board.checkpoint())
     copy.pending.clear()
+    if copy.spec.axes:
+        raise InputError(
+            f"the plant moves along {', '.join(copy.spec.axes)}; a swept sine needs one displacement", "plant.model"
+        )
     device = copy.spec.device
     nominal = figures(**device.resolved)
     if device.signed_force_n_per_v == 0.0:
@@ -104,7 +112,7 @@ def sweep_sine(
 def _measure(board: Board, hertz: float, amplitude_v: float, cycles: float, settle_ms: float, held: bool) -> Tone:
     """Play one tone and fit it."""
     sine = {"kind": "sine", "amplitude_v": amplitude_v, "frequency_hz": hertz}
-    board.apply(Set(values={"controller.kind": "open_loop", "reference": sine}), "sweep")
+    board.apply(Set(set={"controller.kind": "open_loop", "reference": sine}), "sweep")
     _record(board, math.ceil(settle_ms / board.dt_ms))
     # whole cycles, and from a moment at which the phase does not matter
     voltage, displacement = _record(board, max(16, round(cycles * 1e3 / hertz / board.dt_ms)))

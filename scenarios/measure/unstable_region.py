@@ -33,7 +33,6 @@ def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegion:
     """
     kind = board.spec.plant.block.name
     p, state = board.wiring.parameters("plant"), board.wiring.state("plant")
-    mass = float(p.mass) * board.value("effects.mass_scale")
     if kind == "slaved_lateral":
         ratio = float(p.ratio)
         force: Force = slaved_force(p, float(p.stiffness_n_m) * board.value("effects.stiffness_scale"))
@@ -45,6 +44,7 @@ def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegion:
         size = 3
     else:
         return UnstableRegion(kind, [], None)
+    mass = float(p.mass) * board.value("effects.mass_scale")
     first, second = stators_of(p)
     short = board.value("plant.short")
     right, left = comb_voltage(first - drive_v, short, RIGHT), comb_voltage(second - drive_v, short, LEFT)

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.block import FloatArray
 from core.board.board import Board
+from core.board.commands import Heal, Inject
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, NORMAL, UNKNOWN
 
 TRACED_VERDICTS = ("truth", "winner", "verdict", "alarm", "region", "loss", "estimate")
@@ -46,8 +47,8 @@ def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, flo
 
 def _edges(board: Board) -> list[int]:
     """Return the ticks at which a fault came or went, with start and end."""
-    ticks = {entry.tick for entry in board.log if entry.kind in ("inject", "heal") and 0 < entry.tick < board.tick}
-    return [0, *sorted(ticks), board.tick] if board.tick else []
+    ticks = {command.at_sample or 0 for command in board.done if isinstance(command, Inject | Heal)}
+    return [0, *sorted(tick for tick in ticks if 0 < tick < board.tick), board.tick] if board.tick else []
 
 
 def _verdicts(

@@ -8,7 +8,7 @@ from typing import Any
 
 import pyarrow as pa
 
-from core.format import format_count, format_number, format_short, format_si
+from core.format import format_count, format_figure, format_share, format_short
 from scenarios.campaign.outcome import Outcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import DiagnosisTally, PointTally
@@ -74,7 +74,7 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
 
 def _mean(point: PointTally, name: str) -> str:
     spread = point.metrics.get(name)
-    return "" if spread is None else f"{format_short(spread.mean, '', 5)} ± {format_short(spread.std, '', 2)}"
+    return "" if spread is None else f"{format_figure(name, spread.mean)} ± {format_short(spread.std, '', 2)}"
 
 
 def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[str]) -> str:
@@ -109,7 +109,7 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
     entries = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
     drawn = entries[:MOST_CURVES]
     curves = [
-        Series(f"{label} (area {format_si(entry.roc.area, '')})", entry.roc.false_alarm, entry.roc.detection)
+        Series(f"{label} (area {format_share(entry.roc.area)})", entry.roc.false_alarm, entry.roc.detection)
         for label, entry in drawn
         if entry.roc is not None
     ]
@@ -128,7 +128,7 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
     for label, entry in drawn:
         total = [max(1, sum(row)) for row in entry.confusion]
         rows = [
-            [truth, *(format_number(count / all_of, 4) for count in row), sum(row)]
+            [truth, *(format_share(count / all_of) for count in row), sum(row)]
             for truth, row, all_of in zip(entry.names, entry.confusion, total, strict=True)
         ]
         missed = f"; {entry.missed} changes were never found" if entry.missed else ""

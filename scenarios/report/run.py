@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from core.format import format_count, format_in, format_number, format_short
+from core.format import format_count, format_figure, format_in, format_number, format_short
 from scenarios.report.html import as_toml, page, table
+from scenarios.report.palette import hypothesis, signal
 from scenarios.report.svg import Mark, Series, chart, thin
 from scenarios.run import Result
 
@@ -53,7 +54,8 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
     body += _verdicts(result)
     spread = summary.get("metrics_std", {})
     figures = [
-        [name, value, *([spread.get(name, 0.0)] if spread else [])] for name, value in summary["metrics"].items()
+        [name, format_figure(name, value, 6), *([spread.get(name, 0.0)] if spread else [])]
+        for name, value in summary["metrics"].items()
     ]
     body.append(
         "<h2>Figures</h2>" + table(["figure", "mean" if spread else "value", *(["std"] if spread else [])], figures)
@@ -71,7 +73,7 @@ def _expectations(entries: Sequence[dict[str, Any]]) -> str:
             entry["metric"],
             entry["published"],
             entry["expected"],
-            "-" if entry["measured"] is None else entry["measured"],
+            "-" if entry["measured"] is None else format_figure(entry["metric"], entry["measured"], 6),
             "holds" if entry["ok"] else "does not hold",
             entry["verdict"] or "",
             entry["note"],
@@ -88,30 +90,52 @@ def _charts(result: Result) -> list[str]:
     time_ms = np.arange(float(len(result.outputs))) * result.board.dt_ms
     span = (0.0, float(time_ms[-1]))
     signals = {signal.name: signal for signal in result.kept}
-    marks = [Mark(entry.time_ms, entry.text) for entry in result.board.log if entry.kind in DONE and entry.tick]
+    marks = [
+        Mark(entry.tick * result.board.dt_ms, entry.text)
+        for entry in result.board.log
+        if entry.kind in DONE and entry.tick
+    ]
     charts = []
-    for title, names in CHARTS:
+    for title, names in _groups(result):
         chosen = [name for name in names if name in signals and np.any(result.signal(name))]
-        lines = [Series(name, *thin(time_ms, result.signal(name))) for name in chosen]
+        looks = [signal(name, number) for number, name in enumerate(chosen)]
+        lines = [
+            Series(name, *thin(time_ms, result.signal(name)), look=look)
+            for name, look in zip(chosen, looks, strict=True)
+        ]
         if lines:
             label = ", ".join(dict.fromkeys(signals[name].unit for name in chosen))
             charts.append(chart(title, "time, ms", label, lines, span, marks=marks))
             if len(time_ms) > 4 * CLOSE_UP:  # too many periods for one picture
-                lines = [Series(n, time_ms[-CLOSE_UP:].tolist(), result.signal(n)[-CLOSE_UP:].tolist()) for n in chosen]
+                end = slice(-CLOSE_UP, None)
+                lines = [
+                    Series(name, time_ms[end].tolist(), result.signal(name)[end].tolist(), look=look)
+                    for name, look in zip(chosen, looks, strict=True)
+                ]
                 charts.append(chart(f"{title}, the last {CLOSE_UP} ticks", "time, ms", label, lines))
     for name in result.board.spec.identifiers:
         if f"{name}.error_pct" in signals:
             line = Series(name, *thin(time_ms, result.signal(f"{name}.error_pct")))
             charts.append(chart(f"Identifier {name}", "time, ms", "error, %", [line], span, marks=marks))
     for name, scores in result.board.scores().items():
-        chosen = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
+        chosen = [f"{name}.probability.{label}" for label in scores.names]
         if all(column in signals for column in chosen):
             lines = [
-                Series(hypothesis, *thin(time_ms, result.signal(column)))
-                for hypothesis, column in zip(scores.names, chosen, strict=True)
+                Series(label, *thin(time_ms, result.signal(column)), look=hypothesis(number))
+                for number, (label, column) in enumerate(zip(scores.names, chosen, strict=True))
             ]
             charts.append(chart(f"Diagnoser {name}", "time, ms", "probability", lines, span, (0.0, 1.0), marks))
     return charts
+
+
+def _groups(result: Result) -> Sequence[tuple[str, tuple[str, ...]]]:
+    """Return title and signals of every chart of traces; a plant with axes has one for each of them, and the rate."""
+    spec = result.board.spec
+    if not spec.axes:
+        return CHARTS
+    along = [(f"Displacement {axis}", (f"plant.{axis}",)) for axis in spec.axes]
+    forces = tuple(f"drive.{axis}.force" for axis in spec.axes)
+    return [("Angular rate", (f"{spec.active}.rate", "rate.rate")), *along, ("Force", forces)]
 
 
 def _verdicts(result: Result) -> list[str]:
@@ -129,6 +153,7 @@ def _verdicts(result: Result) -> list[str]:
 def _events(result: Result) -> str:
     """List the events of the run."""
     entries = [entry for entry in result.board.log if entry.kind != "scheduled"]
-    rows = [[format_number(entry.time_ms, 3), entry.tick, entry.actor, entry.text] for entry in entries[:MOST_EVENTS]]
+    dt_ms = result.board.dt_ms
+    rows = [[format_number(e.tick * dt_ms, 3), e.tick, e.actor, e.text] for e in entries[:MOST_EVENTS]]
     cut_off = f"<p>The first {MOST_EVENTS} of {len(entries)}.</p>" if len(entries) > MOST_EVENTS else ""
     return f"<h2>Events</h2>{cut_off}{table(['time, ms', 'tick', 'who', 'what'], rows)}" if rows else ""

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pprint import pformat
 from typing import Any
 
+from core.board.document import plant_of
+
 HEAD = '''"""{does}
 
     python {file} [ADDRESS] [TOKEN]
@@ -47,7 +49,7 @@ for metric, value in run["summary"]["metrics"].items():
     print(f"{metric:<44} {value:.6g}")
 if run["summary"]["ticks"]:
     every = 1 + run["summary"]["ticks"] // 100_000
-    what = f"format=csv&signals=plant.displacement,drive.voltage&every={every}"
+    what = f"format=csv&signals={SIGNALS}&every={every}"
     with open(os.path.splitext(__file__)[0] + ".csv", "wb") as file:
         file.write(call(f"/runs/{run['id']}/trace?{what}"))
 print("digest", run["summary"]["digest"])
@@ -91,7 +93,7 @@ def script(document: dict[str, Any], seeds: Sequence[int], digest: str, file: st
         leaves="The trace is written beside this file.",
         file=file,
         data=f"SCENARIO = {_say(plain)}\nSEEDS = {[seeds[0], seeds[-1] + 1]}  # first, and the one behind the last\n"
-        f'DIGEST = "{digest}"',
+        f'DIGEST = "{digest}"\nSIGNALS = "{",".join(_recorded(plain))}"',
     )
     return head + RUN
 
@@ -114,6 +116,14 @@ def campaign_script(document: dict[str, Any], file: str) -> str:
         data=f"SWEEP = {_say(plain)}",
     )
     return head + CAMPAIGN
+
+
+def _recorded(document: dict[str, Any]) -> list[str]:
+    """Return the signals whose trace is written: the motion of the plant, and what drives it."""
+    axes = plant_of(document).axes
+    if not axes:
+        return ["plant.displacement", "drive.voltage"]
+    return ["rate.rate", *(f"plant.{axis}" for axis in axes), *(f"drive.{axis}.force" for axis in axes)]
 
 
 def _plain(document: dict[str, Any]) -> dict[str, Any]:

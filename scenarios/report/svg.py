@@ -12,22 +12,22 @@ import numpy as np
 
 from core.block import FloatArray
 from core.format import tick_labels
+from scenarios.report.palette import Look, line
 
 WIDTH, HEIGHT = 460, 300
 LEFT, RIGHT, TOP, BOTTOM = 62, 12, 26, 44
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#555555", "#8c564b")
-DASHES = ("", "6 3", "2 3", "8 3 2 3")
 
 
 @dataclass(frozen=True)
 class Series:
-    """One line; ``spread`` is drawn as bars of plus and minus that much."""
+    """One line, with bars of plus and minus ``spread``; its look follows from its place unless it has one."""
 
     name: str
     x: Sequence[float]
     y: Sequence[float]
     spread: Sequence[float] | None = None
     is_stepped: bool = False
+    look: Look | None = None
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def chart(
     marks : sequence of Mark
         Moments drawn as upright lines.
     """
-    x_low, x_high = x_range or _range([value for line in series for value in line.x])
+    x_low, x_high = x_range or _range([value for one in series for value in one.x])
     y_low, y_high = y_range or _range(_heights(series))
 
     def place(x: float, y: float) -> tuple[float, float]:
@@ -112,10 +112,10 @@ def chart(
     for mark in marks:
         if x_low <= mark.x <= x_high:
             x, _ = place(mark.x, y_low)
-            line = f'<path d="M{x} {TOP}V{HEIGHT - BOTTOM}" class="mark"/>'
-            parts.append(f"<g>{line}<title>{escape(mark.text)}</title></g>")
+            upright = f'<path d="M{x} {TOP}V{HEIGHT - BOTTOM}" class="mark"/>'
+            parts.append(f"<g>{upright}<title>{escape(mark.text)}</title></g>")
     for number, one in enumerate(series):
-        look = _look(number)
+        look = one.look or line(number)
         spreads = one.spread or [0.0] * len(one.x)
         points = [
             (*place(x, y), place(x, y - s)[1], place(x, y + s)[1])
@@ -128,34 +128,25 @@ def chart(
         )
         bars = " ".join(f"M{x} {low}V{high}" for x, _, low, high in points if low != high)
         name = f"<title>{escape(one.name)}</title>"
-        parts.append(f'<path d="{path}" fill="none" stroke-width="1.8" {look}>{name}</path>')
-        parts.append(f'<path d="{bars}" stroke="{_colour(number)}" opacity=".6"/>' if bars else "")
+        parts.append(f'<path d="{path}" fill="none" stroke-width="1.8" {_stroke(look)}>{name}</path>')
+        parts.append(f'<path d="{bars}" stroke="{look.colour}" opacity=".6"/>' if bars else "")
     parts.append(f'<text x="{(LEFT + WIDTH) / 2}" y="{HEIGHT - 8}" class="x">{escape(x_label)}</text>')
     middle = (TOP + HEIGHT - BOTTOM) / 2
     parts.append(f'<text transform="translate(14 {middle}) rotate(-90)" class="x">{escape(y_label)}</text></svg>')
     return "".join(parts) + (_legend(series) if len(series) > 1 else "")
 
 
-def _colour(number: int) -> str:
-    """Return the colour of a line."""
-    return COLOURS[number % len(COLOURS)]
-
-
-def _look(number: int) -> str:
-    """Return colour and dash of a line; no two of the first thirty-two are alike."""
-    dash = DASHES[(number + number // len(COLOURS)) % len(DASHES)]
-    return f'stroke="{_colour(number)}" stroke-dasharray="{dash}"'
+def _stroke(look: Look) -> str:
+    """Return colour and dash as attributes."""
+    return f'stroke="{look.colour}" stroke-dasharray="{look.dash}"'
 
 
 def _legend(series: Sequence[Series]) -> str:
     """Name the lines."""
     keys = []
     for number, one in enumerate(series):
-        dash = DASHES[number // len(COLOURS) % len(DASHES)] if len(series) > len(COLOURS) else DASHES[number % 4]
-        line = (
-            f'<path d="M0 6H26" stroke="{COLOURS[number % len(COLOURS)]}" stroke-width="2" stroke-dasharray="{dash}"/>'
-        )
-        keys.append(f'<span class="key"><svg width="26" height="12">{line}</svg> {escape(one.name)}</span>')
+        key = f'<path d="M0 6H26" stroke-width="2" {_stroke(one.look or line(number))}/>'
+        keys.append(f'<span class="key"><svg width="26" height="12">{key}</svg> {escape(one.name)}</span>')
     return f'<div class="keys">{"".join(keys)}</div>'
 
 
@@ -163,8 +154,8 @@ def _heights(series: Sequence[Series]) -> list[float]:
     """Return all heights that the y axis must show."""
     return [
         value
-        for line in series
-        for y, spread in zip(line.y, line.spread or [0.0] * len(line.y), strict=True)
+        for one in series
+        for y, spread in zip(one.y, one.spread or [0.0] * len(one.y), strict=True)
         for value in (y - spread, y + spread)
     ]
 

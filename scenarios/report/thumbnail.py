@@ -10,7 +10,7 @@ from html import escape
 import numpy as np
 
 from core.block import FloatArray
-from scenarios.report.svg import COLOURS
+from scenarios.report.palette import COLOURS, hypothesis, signal
 from scenarios.run import Result
 
 WIDTH, HEIGHT = 240, 120
@@ -18,17 +18,15 @@ LANE = 9
 COLUMNS = 120
 MOST_ROWS = 6
 DONE = ("inject", "heal", "switch", "set")
-MEASURED = "#3a8fd0"
-HEALTHY = "#7aa88a"
-"""Colour of a lane while the verdict is the first hypothesis, that of a healthy device in most banks."""
+EXPECTED, MEASURED, MISSED = COLOURS[3], COLOURS[1], COLOURS[5]
 
 
 def thumbnail(result: Result) -> str:
     """Return the drawing of a run as SVG; it has no background, so that it suits light and dark.
 
-    The upper part shows the displacement of the model and of the shuttle. The lower part shows, for the first
-    diagnosers, the truth as a thin strip over the verdict. Upright lines mark commands. A study has rows instead: the
-    measured figure as a dot, the expectation as a bar.
+    The upper part shows the displacement of the model and of the shuttle, or the true rate and the one that is read.
+    The lower part shows, for the first diagnosers, the truth as a thin strip over the verdict. Upright lines mark
+    commands. A study has rows instead: the measured figure as a dot, the expectation as a bar.
     """
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
@@ -44,14 +42,16 @@ def _motion(result: Result) -> list[str]:
     diagnosers = [name for name in result.board.spec.diagnosers if f"{name}.winner" in names][:2]
     bottom = HEIGHT - 4 - len(diagnosers) * (LANE + 7)
     width = WIDTH / (len(result.outputs) - 1)
-    drawn = {name: result.signal(f"{name}.displacement") for name in ("model", "plant")}
-    peak = max(float(np.nanmax(np.abs(values))) for values in drawn.values()) or 1.0
+    spec = result.board.spec
+    shown = ("rate.rate", f"{spec.active}.rate") if spec.axes else ("model.displacement", "plant.displacement")
+    drawn = [result.signal(name) for name in shown]
+    peak = max(float(np.nanmax(np.abs(values))) for values in drawn) or 1.0
     middle, scale = (4 + bottom) / 2, (bottom - 4) / 2 / peak
     moments = {entry.tick for entry in result.board.log if entry.kind in DONE} - {0}
     parts = [
         f'<path d="M{tick * width:.1f} 2V{bottom}" stroke="#888" stroke-dasharray="2 2"/>' for tick in sorted(moments)
     ]
-    for values, colour in zip(drawn.values(), ("#999", COLOURS[0]), strict=True):
+    for values, colour in zip(drawn, ("#999", signal(shown[1], 0).colour), strict=True):
         parts.append(_band(values, lambda value: middle - value * scale, colour))
     for number, name in enumerate(diagnosers):
         top = bottom + 3 + number * (LANE + 7)
@@ -84,7 +84,7 @@ def _lane(verdict: FloatArray, top: float, height: float) -> list[str]:
     width = WIDTH / COLUMNS
     return [
         f'<rect x="{first * width:g}" y="{top:g}" width="{(end - first) * width:g}" height="{height:g}" '
-        f'fill="{HEALTHY if picked[first] == 0 else COLOURS[int(picked[first]) % len(COLOURS)]}"/>'
+        f'fill="{hypothesis(int(picked[first])).colour}"/>'
         for first, end in itertools.pairwise(edges)
         if picked[first] >= 0
     ]
@@ -109,9 +109,9 @@ def _figures(result: Result) -> list[str]:
         left, right = (6 if low is None else place(low)), (WIDTH - 6 if high is None else place(high))
         parts.append(f'<path d="M6 {y}H{WIDTH - 6}" stroke="#888" opacity=".4"/>')
         parts.append(
-            f'<path d="M{left:.1f} {y}H{max(right, left + 2):.1f}" stroke="{HEALTHY}" stroke-width="6" opacity=".6"/>'
+            f'<path d="M{left:.1f} {y}H{max(right, left + 2):.1f}" stroke="{EXPECTED}" stroke-width="6" opacity=".6"/>'
         )
         if math.isfinite(measured):
-            colour = MEASURED if entry.holds(measured) else COLOURS[1]
+            colour = MEASURED if entry.holds(measured) else MISSED
             parts.append(f'<circle cx="{place(measured):.1f}" cy="{y}" r="3.5" fill="{colour}"/>')
     return parts

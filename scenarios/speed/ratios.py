@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import os
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from core import registry
 from core.board.board import CHUNK, Board
 from core.device.response import held_response
+from core.device.two_axis import TwoAxis
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
+from scenarios.speed import gyroscope
 from scenarios.speed.campaign import scaling
 from scenarios.speed.peers import (
     estimate_sample,
@@ -82,6 +84,9 @@ def speed() -> dict[str, Any]:
     plane = Board(PLANAR)
     plane.advance(CHUNK)
     device = bench.spec.context().device
+    turning, pair = gyroscope.running(gyroscope.ONE), gyroscope.running(gyroscope.PAIR)
+    two_axis = cast(TwoAxis, turning.spec.nominal)
+    readers = [i.key for i in turning.wiring.instances if i.block.family in ("control", "readout")]
     sine = 10.0 * np.sin(2.0 * np.pi * 2.0 * 0.01 * np.arange(SECOND))
     controllers = [i.key for i in bench.wiring.instances if i.block.family == "control"]
     hot = ["plant", "open_loop", "pid", "mrac", "kalman"]
@@ -95,6 +100,12 @@ def speed() -> dict[str, Any]:
         "seven_steps": seven_steps(),
         "mrac_loop": lambda: loop_cost(loop, ["plant", "effects", "sensor", "reference", "model", "mrac", "drive"]),
         "planar": lambda: loop_cost(plane, [*ALIVE], 2_000),
+        "gyroscope": lambda: advance_cost(turning),
+        "gyroscope_pair": lambda: advance_cost(pair),
+        "gyroscope_blocks": lambda: loop_cost(turning, ["plant", *readers]),
+        "gyroscope_plant": lambda: loop_cost(turning, ["plant"]),
+        "gyroscope_solved": gyroscope.solved_sample(two_axis, turning.dt_ms),
+        "gyroscope_stepped": gyroscope.stepped_sample(two_axis, turning.dt_ms),
         "plant_record": lambda: cpu_ns(lambda: held_response(device, sine, 0.01), SECOND),
         "lsim": lsim_sample(device, sine),
     }
@@ -139,6 +150,30 @@ def speed() -> dict[str, Any]:
     figures.append(
         _figure("recursive least squares, 4 parameters, per update", ns["least_squares"] / 1e3, "us", most=0.03)
     )
+    figures += [
+        _figure(
+            f"gyroscope, {len(readers) - 1} controllers and an Allan deviation, per sample",
+            ns["gyroscope_blocks"] / 1e3,
+            "us",
+            most=1.5,
+        ),
+        _figure("real-time gyroscopes at 100 kHz per core", SAMPLE_NS / ns["gyroscope"], "x", least=2.0),
+        _figure(
+            "pair of gyroscopes with noise, of real time at 100 kHz", SAMPLE_NS / ns["gyroscope_pair"], "x", least=1.0
+        ),
+        _figure(
+            "gyroscope plant over scipy's solve_ivp, sample by sample",
+            ns["gyroscope_solved"] / ns["gyroscope_plant"],
+            "x",
+            least=500.0,
+        ),
+        _figure(
+            "gyroscope plant over a numpy loop with its transition matrix",
+            ns["gyroscope_stepped"] / ns["gyroscope_plant"],
+            "x",
+            least=2.0,
+        ),
+    ]
     if "padasip" in ns:
         ratio = ns["padasip"] / ns["least_squares"]
         figures.append(_figure("recursive least squares over padasip's FilterRLS", ratio, "x", least=150.0))
@@ -167,7 +202,10 @@ def speed() -> dict[str, Any]:
     return {
         "figures": figures,
         "ns": {name: round(value, 1) for name, value in ns.items()},
-        "blocks_ns": block_costs(estimating) | block_costs(gain, "gain_adaptation") | block_costs(beside, *DIAGNOSERS),
+        "blocks_ns": block_costs(estimating)
+        | block_costs(gain, "gain_adaptation")
+        | block_costs(beside, *DIAGNOSERS)
+        | block_costs(turning, *readers, alive=gyroscope.ALIVE),
         "missing": "; ".join(missing),
         "ok": all(figure["ok"] for figure in figures),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from statistics import median
 from typing import Any
@@ -52,7 +52,7 @@ def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:
     table[:, program.ADDRESS] = [program.address(wiring.instances[row].block) for row in rows]
     nothing = np.zeros((ticks, 0))
     arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io)
-    trip, watches = wiring.index["guard.trip"], np.zeros((0, 3))
+    trip, watches = wiring.trip, np.zeros((0, 3))
 
     def work() -> None:
         program.run(ticks, 1, board.dt_ms, *arrays, nothing, nothing, fold.begin(0), trip, watches)
@@ -64,11 +64,11 @@ ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive
 """Blocks that keep every signal moving: with frozen inputs a block does not do its usual work."""
 
 
-def block_costs(board: Board, *only: str) -> dict[str, float]:
+def block_costs(board: Board, *only: str, alive: Sequence[str] = ALIVE) -> dict[str, float]:
     """Return the cost of some blocks or all, ns per tick, dispatch included: a tick with it run once more."""
-    candidates = {"": partial(loop_cost, board, [*ALIVE], 50_000)}
+    candidates = {"": partial(loop_cost, board, [*alive], 50_000)}
     for instance in board.wiring.instances:
         if not only or instance.key in only:
-            candidates[instance.key] = partial(loop_cost, board, [*ALIVE, instance.key], 50_000)
+            candidates[instance.key] = partial(loop_cost, board, [*alive, instance.key], 50_000)
     ns = interleaved(candidates)
     return {key: round(value - ns[""], 1) for key, value in ns.items() if key}

@@ -49,9 +49,9 @@ class ProcessSpread(Study):
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return spreads, percentiles, correlations and sensitivities."""
-        geometry = board.spec.device.geometry
+        geometry = board.spec.device.drawn_resonator
         if geometry is None:
-            raise InputError("has no drawing to vary; choose lcr-350", "device.id")
+            raise InputError("has no drawing of a resonator to vary; choose lcr-350", "device.id")
         tolerances = Tolerances(**params.model_dump(exclude={"draws", "cut"}))
         spread = draw(geometry, tolerances, params.draws, board.spec.seed, params.cut)
         results: dict[str, float] = {}

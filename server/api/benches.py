@@ -108,7 +108,11 @@ async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
 async def command(
     command: Annotated[Command, Body()], session: SessionDep, service: ServiceDep, caller: CallerDep
 ) -> CommandResult:
-    """Carry out a command at the next tick edge."""
+    """Carry out a command at the next tick edge.
+
+    Commands to the board are events of a scenario; their earlier notation, by the kinds inject, heal, set, switch and
+    reset_trip, is still read.
+    """
     entry = await service.benches.command(session, command, caller)
     return CommandResult(tick=entry.tick, time_ms=entry.tick * session.dt_ms, entry=entry)
 

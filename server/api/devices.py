@@ -9,7 +9,9 @@ import numpy as np
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
+from core import registry
 from core.device.catalogue import devices
+from core.device.device import Device
 from core.device.geometry import Geometry
 from core.device.quantities import QUANTITIES
 from core.device.spread import Tolerances
@@ -28,6 +30,7 @@ class DeviceCard(BaseModel):
     source: str
     metrics: dict[str, float]
     parameters: dict[str, Any]
+    plants: list[str] = Field(description="Plants that suit it")
 
 
 class Devices(BaseModel):
@@ -129,6 +132,7 @@ def get_devices() -> Devices:
                 source=device.source,
                 metrics=device.metrics(),
                 parameters=device.model_dump(exclude_none=True, exclude={"id", "title", "source"}),
+                plants=plants_for(device),
             )
             for device in devices()
         ],
@@ -136,11 +140,17 @@ def get_devices() -> Devices:
     )
 
 
+def plants_for(device: Device) -> list[str]:
+    """Return the plants that do not refuse a device."""
+    oscillator = device.oscillator()
+    return [name for name, plant in registry.blocks("plant").items() if not plant.unsuited(oscillator, oscillator)]
+
+
 @router.post("/evaluate")
 def evaluate(body: Design) -> Evaluation:
     """Work out the figures of a device in its environment."""
     spec = designed(body.device, body.environment)
-    figures, geometry = device_figures(spec), spec.device.geometry
+    figures, geometry, resonator = device_figures(spec), spec.device.geometry, spec.device.drawn_resonator
     return Evaluation(
         title=spec.device.title,
         source=spec.device.source,
@@ -157,7 +167,7 @@ def evaluate(body: Design) -> Evaluation:
         ],
         metrics=figures,
         geometry=None if geometry is None else geometry.model_dump(),
-        sensitivities={} if geometry is None else sensitivities(geometry),
+        sensitivities={} if resonator is None else sensitivities(resonator),
     )
 
 

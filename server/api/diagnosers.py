@@ -12,6 +12,7 @@ from core.board.explain import Account, explain, signals_of
 from core.board.spec import Section, Spec
 from core.diagnose.aliases import AliasMap, alias_map, hidden_um
 from core.diagnose.hypothesis import Hypothesis
+from core.diagnose.hypothesis import hypotheses_of as factors_of
 from core.errors import InputError, unknown
 from core.reference.waveform import Waveform
 from server.api.bodies import StrictRoute
@@ -82,9 +83,9 @@ def spec_and_section(session: Session, name: str) -> tuple[Spec, Section]:
 
 def hypotheses_of(section: Section) -> list[Hypothesis]:
     """Return the hypotheses of a diagnoser; an error if it has none."""
-    hypotheses: list[Hypothesis] = getattr(section.params, "hypotheses", [])
+    hypotheses = factors_of(section.params)
     if not hypotheses:
-        raise InputError(f"{section.block.name} has no hypotheses", "name")
+        raise InputError(f"{section.block.name} has no hypotheses of one displacement", "name")
     return hypotheses
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
+from core.board.document import plant_of
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
@@ -26,6 +27,7 @@ class ScenarioCard(BaseModel):
     claim: str
     verdict: str | None
     samples: int | None
+    plant: str | None = Field(description="Plant of the bench; null for a study")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
 
 
@@ -59,6 +61,7 @@ def card(scenario: Scenario) -> ScenarioCard:
         claim=head.claim,
         verdict=head.verdict,
         samples=scenario.samples,
+        plant=plant_of(scenario.document).name if head.study is None else None,
         study=str(head.study["kind"]) if head.study is not None else None,
     )
 

@@ -22,6 +22,7 @@ from scenarios.library import get
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
+from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.portrait import design_of, document_of
@@ -37,6 +38,8 @@ from server.store.recordings import About, Recording, RecordingDetail, Recording
 from server.store.traces import schema_of
 from server.version import VERSION
 
+AXES_SCALE = 0.1
+"""Device seconds per wall second of a plant with axes."""
 MOST_LAYOUT = 200_000
 """Most characters of a layout as JSON; the page writes far fewer."""
 
@@ -235,8 +238,10 @@ class Benches:
                 event = await self._engine.call(session.reset, scenario, board, actor)
             else:
                 event = await self._engine.call(session.execute, command, actor)
-        except (InputError, ApiError):
+        except (InputError, ApiError) as error:
             self._metrics.commands.labels(kind, "refused").inc()
+            if isinstance(error, InputError):
+                raise as_written(error, type(command)) from None
             raise
         self._metrics.commands.labels(kind, "done").inc()
         return event
@@ -358,5 +363,11 @@ def read_scenario(source: str | dict[str, Any]) -> Scenario:
 
 
 def usual_scale(board: Board) -> float:
-    """Return the time scale that suits a device: that of a resonator, or near real time for a plant in seconds."""
+    """Return the time scale that suits a device.
+
+    That of a resonator; near real time for a plant in seconds; between them for a plant with axes, whose amplitude and
+    rate take some hundred periods to settle.
+    """
+    if board.spec.axes:
+        return AXES_SCALE
     return min(MAX_SCALE, DEFAULT_SCALE * max(1.0, board.spec.device.oscillator().time_unit_ms))

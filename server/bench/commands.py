@@ -6,9 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from core.board.commands import KINDS as BOARD_KINDS
-from core.board.commands import Heal, Inject, ResetTrip, Set, Switch, parse_command
+from core.board.commands import COMMANDS, FIELDS, Heal, Inject, ResetTrip, Set, Switch, parse_command
 from core.errors import InputError, from_validation, unknown
+from server.bench.earlier import KINDS, parse_earlier
 
 DEFAULT_SCALE = 0.002
 MIN_SCALE, MAX_SCALE = 1e-6, 1.0
@@ -93,7 +93,7 @@ RUN_KINDS: dict[str, type[RunCommand]] = {
 
 
 def parse(document: Any) -> Any:
-    """Check a command of either sort.
+    """Check a command of either sort, of the board in the notation of today or in the earlier one.
 
     Raises
     ------
@@ -101,12 +101,16 @@ def parse(document: Any) -> Any:
         One line naming the field.
     """
     if not isinstance(document, dict):
-        raise InputError("a command must be an object with a kind", "command")
-    kind = document.get("kind")
-    if not isinstance(kind, str) or kind not in {**RUN_KINDS, **BOARD_KINDS}:
-        raise unknown("command", kind, [*RUN_KINDS, *BOARD_KINDS], "kind")
-    if kind in BOARD_KINDS:
+        raise InputError("a command must be an object", "command")
+    if "kind" not in document and not document.keys().isdisjoint(FIELDS):
         return parse_command(document)
+    kind = document.get("kind")
+    if kind is None:
+        raise InputError(f"needs a kind, or one of {', '.join(COMMANDS)}", "kind")
+    if not isinstance(kind, str) or kind not in {**RUN_KINDS, **KINDS}:
+        raise unknown("command", kind, [*RUN_KINDS, *KINDS], "kind")
+    if kind in KINDS:
+        return parse_earlier(document)
     model = RUN_KINDS[kind]
     try:
         return model.model_validate(document)

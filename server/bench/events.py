@@ -4,36 +4,45 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Callable
 from datetime import UTC, datetime
 from itertools import islice
-from typing import Any
+from typing import Any, cast
 
-from pydantic import BaseModel, Field
+from pydantic import Field
+
+from core.board.document import Document
+from core.board.log import Log, LogEntry
 
 KEPT = 4000
 
 
-class Event(BaseModel):
+class Event(LogEntry):
     """One thing that happened, at a tick."""
 
     seq: int = Field(description="Number of the event on this bench: 1, 2, 3, ...")
-    tick: int
     actor: str = Field(description="Who did it: a person's page, the API, the scenario or the board itself")
-    kind: str
     text: str = Field(description="One line for a person, past tense")
-    command: dict[str, Any] | None = None
-    old: Any = None
-    new: Any = None
+    command: Document | None = Field(None, description="The command, as an event of a scenario if it is to the board")
     at: datetime = Field(description="Wall clock, UTC")
 
 
-class EventLog:
-    """The engine appends events, the event loop reads them; the log keeps the last `KEPT` events."""
+class EventLog(Log):
+    """The log of a live bench, to which its board adds too; the event loop reads it.
 
-    def __init__(self) -> None:
-        self._events: deque[Event] = deque(maxlen=KEPT)
+    It keeps the last `KEPT` events, and goes on when the board goes back.
+
+    Parameters
+    ----------
+    on_event : callable
+        Called with every event that is added.
+    """
+
+    def __init__(self, on_event: Callable[[Event], None]) -> None:
+        super().__init__()
+        self._entries = deque(maxlen=KEPT)
         self._lock = threading.Lock()
-        self.last = 0
+        self._on_event = on_event
 
     def add(
         self,
@@ -41,26 +50,26 @@ class EventLog:
         actor: str,
         kind: str,
         text: str,
-        command: dict[str, Any] | None = None,
+        command: Document | None = None,
         old: Any = None,
         new: Any = None,
     ) -> Event:
-        """Append an event and return it with its number."""
+        """Append an event, tell of it and return it with its number."""
+        event = self.keep(tick=tick, actor=actor, kind=kind, text=text, command=command, old=old, new=new)
+        self._on_event(event)
+        return event
+
+    def keep(self, **fields: Any) -> Event:
+        """Append an event of the past and return it."""
         with self._lock:
-            event = Event(
-                seq=self.last + 1,
-                tick=tick,
-                actor=actor,
-                kind=kind,
-                text=text,
-                command=command,
-                old=old,
-                new=new,
-                at=datetime.now(UTC),
-            )
-            self._events.append(event)
+            event = Event(seq=self.last + 1, at=datetime.now(UTC), **fields)
+            self._entries.append(event)
             self.last = event.seq
         return event
+
+    def copy(self) -> Log:
+        """Return the log of a copy of the board, which has nothing in it."""
+        return Log()
 
     def after(self, seq: int, limit: int | None = None) -> tuple[int, list[Event]]:
         """Return how many events behind ``seq`` are forgotten, and the oldest of those that are kept.
@@ -73,8 +82,8 @@ class EventLog:
             Most events returned.
         """
         with self._lock:
-            first = self._events[0].seq if self._events else self.last + 1
+            first = self._entries[0].seq if self._entries else self.last + 1
             lost = max(0, first - 1 - seq)
             start = max(0, seq + 1 - first)
-            stop = len(self._events) if limit is None else start + limit
-            return lost, list(islice(self._events, start, stop))
+            stop = len(self._entries) if limit is None else start + limit
+            return lost, cast("list[Event]", list(islice(self._entries, start, stop)))

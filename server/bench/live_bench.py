@@ -29,7 +29,7 @@ class LiveBench(Protocol):
 
     @property
     def drive_period_ticks(self) -> float | None:
-        """Period of the reference in ticks, if it has one."""
+        """Period of the reference in ticks, if it has one; of the driven axis where the plant has axes."""
 
     def must_be_open(self) -> None:
         """Raise an error if the bench is gone."""

@@ -10,7 +10,11 @@ CATCH_UP_S = 0.05
 WINDOW_S = 1.0
 """Wall time over which the achieved rate is measured."""
 
-CAPPED_BELOW = 0.98
+CAPPED_BELOW = 0.8
+"""Share of its rate below which a bench lags."""
+
+CAPPED_AFTER_S = 3.0
+"""Wall time for which it lags before it is called capped: a shorter stall is no news."""
 
 
 class Pacer:
@@ -34,6 +38,7 @@ class Pacer:
         self._tick = 0
         self._due = 0
         self._seen: deque[tuple[float, int, int]] = deque()
+        self._lags_since: float | None = None
         self.given_up_s = 0.0
         self.overruns = 0
 
@@ -45,6 +50,7 @@ class Pacer:
     def anchor(self, tick: int, now: float) -> None:
         """Start counting here: after a start, a pause, a step, a restore."""
         self._wall, self._tick, self._due = now, tick, 0
+        self._lags_since = None
         self._seen.clear()
         self._seen.append((now, tick, tick))
 
@@ -86,6 +92,10 @@ class Pacer:
         self._seen.append((now, tick, due))
         while len(self._seen) > 2 and now - self._seen[1][0] >= WINDOW_S:
             self._seen.popleft()
+        if self._scale is None or self.achieved >= CAPPED_BELOW * self._scale:
+            self._lags_since = None
+        elif self._lags_since is None:
+            self._lags_since = now
 
     @property
     def achieved(self) -> float:
@@ -101,5 +111,5 @@ class Pacer:
 
     @property
     def capped(self) -> bool:
-        """Whether the machine cannot keep up."""
-        return self._scale is not None and self.achieved < CAPPED_BELOW * self._scale
+        """Whether the machine has not kept up for some time."""
+        return self._lags_since is not None and self._seen[-1][0] - self._lags_since >= CAPPED_AFTER_S

@@ -58,6 +58,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         overruns=pacer.overruns,
         given_up_ms=pacer.given_up_s * 1e3,
         controller=board.spec.active,
+        slots=dict(board.spec.driving),
         faults=[
             ActiveFault(
                 name=name,
@@ -111,6 +112,7 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
         samples=bench.scenario.samples,
         drive_period_ticks=bench.drive_period_ticks,
         history_ticks=bench.history.capacity,
+        axes=list(spec.axes),
         signals=list(bench.signals),
         controllers=list(spec.controllers),
         diagnosers={

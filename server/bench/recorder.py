@@ -7,6 +7,7 @@ history the ticks before the recording began.
 
 from __future__ import annotations
 
+import math
 import queue
 import threading
 import time
@@ -83,6 +84,7 @@ class Recorder:
         self._lock = threading.Lock()
         self.reason = ""
         self._first: int | None = None
+        self._end_tick: float = math.inf
         self._thread = threading.Thread(target=self._write, name=f"combbench-recorder-{recording_id[:8]}")
         self._thread.start()
 
@@ -98,6 +100,7 @@ class Recorder:
             self._left, self._full = length + ticks, COMPLETE
         if length > self._left:
             past, length = Past(past.read, past.end - self._left, past.end), self._left
+        self._end_tick = past.end + self._left - length
         if length:
             self._queue.put(past)
             self._take(length)
@@ -116,9 +119,9 @@ class Recorder:
         self._queue.put((first_tick, samples))
         self._take(samples.shape[1])
 
-    def note(self, line: str) -> None:
-        """Take an event, as a line of JSON."""
-        if self.is_open:
+    def note(self, tick: int, line: str) -> None:
+        """Take an event, as a line of JSON, unless the recording ends before its tick."""
+        if self.is_open and tick < self._end_tick:
             self._queue.put(line)
 
     def stop(self, reason: str = STOPPED) -> None:

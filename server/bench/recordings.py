@@ -30,7 +30,7 @@ def _concerning(events: Sequence[Event], first: int) -> list[Event]:
         elif event.kind == "inject":
             acting[command["fault"]] = event
         elif event.kind == "heal":
-            healed = command["faults"]
+            healed = command["heal"]
             acting = {fault: done for fault, done in acting.items() if healed != "all" and fault not in healed}
     return [*acting.values(), *since]
 
@@ -113,7 +113,7 @@ class Recordings:
     def record(self, event: Event) -> None:
         """Write an event into the recordings under way."""
         for recorder in self.under_way.values():
-            recorder.note(event.model_dump_json())
+            recorder.note(event.tick, event.model_dump_json())
 
     def take(self, rows: Rows) -> None:
         """Record some rows, and begin the recordings whose condition they meet."""
@@ -130,7 +130,7 @@ class Recordings:
         first = min(max(at - past, history.first_tick), end) if history.end_tick == end else end
         after = None if ticks is None else max(0, ticks - (end - at))
         for event in _concerning(bench.events.after(0)[1], first):
-            recorder.note(event.model_dump_json())
+            recorder.note(event.tick, event.model_dump_json())
         recorder.begin(Past(lambda start, stop: history.read(columns, start, stop), first, end), after)
         self.under_way[recorder.id] = recorder
         if not recorder.is_open:

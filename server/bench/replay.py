@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
 
 from core.errors import InputError
 from scenarios.schema import Scenario
@@ -57,8 +56,7 @@ class Replay(Session):
         self.replay_of = recording.id
         names = ("tick", "actor", "kind", "text", "command", "old", "new")
         for event in recording.events or []:
-            fields: list[Any] = [event.get(name) for name in names]
-            self.events.add(*fields)
+            self.events.keep(**{name: event.get(name) for name in names})
 
     def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
         """Carry out a command to time; only a replay can seek and loop."""

@@ -18,8 +18,7 @@ from core.errors import InputError
 from core.format import format_short
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING, Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
-from server.bench.events import Event
-from server.bench.journal import Journal
+from server.bench.events import Event, EventLog
 from server.bench.pacing import Pacer
 from server.bench.portrait import status_of
 from server.bench.recorder import Recorder
@@ -78,10 +77,9 @@ class Session(Timeline):
         self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
         self.snapshots = Snapshots(self)
         self.recordings = Recordings(self)
-        self._journal = Journal(metrics, self.recordings.record)
-        self.events = self._journal.events
-        self.steps = Steps(self)
         self._metrics = metrics
+        self.events = EventLog(self._happened)
+        self.steps = Steps(self)
         self._running = False
         self._closed = False
         self._ends_at = scenario.samples
@@ -146,7 +144,7 @@ class Session(Timeline):
         """Begin, running or paused."""
         self._running = start
         self.pacer.anchor(self.board.tick, self._clock())
-        self._journal.follow(self.board.log)
+        self._share_log()
         self.note("board", "opened", "running" if start else "paused at the first tick")
         self.refresh_status()
 
@@ -166,11 +164,11 @@ class Session(Timeline):
         else:
             if len(self.board.pending) >= MAX_PENDING:
                 raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
-            self._journal.follow(self.board.log)
-            self.board.apply(command, actor)
+            entry = self.board.apply(command, actor)
+            assert isinstance(entry, Event)
+            event = entry
             if self.board.trip is not None:
                 self._running = False
-            event = self._journal.follow(self.board.log)[-1]
         self.refresh_status()
         return event
 
@@ -188,18 +186,17 @@ class Session(Timeline):
         if board.dt_ms != self.board.dt_ms:
             self.pacer = Pacer(board.dt_ms * 1e-3, self.pacer.scale)
         self.scenario, self.board = scenario, board
-        self._journal.skip_to(0)
         self._ends_at = scenario.samples
         self.history = self._empty_history()
         event = self._jumped(actor, "reset", "reset to tick 0")
-        self._journal.follow(self.board.log)
+        self._share_log()
         return event
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
         """Go back to a snapshot."""
         kept = self.snapshots.get(snapshot_id)
         self.board = Board.restore(kept.checkpoint)
-        self._journal.skip_to(self.board.log.last)
+        self._share_log()
         self._rewind_history()
         samples = self.scenario.samples
         self._ends_at = samples if samples is not None and self.board.tick < samples else None
@@ -210,7 +207,6 @@ class Session(Timeline):
         checkpoint = self.snapshots.get(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
         board = Board.restore(checkpoint)
         twin = Session(self.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
-        twin._journal.skip_to(board.log.last)
         twin._ends_at = self._ends_at if self._ends_at is not None and board.tick < self._ends_at else None
         twin._copy_past(self, FORK_TICKS)
         twin.note("api", "forked", f"forked from bench {self.id}")
@@ -236,7 +232,7 @@ class Session(Timeline):
             text = "time runs as fast as possible"
             if command.value is not None:
                 text = f"time scale set to {format_short(command.value, 's/s')}"
-            return self._journal.add(self.board.tick, actor, "time_scale", text, document, old, command.value)
+            return self.events.add(self.board.tick, actor, "time_scale", text, document, old, command.value)
         if isinstance(command, Pause):
             self._running = False
             self.steps.end()
@@ -262,11 +258,21 @@ class Session(Timeline):
         if rows.count:
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)
-        self._journal.follow(self.board.log)
         if self.board.trip is not None and self._running and not self._has_due():
             self._running = False
             self.refresh_status()
         return rows.count
+
+    def _share_log(self) -> None:
+        """Take over what the board has noted so far, and let it note in the log of the bench from now on."""
+        for entry in self.board.log:
+            self.events.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
+        self.board.log = self.events
+
+    def _happened(self, event: Event) -> None:
+        """Count an event and write it into the recordings under way."""
+        self._metrics.events.labels(event.kind).inc()
+        self.recordings.record(event)
 
     def _finish(self) -> None:
         """Pause at the end of the scenario; starting again goes beyond it."""
@@ -287,7 +293,7 @@ class Session(Timeline):
 
     def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:
         """Add an event of the bench itself, of now unless a tick is given."""
-        return self._journal.add(self.board.tick if tick is None else tick, actor, kind, text, command)
+        return self.events.add(self.board.tick if tick is None else tick, actor, kind, text, command)
 
     def refresh_status(self) -> None:
         """Replace the status by that of now."""

@@ -50,10 +50,11 @@ class BenchStatus(BaseModel):
     first_tick: int = Field(description="The oldest tick of the history")
     time_scale: float | None = Field(description="Device seconds per wall second wanted; null: no limit")
     achieved_scale: float = Field(description="Device seconds per wall second over the last second")
-    capped: bool = Field(description="The machine cannot keep up")
+    capped: bool = Field(description="The machine has been below 80 % of the rate for 3 s")
     overruns: int = Field(description="Rounds that missed their target")
     given_up_ms: float = Field(description="Wall time given up catching up")
-    controller: str
+    controller: str = Field(description="The controller that drives, of the last slot where there are several")
+    slots: dict[str, str] = Field(description="The controller that drives in each slot, in their order")
     faults: list[ActiveFault]
     pending: list[Pending] = Field(description="Commands that wait for their moment")
     trip: Trip | None
@@ -87,6 +88,7 @@ class Bench(BenchStatus):
     samples: int | None = Field(description="Where the scenario ends; the bench pauses there once")
     drive_period_ticks: float | None
     history_ticks: int
+    axes: list[str] = Field(description="Axes the plant moves along; none for one displacement")
     signals: list[Signal]
     controllers: list[str]
     diagnosers: dict[str, DiagnoserInfo]

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from core.board.board import Board
 from core.board.document import Document
-from core.board.log import Log
 from core.board.pending import Queue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
@@ -47,6 +46,7 @@ class Tape:
         sizes = [self._file.metadata.row_group(i).num_rows for i in range(self._file.num_row_groups)]
         self._edges = self.first + np.concatenate([[0], np.cumsum(sizes)])
         self._group: tuple[int, NDArray[np.float32]] | None = None
+        self.log = board.log
         self.trip = None
         self.pending = Queue()
         self.faults: dict[str, Any] = {}
@@ -85,11 +85,6 @@ class Tape:
     def diagnosers(self) -> dict[str, Section]:
         """Every diagnoser by its id."""
         return self._board.diagnosers
-
-    @property
-    def log(self) -> Log:
-        """The log of the board: only the commands its scenario lets wait."""
-        return self._board.log
 
     def advance(self, n: int) -> Rows:
         """Read up to ``n`` ticks, to the end of the recording or of a piece of its file."""

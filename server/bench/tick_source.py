@@ -7,9 +7,9 @@ from typing import Protocol
 
 from core.block import BlockParams
 from core.board.board import Checkpoint
-from core.board.commands import Command, LogEntry, Trip
+from core.board.commands import Command, Trip
 from core.board.document import Document
-from core.board.log import Log
+from core.board.log import Log, LogEntry
 from core.board.pending import Queue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
@@ -19,6 +19,9 @@ from core.signals import SignalTable
 
 class TickSource(Protocol):
     """A live bench needs this of its board or of its tape."""
+
+    log: Log
+    """Where it notes what happens."""
 
     @property
     def tick(self) -> int:
@@ -51,10 +54,6 @@ class TickSource(Protocol):
     @property
     def faults(self) -> Mapping[str, BlockParams]:
         """The faults that act, by name."""
-
-    @property
-    def log(self) -> Log:
-        """Commands and findings, in order."""
 
     @property
     def pending(self) -> Queue:

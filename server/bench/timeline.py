@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 from core.board.history import History
 from core.board.rows import Rows
 from core.device.geometry import Geometry
+from core.device.two_axis import TwoAxis
 from core.signals import Signal
 from server.bench.tick_source import TickSource
 
@@ -52,8 +54,11 @@ class Timeline:
 
     @property
     def drive_period_ticks(self) -> float | None:
-        """Period of the reference in ticks, if it has one."""
-        frequency = getattr(self.board.spec.reference.params, "frequency_hz", None)
+        """Period of the reference in ticks, if it has one; of the driven axis where the plant has axes."""
+        spec = self.board.spec
+        if isinstance(spec.nominal, TwoAxis):
+            return 2.0 * math.pi / (spec.nominal.drive_frequency * self.dt_ms)
+        frequency = getattr(spec.reference.params, "frequency_hz", None)
         return 1e3 / (float(frequency) * self.dt_ms) if isinstance(frequency, int | float) and frequency else None
 
     @property

@@ -13,6 +13,7 @@ from starlette.websockets import WebSocket
 from server.errors import ErrorBody, reply
 from server.security.identity import Identity
 from server.security.origin import OriginPolicy
+from server.security.visitor import visitor_page
 
 OPEN_PATHS = frozenset({"/health/live", "/health/ready"})
 """Paths answered without a token, because a container's health check has none; they say which parts are well."""
@@ -96,10 +97,12 @@ class Gate:
                 await socket.accept(subprotocol=next(iter(socket.scope["subprotocols"]), None))
             await socket.close(close, message)
             return
-        wants_page = "text/html" in HTTPConnection(scope).headers.get("accept", "")
+        connection = HTTPConnection(scope)
+        wants_page = "text/html" in connection.headers.get("accept", "")
         response: Response
         if wants_page and not scope["path"].startswith("/api/"):
-            response = HTMLResponse(page(status, message, WAY_IN if status == 401 else ""), status)
+            text = visitor_page(connection.query_params.multi_items()) if status == 401 else page(status, message, "")
+            response = HTMLResponse(text, status, {"Cache-Control": "no-store"})
         else:
             body = ErrorBody(code=code, message=message, hint=WAY_IN if status == 401 else "")
             response = reply(status, body, {"WWW-Authenticate": "Bearer"} if status == 401 else None)

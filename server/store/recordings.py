@@ -10,14 +10,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import pyarrow as pa
-from pydantic import BaseModel, ConfigDict
+from pydantic import AfterValidator, BaseModel, ConfigDict
 from sqlalchemy import delete, select, update
 from sqlalchemy.exc import DBAPIError
 
 from scenarios.key import code_version
+from server.bench.earlier import in_this_notation
 from server.errors import ApiError, not_found
 from server.store.database import Database, reason_of
 from server.store.models import RecordingRow
@@ -58,7 +59,7 @@ class RecordingDetail(Recording):
     """A recording with the data needed to understand and repeat it."""
 
     scenario: dict[str, Any] | None
-    events: list[dict[str, Any]] | None
+    events: Annotated[list[dict[str, Any]] | None, AfterValidator(in_this_notation)]
     layout: dict[str, Any] | None
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from sqlalchemy import Insert, select
-from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.dialects import sqlite
 
 from server.store.database import Database
 from server.store.models import ResultRow
@@ -52,4 +52,6 @@ class Results:
         """Return the statement "insert unless it exists" in the dialect of the database."""
         if self._database.url.startswith("sqlite"):
             return sqlite.insert(ResultRow).on_conflict_do_nothing()
+        from sqlalchemy.dialects import postgresql  # a third of what loading SQLAlchemy takes
+
         return postgresql.insert(ResultRow).on_conflict_do_nothing()

@@ -8,9 +8,12 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from starlette.websockets import WebSocket
+from uvicorn._types import ASGISendEvent
 from uvicorn.config import Config
+from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from uvicorn.server import ServerState
+from websockets.exceptions import InvalidState
 from websockets.frames import CloseCode, Frame, Opcode, apply_mask  # type: ignore[attr-defined]
 from websockets.http11 import Request
 
@@ -124,6 +127,13 @@ class Line(WebSocketsSansIOProtocol):
             self._is_whole = ends_whole(data)
         super().data_received(data)
 
+    def handle_events(self) -> None:
+        """Handle what has arrived; no message can be refused before the client was answered."""
+        try:
+            super().handle_events()
+        except InvalidState:
+            self.handle_parser_exception()
+
     def handle_parser_exception(self) -> None:
         """Cut a client that breaks the rules before it was answered: no close can be sent yet."""
         if self.conn.close_sent is None:
@@ -131,6 +141,12 @@ class Line(WebSocketsSansIOProtocol):
             self.transport.abort()
         else:
             super().handle_parser_exception()
+
+    async def send(self, message: ASGISendEvent) -> None:
+        """Send what the application says; no answer is owed to a client that left before it."""
+        if not self.handshake_complete and self.transport.is_closing():
+            raise ClientDisconnected
+        await super().send(message)
 
     def handle_text(self, event: Frame) -> None:
         """Offer a whole message to `hear`."""

@@ -16,6 +16,9 @@ from core.device.geometry import Geometry
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+View = tuple[tuple[tuple[float, float], ...], tuple[float, float], tuple[float, float]]
+"""What a camera shows: a box in um, and where it stands for a tall and for a wide picture, azimuth and elevation."""
+
 UM_PER_UNIT = 100.0
 HEIGHTS, WIDTHS = 4.0, 2.5
 """Factor on heights, and on widths of beams and trusses: a film of 2 um is invisible across 800 um."""
@@ -150,6 +153,24 @@ class Layout:
                 points = [(side * a, b, top) for a, b in corners]
                 edges += [(points[k], points[(k + 1) % 4]) for k in range(4)]
         return np.array(edges) / UM_PER_UNIT
+
+    def views(self) -> dict[str, View]:
+        """Return the presets of the camera.
+
+        Tall pictures have +x to the right; in wide ones the device lies on its side, +x up.
+        """
+        top, length, width = self.top_um, self.half_length_um, self.half_width_um
+        whole = ((-length, length), (-width, width), (0.0, top))
+        tips = (0.39 * self.comb_um, 0.5 * self.comb_um + self.geometry.gap_um)
+        comb = ((self.plate_um, self.base_um), tips, (0.0, top))
+        beams = ((-2 * self.outer_um, 2 * self.outer_um), (-20.0, self.beam_to_um + 25.0), (0.0, top))
+        return {
+            "whole": (whole, (-80, 56), (190, 54)),
+            "top": (whole, (-90, 89.9), (180, 89.9)),
+            "side": (whole, (-90, 14), (180, 14)),
+            "fingers": (comb, (-90, 62), (-90, 62)),
+            "beams": (beams, (-80, 56), (190, 56)),
+        }
 
     @property
     def comb_um(self) -> float:

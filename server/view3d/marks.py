@@ -9,7 +9,11 @@ from typing import Any
 import numpy as np
 
 from core.device.frame import Damage
-from core.faults.broken_truss import EXTENTS
+from core.faults.broken_truss import EXTENTS, BrokenTruss
+from core.faults.debris import Debris
+from core.faults.point_adhesion import PointAdhesion
+from core.faults.shock import Shock
+from core.faults.short_circuit import ShortCircuit
 from core.format import format_count, format_short
 from server.view3d.layout import FILM_UM, GROUND_UM, UM_PER_UNIT, Box, Layout, Mesh, merge
 from server.view3d.pose import Active
@@ -87,15 +91,15 @@ class Marks:
         return x, 0.0, self.layout.top_um + height
 
     def _point_adhesion(self, fault: Active) -> Place:
-        beam, position = getattr(fault.params, "beam", "inner"), getattr(fault.params, "position", 0.75)
-        x = self.layout.inner_um if beam == "inner" else self.layout.outer_um
-        y = self.layout.beam_from_um + position * self.layout.geometry.beam_length_um
+        params = fault.given(PointAdhesion.Params)
+        x = self.layout.inner_um if params.beam == "inner" else self.layout.outer_um
+        y = self.layout.beam_from_um + params.position * self.layout.geometry.beam_length_um
         self.add("adhesion", ball((x, y, self.layout.z), DOT_UM))
-        self.hurt(fault.share, adhesion=(beam, position))
+        self.hurt(fault.share, adhesion=(params.beam, params.position))
         return x, y, self.layout.top_um + DOT_UM
 
     def _broken_truss(self, fault: Active) -> Place:
-        lost = EXTENTS[getattr(fault.params, "extent", "end")][0].lost_ends
+        lost = EXTENTS[fault.given(BrokenTruss.Params).extent][0].lost_ends
         self.hurt(fault.share, lost_ends=lost)
         segment = self.layout.geometry.truss_segment_um
         y = self.layout.beam_to_um + self.layout.truss_um / 2
@@ -109,9 +113,9 @@ class Marks:
         return middle, 0.82 * y, self.layout.top_um
 
     def _debris(self, fault: Active) -> Place:
-        side = -1.0 if getattr(fault.params, "comb", "right") == "left" else 1.0
-        x = side * (self.layout.stator_um + self.layout.geometry.overlap_um / 2)
-        y = getattr(fault.params, "place_um", 200.0)
+        params = fault.given(Debris.Params)
+        side = -1.0 if params.comb == "left" else 1.0
+        x, y = side * (self.layout.stator_um + self.layout.geometry.overlap_um / 2), params.place_um
         self.add("debris", ball((x, y, self.layout.top_um), CHUNK_UM, stretch=(1.5, 1.0, 0.8)))
         return x, y, self.layout.top_um + CHUNK_UM
 
@@ -140,12 +144,12 @@ class Marks:
 
     def _short_circuit(self, fault: Active) -> Place:
         # the comb itself takes the colour, for every cause of a short
-        side = -1.0 if getattr(fault.params, "comb", "right") == "left" else 1.0
+        side = -1.0 if fault.given(ShortCircuit.Params).comb == "left" else 1.0
         return side * self.layout.stator_um, -0.3 * self.layout.geometry.arm_length_um, self.layout.top_um
 
     def _shock(self, fault: Active) -> Place:
         sign = 1.0 if fault.severity > 0.0 else -1.0
-        along_y = getattr(fault.params, "axis", "x") == "y"
+        along_y = fault.given(Shock.Params).axis == "y"
         y = -0.88 * self.layout.half_width_um
         self.add("shock", arrow((0.0, y, self.layout.top_um), 70.0 * sign, along_y))
         return 0.0, 0.8 * y, self.layout.top_um + 6.0  # further in, because the words are wider than the arrow
@@ -184,7 +188,7 @@ def words(fault: Active) -> str:
     unit, severity = fault.block.outputs[0].unit, fault.severity
     if unit == "1":
         return fault.block.title
-    amount = format_count(severity, unit) if unit == "week" else format_short(severity, unit, 3)
+    amount = format_count(severity, unit) if unit in ("week", "pair") else format_short(severity, unit, 3)
     return f"{fault.block.title} {amount}"
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import viser
 
-from server.view3d.layout import UM_PER_UNIT, Layout
+from server.view3d.layout import UM_PER_UNIT, View
 
 POLICY = "; ".join(
     (
@@ -26,36 +26,28 @@ POLICY = "; ".join(
 """Content policy of this document only: its client is one file of inline script and compiles code at run time."""
 
 
-def page(layout: Layout) -> str:
+class Viewed(Protocol):
+    """What a camera looks at."""
+
+    def views(self) -> dict[str, View]:
+        """Return the presets of the camera by their names on the page."""
+
+
+def page(layout: Viewed) -> str:
     """Return viser's page with our lines in its head."""
     before, ours, after = _parts()
     return before + ours.replace('"__DEVICE__"', json.dumps(cameras(layout))) + after
 
 
-def cameras(layout: Layout) -> dict[str, Any]:
-    """Return the presets of the camera, for tall and for wide pictures: box to show, in scene units, and direction.
-
-    A direction is azimuth and elevation in degrees. Tall pictures have +x to the right; in wide ones the device lies
-    on its side, +x up.
-    """
-    g, top = layout.geometry, layout.top_um
-    whole = ((-layout.half_length_um, layout.half_length_um), (-layout.half_width_um, layout.half_width_um), (0, top))
-    comb = ((layout.plate_um, layout.base_um), (0.39 * layout.comb_um, 0.5 * layout.comb_um + g.gap_um), (0, top))
-    beams = ((-2 * layout.outer_um, 2 * layout.outer_um), (-20.0, layout.beam_to_um + 25.0), (0, top))
-    views = {
-        "whole": (whole, (-80, 56), (190, 54)),
-        "top": (whole, (-90, 89.9), (180, 89.9)),
-        "side": (whole, (-90, 14), (180, 14)),
-        "fingers": (comb, (-90, 62), (-90, 62)),
-        "beams": (beams, (-80, 56), (190, 56)),
-    }
+def cameras(layout: Viewed) -> dict[str, Any]:
+    """Return the presets of the camera for tall and for wide pictures; boxes in scene units."""
     return {
         name: {
             "box": [[end / UM_PER_UNIT for end in ends] for ends in box],
             "portrait": portrait,
             "landscape": landscape,
         }
-        for name, (box, portrait, landscape) in views.items()
+        for name, (box, portrait, landscape) in layout.views().items()
     }
 
 

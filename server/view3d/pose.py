@@ -5,14 +5,19 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from core import registry
+from core.block import BlockParams
 from core.board.history import Float32Array
+from core.board.instances import faults_of
+from core.board.spec import Spec
 from core.board.wiring import needed
+from core.diagnose.hypothesis import names_of
 from core.faults.fault import Fault, FaultParams
+from core.plant.plane import PlaneParams
+from core.sense.dual_beam import DualBeam
 from server.bench.session import Session
 from server.view3d.layout import FloatArray, Layout
 from server.view3d.motion import (
@@ -35,6 +40,9 @@ STEPS = 50
 """Number of shades and sizes of a severity or a warning; it is small, so that they seldom change."""
 
 
+P = TypeVar("P", bound=FaultParams)
+
+
 @dataclass(frozen=True)
 class Active:
     """A fault that acts at the moment shown."""
@@ -47,6 +55,11 @@ class Active:
     def share(self) -> float:
         """Severity over what the fault was injected with."""
         return self.severity / self.params.severity if self.params.severity else 1.0
+
+    def given(self, kind: type[P]) -> P:
+        """Return the parameters it was injected with, of the class its block has."""
+        assert isinstance(self.params, kind)
+        return self.params
 
 
 @dataclass(frozen=True)
@@ -110,7 +123,7 @@ class Observer:
 
     def __init__(self, session: Session, layout: Layout) -> None:
         self._session, self._layout = session, layout
-        self._faults: dict[str, type[Any]] = registry.blocks("faults")
+        self._faults: dict[str, type[Any]] = faults_of(session.board.spec.axes)
         self._bank = _bank(session)
         names = (*SIGNALS, *(f"faults.{name}" for name in self._faults), *self._bank)
         self._indices = session.indices(names)
@@ -134,7 +147,7 @@ class Observer:
         end = len(SIGNALS) + len(self._faults)
         self._magnify(history.columns(self._indices[: len(MOVED)], head - round(3 * (period or 1000)), head, 1))
         plant = spec.plant.params
-        turns = hasattr(plant, "rotation_stiffness_nm")
+        turns = isinstance(plant, PlaneParams)
         combs = combs_of(shift, 1e-3 * turn, self._layout.tip_um, plant)
         gap = self._layout.geometry.gap_um
         return Pose(
@@ -147,7 +160,7 @@ class Observer:
             warnings=(_step(warning(closed_share(combs[0], gap))), _step(warning(closed_share(combs[1], gap)))),
             contact=int(contact),
             short=int(short),
-            faults=self._acting(values[len(SIGNALS) : end]),
+            faults=acting(session, self._faults, self._known, values[len(SIGNALS) : end]),
             lasers=self._lasers(spec),
             caption=caption(self._factor, self._turn_factor if turns else None, at.is_strobed),
         )
@@ -175,20 +188,21 @@ class Observer:
             if severity != 0.0 and name in self._known
         )
 
-    def _lasers(self, spec: Any) -> tuple[Laser, ...]:
+    def _lasers(self, spec: Spec) -> tuple[Laser, ...]:
         """Return the places where the light of the running sensors meets the grating."""
         in_use = needed(spec)
         beams: dict[float, bool] = {}
         for name in LASERS:
             if name in in_use:
                 beams.setdefault(0.0, name != "doppler")
-                spacing = getattr(spec.sensors[name].params, "spacing_um", 0.0)
+                params = spec.sensors[name].params
+                spacing = params.spacing_um if isinstance(params, DualBeam.Params) else 0.0
                 if spacing:
                     beams[math.copysign(max(APART_UM, abs(spacing) * self._factor), spacing)] = True
         return tuple(Laser(*beam) for beam in beams.items())
 
 
-def combs_of(shift_um: float, turn: float, tip_um: float, plant: Any) -> tuple[float, float]:
+def combs_of(shift_um: float, turn: float, tip_um: float, plant: BlockParams) -> tuple[float, float]:
     r"""Return how far the fingers at +x and -x are off centre where they are farthest, :math:`y\pm\theta X_r`.
 
     Parameters
@@ -200,9 +214,10 @@ def combs_of(shift_um: float, turn: float, tip_um: float, plant: Any) -> tuple[f
     plant : BlockParams
         The plant: combs may be off centre as made.
     """
-    middle = shift_um + getattr(plant, "misalignment_um", 0.0)
-    lever = (turn + 1e-3 * getattr(plant, "misalignment_mrad", 0.0)) * tip_um
-    return middle + lever, middle - lever
+    middle, angle = shift_um, turn
+    if isinstance(plant, PlaneParams):
+        middle, angle = middle + plant.misalignment_um, angle + 1e-3 * plant.misalignment_mrad
+    return middle + angle * tip_um, middle - angle * tip_um
 
 
 def _bank(session: Session) -> tuple[str, ...]:
@@ -210,7 +225,7 @@ def _bank(session: Session) -> tuple[str, ...]:
     known = {signal.name for signal in session.signals}
     spec = session.board.spec
     for name, section in spec.diagnosers.items():
-        hypotheses = [item.name for item in getattr(section.params, "hypotheses", ())]
+        hypotheses = names_of(section.params)
         signals = (f"{name}.winner", *(f"{name}.residual.{item}" for item in hypotheses))
         if spec.turns(section) == 1 and hypotheses and known.issuperset(signals):
             return signals
@@ -220,3 +235,20 @@ def _bank(session: Session) -> tuple[str, ...]:
 def _step(share: float) -> float:
     """Round a share."""
     return round(share * STEPS) / STEPS
+
+
+def acting(
+    session: Session, faults: dict[str, type[Any]], known: dict[str, Any], severities: FloatArray
+) -> tuple[Active, ...]:
+    """Return the faults that act; one healed a moment ago is still ``known`` by its last parameters."""
+    known |= dict(session.board.faults)
+    return tuple(
+        Active(block, known[name], severity)
+        for (name, block), severity in zip(faults.items(), severities.tolist(), strict=True)
+        if severity != 0.0 and name in known
+    )
+
+
+def seen(faults: tuple[Active, ...]) -> list[Any]:
+    """Return the visible part of the faults; a ramp moves in steps of two figures, not at every frame."""
+    return [(fault.block, fault.params, f"{fault.severity:.2g}") for fault in faults]

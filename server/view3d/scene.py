@@ -3,30 +3,36 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from server.view3d.layout import UM_PER_UNIT, Box, Layout, Mesh, merge, unit_box
+from server.view3d.colours import (
+    ATTENTION,
+    ESTIMATE,
+    FIXED,
+    GROUND,
+    LIGHT,
+    MOVING,
+    REFERENCE,
+    SILICON,
+    Color,
+    blend,
+    in_batch,
+)
+from server.view3d.layout import UM_PER_UNIT, Box, FloatArray, Layout, Mesh, merge
 from server.view3d.marks import LEFT, RIGHT, Marks, Place, ball, marks
-from server.view3d.pose import Active, Laser, Pose
-from server.view3d.private import PrivateServer
+from server.view3d.pose import Laser, Pose, seen
+from server.view3d.stage import Stage
 from server.view3d.suspension import Flexure, flexure
 
-Color = tuple[int, int, int]
-
-SILICON, MOVING, FIXED, GROUND = (150, 158, 170), (86, 180, 233), (110, 118, 130), (52, 58, 68)
-REFERENCE, ESTIMATE, LIGHT = (223, 228, 234), (31, 184, 143), (240, 110, 190)
-ATTENTION = (232, 64, 52)
 SIDES = ((1, "right", RIGHT), (-1, "left", LEFT))
 BEAM_UM, ABOVE_UM, BELOW_UM, SPOT_UM = 3.0, 130.0, 90.0, 5.0
 """Sizes of the light, large enough to see."""
 
 
-class Scene:
-    """One viser server with the device of one bench.
+class ResonatorScene(Stage):
+    """The resonator of one bench.
 
     Parameters
     ----------
@@ -35,19 +41,13 @@ class Scene:
     """
 
     def __init__(self, layout: Layout) -> None:
+        super().__init__()
         self._layout = layout
-        self._private = PrivateServer()
-        self._server = self._private.viser
         self._shown = Pose()
         self._marks = Marks(layout)
         self._added: list[Any] = []
         self._lights: list[Any] = []
         self._build()
-
-    @property
-    def path(self) -> Path:
-        """The Unix socket of the scene, which only this user can open."""
-        return self._private.path
 
     def show(self, pose: Pose) -> None:
         """Move the parts; nothing is sent if nothing changed."""
@@ -55,7 +55,7 @@ class Scene:
         if pose == before:
             return
         with self._server.atomic():
-            if _seen(pose.faults) != _seen(before.faults) or pose.contact != before.contact:
+            if seen(pose.faults) != seen(before.faults) or pose.contact != before.contact:
                 self._show_faults(pose)
             self._move(pose, before)
             for (_, name, bit), warning, earlier in zip(SIDES, pose.warnings, before.warnings, strict=True):
@@ -69,10 +69,6 @@ class Scene:
             if pose.caption != before.caption:
                 self._caption.text = pose.caption
         self._server.flush()
-
-    def close(self) -> None:
-        """Stop the server and disconnect its clients."""
-        self._private.stop()
 
     def _move(self, pose: Pose, before: Pose) -> None:
         """Place all moving parts."""
@@ -105,18 +101,14 @@ class Scene:
         self._added = []
         for solid in now.solids:
             path = f"/shuttle/{solid.name}" if solid.on_shuttle else f"/{solid.name}"
-            self._added.append(self._mesh(path, solid.mesh, ATTENTION))
+            self._added.append(self.mesh(path, solid.mesh, ATTENTION))
         labels: dict[Place, list[str]] = dict(now.labels)
         if pose.contact:
             side = 1 if abs(pose.combs_um[0]) >= abs(pose.combs_um[1]) else -1
             place = (side * self._layout.stator_um, 0.45 * self._layout.comb_um, self._layout.top_um)
             labels[place] = [*labels.get(place, []), "Fingers touch"]
         for number, (place, lines) in enumerate(labels.items()):
-            x, y, z = (value / UM_PER_UNIT for value in place)
-            label = self._server.scene.add_label(
-                f"/labels/{number}", "\n".join(lines), position=(x, y, z + 0.12), anchor="bottom-center"
-            )
-            self._added.append(label)
+            self._added.append(self.label(f"/labels/{number}", lines, place))
         if (now.damage, now.share) != (before.damage, before.share):
             self._bend(now)
         for beams, share, earlier in zip(self._beams, now.beams, before.beams, strict=True):
@@ -146,83 +138,37 @@ class Scene:
             beam = merge([Box(centre, (BEAM_UM, BEAM_UM, top + ABOVE_UM - low))])
             spot = ball((laser.place_um, 0.0, top + 0.5), SPOT_UM, stretch=(1.0, 1.0, 0.1))
             self._lights += [
-                self._mesh(f"/light/{number}", beam, LIGHT, opacity=0.6),
-                self._mesh(f"/spot/{number}", spot, LIGHT),
+                self.mesh(f"/light/{number}", beam, LIGHT, opacity=0.6),
+                self.mesh(f"/spot/{number}", spot, LIGHT),
             ]
 
     def _build(self) -> None:
         """Build all parts, once."""
-        scene, layout = self._server.scene, self._layout
-        # viser's own lights bleach every colour to white
-        scene.configure_default_lights(False)
-        scene.configure_environment_map(None)
-        scene.add_light_ambient("/lights/around", intensity=1.5)
-        scene.add_light_directional("/lights/above", intensity=1.8, position=(-4.0, -3.0, 9.0))
-        scene.world_axes.visible = False
-        self._mesh("/ground", layout.ground(), GROUND)
-        self._mesh("/anchors", layout.anchors(), FIXED)
-        self._bases = self._mesh("/bases", layout.bases(), FIXED)
-        self._film = self._mesh("/film", layout.film(), ATTENTION, opacity=0.2, visible=False)
+        layout = self._layout
+        self.mesh("/ground", layout.ground(), GROUND)
+        self.mesh("/anchors", layout.anchors(), FIXED)
+        self._bases = self.mesh("/bases", layout.bases(), FIXED)
+        self._film = self.mesh("/film", layout.film(), ATTENTION, opacity=0.2, visible=False)
         self._stators = {name: self._comb(f"/stators/{name}", layout.stators(side), FIXED) for side, name, _ in SIDES}
         self._places = {name: layout.fingers(side) for side, name, _ in SIDES}
         self._fingers = {name: self._comb(f"/fingers/{name}", self._places[name], MOVING) for _, name, _ in SIDES}
-        self._shuttle = scene.add_frame("/shuttle", show_axes=False)
-        self._mesh("/shuttle/plate", layout.shuttle(), MOVING)
+        self._shuttle = self.frame("/shuttle", (0.0, 0.0, 0.0))
+        self.mesh("/shuttle/plate", layout.shuttle(), MOVING)
         self._flexures: list[Flexure] = [flexure(layout, side) for side in (1, -1)]
         self._beams = [
-            self._mesh(f"/beams/{name}", Mesh(bending.bent(0.0, 0.0, 0.0), bending.faces), SILICON)
+            self.mesh(f"/beams/{name}", Mesh(bending.bent(0.0, 0.0, 0.0), bending.faces), SILICON)
             for name, bending in zip(("plus", "minus"), self._flexures, strict=True)
         ]
         self._reference = self._ghost("/reference", REFERENCE)
         self._estimate = self._ghost("/estimate", ESTIMATE)
         self._estimate.visible = False
-        # the page writes it at the edge of the picture, where no camera can lose it
-        self._caption = scene.add_label("/caption", "", visible=False)
 
     def _ghost(self, name: str, color: Color) -> Any:
         """Add the outline of a shuttle that is elsewhere."""
-        scene = self._server.scene
-        ghost = scene.add_frame(name, show_axes=False)
-        outline = self._layout.outline()
-        scene.add_line_segments(f"{name}/outline", outline, color, thickness=2.0, thickness_units="screen")
+        ghost = self.frame(name, (0.0, 0.0, 0.0))
+        self.lines(f"{name}/outline", self._layout.outline(), color)
         return ghost
 
-    def _mesh(self, name: str, mesh: Mesh, color: Color, **options: Any) -> Any:
-        """Add a rigid mesh, or one whose vertices are moved."""
-        vertices, faces = mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32)
-        return self._server.scene.add_mesh_simple(
-            name, vertices, faces, color=color, flat_shading=True, side="double", **options
-        )
-
-    def _comb(self, name: str, places: Any, color: Color) -> Any:
-        """Add all fingers of a kind as one batch."""
-        box = unit_box()
-        return self._server.scene.add_batched_meshes_simple(
-            name,
-            box.vertices.astype(np.float32),
-            box.faces.astype(np.uint32),
-            batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (len(places), 1)),
-            batched_positions=places / UM_PER_UNIT,
-            batched_scales=np.tile(self._layout.finger_size, (len(places), 1)) / UM_PER_UNIT,
-            batched_colors=in_batch(color),
-            flat_shading=True,
-            lod="off",
-        )
-
-
-def blend(first: Color, second: Color, share: float) -> Color:
-    """Mix two colours."""
-    red, green, blue = (round(a + (b - a) * share) for a, b in zip(first, second, strict=True))
-    return red, green, blue
-
-
-def in_batch(color: Color) -> NDArray[np.uint8]:
-    """Return a colour for a batch: viser takes colours of batches as linear, all others as sRGB."""
-    share = np.array(color) / 255.0
-    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-    return np.asarray(np.round(255.0 * linear), dtype=np.uint8)
-
-
-def _seen(faults: tuple[Active, ...]) -> list[Any]:
-    """Return the visible part of the faults; a ramp moves in steps of two figures, not at every frame."""
-    return [(fault.block, fault.params, f"{fault.severity:.2g}") for fault in faults]
+    def _comb(self, name: str, places: FloatArray, color: Color) -> Any:
+        """Add all fingers of a kind."""
+        return self.batch(name, places, self._layout.finger_size, color)

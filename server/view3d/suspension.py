@@ -70,7 +70,7 @@ def flexure(layout: Layout, side: int, damage: Damage | None = None, share: floa
         ring = np.stack([-across - up, across - up, across + up, up - across])
         rest.append((points[:, None, :] + ring[None, :, :]).reshape(-1, 3))
         follow.append(np.repeat(moving, 4, axis=0))
-        faces.append(_tube(len(points)) + first)
+        faces.append(tube(len(points)) + first)
         first += 4 * len(points)
     return Flexure(np.vstack(rest), np.vstack(follow), np.vstack(faces))
 
@@ -119,7 +119,7 @@ def _followed(shape: frame.Shape, chain: list[tuple[int, int]], point: FloatArra
     return np.asarray(np.outer(along, stretched) + np.outer(across, bent))
 
 
-def _tube(rings: int) -> IntArray:
+def tube(rings: int) -> IntArray:
     """Return the faces of a tube of square rings, closed at both ends."""
     faces = [[0, 1, 2], [0, 2, 3]]
     for a in range(0, 4 * (rings - 1), 4):

@@ -6,18 +6,38 @@ import asyncio
 import logging
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 from server.bench.session import Session
+from server.view3d.gyroscope.parts import Parts
+from server.view3d.gyroscope.pose import GyroscopeObserver
 from server.view3d.layout import Layout
 from server.view3d.pose import Observer
-
-if TYPE_CHECKING:
-    from server.view3d.scene import Scene
 
 log = logging.getLogger(__name__)
 
 FRAME_S = 1.0 / 60.0
+
+
+class Observing(Protocol):
+    """Reads the moments of one bench."""
+
+    def pose(self) -> Any:
+        """Return the pose to show."""
+
+
+class Scene(Protocol):
+    """The picture of one bench; it shows the poses of its observer."""
+
+    @property
+    def path(self) -> Path:
+        """The Unix socket of the scene, which only this user can open."""
+
+    def show(self, pose: Any) -> None:
+        """Move the parts."""
+
+    def close(self) -> None:
+        """Stop the server and disconnect its clients."""
 
 
 class Show:
@@ -76,7 +96,7 @@ class Show:
 
     async def _play(self, scene: Scene) -> None:
         """Show the bench 60 times a second."""
-        observer = Observer(self._session, layout_of(self._session))
+        observer = observer_of(self._session)
         due = time.monotonic()
         while True:
             try:
@@ -114,11 +134,23 @@ class Viewers:
 
 def build_scene(session: Session) -> Scene:
     """Build the scene; viser is loaded here, so that nothing else waits for it."""
-    from server.view3d.scene import Scene
+    from server.view3d.gyroscope.scene import GyroscopeScene
+    from server.view3d.scene import ResonatorScene
 
-    return Scene(layout_of(session))
+    layout = layout_of(session)
+    return ResonatorScene(layout) if isinstance(layout, Layout) else GyroscopeScene(layout)
 
 
-def layout_of(session: Session) -> Layout:
-    """Return where the parts are; a device without a drawing is drawn as the reference device."""
-    return Layout(session.geometry)
+def observer_of(session: Session) -> Observing:
+    """Return what reads the poses that the scene of this bench shows."""
+    layout = layout_of(session)
+    return Observer(session, layout) if isinstance(layout, Layout) else GyroscopeObserver(session)
+
+
+def layout_of(session: Session) -> Layout | Parts:
+    """Return where the parts are.
+
+    A plant with axes is drawn as gyroscopes, any other as a resonator; one without a drawing as the reference device.
+    """
+    axes = session.board.spec.axes
+    return Parts(axes) if axes else Layout(session.geometry)

@@ -18,11 +18,12 @@ from core.board.wiring import wire
 from core.device.catalogue import device
 from core.errors import InputError
 from tests.core.fence import run_behind_fences
-from tests.lab import RICH, STORY, do, document, inner_digest, make, play, run_digest
+from tests.lab import AXES_RICH, AXES_STORY, RICH, STORY, do, document, inner_digest, make, play, run_digest
 
 TICKS = 120
 SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
 KIND = {"plant": "model"}
+FORCED = {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
 RESONATOR = device({}).oscillator()
 ALL = [entry for family in registry.FAMILIES for entry in registry.blocks(family).values()]
 
@@ -31,8 +32,21 @@ def name_of(entry: type[Block]) -> str:
     return f"{entry.family}/{entry.name}"
 
 
+def rich(entry: type[Block]) -> dict[str, Any]:
+    """Return the bench a block is tried on, with a plant of the sort it is for."""
+    return AXES_RICH if entry.axes or entry.per_axis else RICH
+
+
 def path_of(entry: type[Block]) -> str:
     """Return the table of the document in which a block's parameters stand."""
+    if entry.family == "rate":
+        return "rate"
+    if entry.family == "readout":
+        return "readouts.allan"
+    if entry.family == "control" and entry.axes:
+        return f"controllers.{entry.name}"
+    if entry.family == "board" and entry.per_axis:
+        return entry.name.removeprefix("axis_")
     if entry.family == "diagnose":
         return "diagnosers.kalman"
     if entry.family == "identify":
@@ -46,6 +60,8 @@ def path_of(entry: type[Block]) -> str:
 
 def chosen(entry: type[Block]) -> dict[str, Any]:
     """Return the values that put a block on the rich bench."""
+    if entry.axes or entry.per_axis:
+        return chosen_of_axes(entry)
     if entry.family == "sense" and all(port.name != "displacement" for port in entry.outputs):
         return {f"{path_of(entry)}.always": True}
     if entry.family in SECTION:
@@ -65,6 +81,19 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
     return {}
 
 
+def chosen_of_axes(entry: type[Block]) -> dict[str, Any]:
+    """Return the values that put a block on the rich bench with axes."""
+    if entry.family == "plant":
+        return {"plant": {"model": entry.name}}
+    if entry.name == "axis_drive":  # its forces may move between samples only with these
+        return FORCED
+    if entry.family == "control":
+        return {"controller.kind": entry.name} if entry.slot == "sense" else {f"slots.{entry.slot}": entry.name}
+    if entry.family in ("rate", "readout", "diagnose"):
+        return {f"{path_of(entry)}.kind": entry.name}
+    return {}
+
+
 def variants(entry: type[Block]) -> dict[str, dict[str, Any]]:
     """Return benches with the block as it comes, with each of its choices, with each of its switches turned."""
     found = {name_of(entry): chosen(entry)}
@@ -77,8 +106,10 @@ def variants(entry: type[Block]) -> dict[str, dict[str, Any]]:
                 **chosen(entry),
                 path: not parameter.default,
             }
-    if entry.family == "plant":
+    if entry.family == "plant" and not entry.axes:
         found[f"{name_of(entry)} analogue"] = {**chosen(entry), "drive": {"kind": "analogue"}}
+    if entry.family == "plant" and entry.axes:
+        found[f"{name_of(entry)} analogue"] = {**chosen(entry), **FORCED, "drive": {"kind": "analogue"}}
     return found
 
 
@@ -94,18 +125,19 @@ def cases() -> dict[str, dict[str, Any]]:
     found = {}
     for entry in ALL:
         for name, values in variants(entry).items():
-            bench = document(values, RICH)
+            bench = document(values, rich(entry))
             # nothing but the reference drives between samples, and not every controller suits every bench
             is_analogue = bench.get("drive", {}).get("kind") == "analogue"
-            able = () if is_analogue else make(base=bench).spec.controllers
-            story = [command for command in STORY if command["kind"] != "switch" or command["controller"] in able]
+            able = () if is_analogue else parse(bench).controllers
+            whole = AXES_STORY if rich(entry) is AXES_RICH else STORY
+            story = [command for command in whole if "switch" not in command or command["switch"] in able]
             found[name] = {"document": bench, "commands": story, "faults": []}
         if entry.family == "faults":
             for profile in profiles(entry):
                 severity = entry.suggested
-                command = {"kind": "inject", "fault": entry.name, "severity": severity, "profile": profile}
+                command = {"fault": entry.name, "severity": severity, "profile": profile}
                 found[f"{name_of(entry)} {profile['kind']}"] = {
-                    "document": document({}, RICH),
+                    "document": document({}, rich(entry)),
                     "commands": [{**command, "at_sample": 37}],
                     "faults": [(entry.name, severity, profile)],
                 }
@@ -200,7 +232,7 @@ def test_forks_do_not_disturb_each_other():
     board.advance(100)
     kept = board.checkpoint()
     left, right = Board.restore(kept), Board.restore(kept)
-    do(left, {"kind": "switch", "controller": "pid"})
+    do(left, {"switch": "pid"})
     play(left, 200)
     play(right, 200)
     play(board, 200)
@@ -211,7 +243,7 @@ def test_forks_do_not_disturb_each_other():
 # -- documentation
 
 
-@every_block
+@pytest.mark.parametrize("entry", [pytest.param(entry, id=name_of(entry)) for entry in ALL])
 def test_documented(entry):
     card = registry.card(entry)
     assert card.title and len(card.summary) > 15 and card.summary.rstrip().endswith((".", "`"))
@@ -275,7 +307,7 @@ def at_its_limit(entry: type[Block], name: str, value: float) -> None:
     label = f"{name_of(entry)}.{name}={value:g}"
     values = {**chosen(entry), f"{path_of(entry)}.{name}": value}
     try:
-        board = make(values, base=RICH)
+        board = make(values, base=rich(entry))
     except InputError as error:
         path = f"{path_of(entry)}.{name}".replace("controller", "controllers.")
         assert error.field == path or name in error.field, label
@@ -283,7 +315,9 @@ def at_its_limit(entry: type[Block], name: str, value: float) -> None:
     trace = play(board, 300)
     # a shadow may go where it wants; the voltage that drives and the shuttle stay finite, or the board stops
     if board.trip is None:
-        for signal in ("plant.displacement", "plant.velocity", "drive.voltage", f"{board.spec.active}.voltage"):
+        alone = ("plant.displacement", "plant.velocity", "drive.voltage", f"{board.spec.active}.voltage")
+        axes = [name for name in trace if name.startswith(("plant.", "drive."))]
+        for signal in axes if board.spec.axes else alone:
             assert np.all(np.isfinite(trace[signal])), f"{label}: {signal}"
     bank = np.array([trace[s] for s in trace if s.startswith("kalman.probability.")])
     if entry.family == "diagnose" and len(bank):

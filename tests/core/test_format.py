@@ -14,13 +14,16 @@ import pytest
 from core.format import (
     UNITS,
     format_count,
+    format_figure,
     format_in,
     format_number,
     format_on,
+    format_percent,
     format_short,
     format_si,
     tick_labels,
     unit_scale,
+    unit_text,
 )
 
 CASES: dict[str, Any] = json.loads(Path("web/src/ui/format-cases.json").read_text("utf-8"))
@@ -36,11 +39,22 @@ def test_texts_are_those_of_the_page(name: str, case: list[Any]) -> None:
     assert FORMATS[name](*one) == text
 
 
+def test_shares_and_figures_are_those_of_the_page() -> None:
+    """Shares keep the digits that tell them from none and all, counts are whole."""
+    for share, decimals, text in CASES["percent"]:
+        assert format_percent(share, decimals) == text
+    for metric, value, digits, text in CASES["figure"]:
+        assert format_figure(metric, value, digits) == text
+    assert format_percent(math.nan) == "–"
+
+
 def test_units_are_those_of_the_page() -> None:
     """Each unit is written as itself."""
     assert set(UNITS) == set(CASES["units"])
     for unit, text in CASES["units"].items():
         assert format_short(1.0, unit) == text
+    for unit, text in CASES["text"].items():
+        assert unit_text(unit) == text
     for ticks, texts in CASES["ticks"]:
         assert tick_labels(ticks) == texts
 

@@ -242,10 +242,10 @@ def test_a_bank_follows_a_change_to_a_slower_sensor():
     sensors = {"sensor": {"kind": "ideal"}, "sensors": {"ideal": {"noise_um": 0.05}, "capacitive": {"every": 4}}}
     board = make({**BENCH, **sensors, "device": {"id": "lcr-350"}})
     play(board, 200)
-    do(board, {"kind": "set", "values": {"sensor.kind": "capacitive"}})
+    do(board, {"set": {"sensor.kind": "capacitive"}})
     residual = play(board, 200)["kalman.residual.healthy"]
     assert np.all(np.flatnonzero(np.diff(residual)) % 4 == 3)
-    do(board, {"kind": "set", "values": {"sensor.kind": "ideal"}})
+    do(board, {"set": {"sensor.kind": "ideal"}})
     assert np.count_nonzero(np.diff(play(board, 200)["kalman.residual.healthy"])) == 199
 
 

@@ -22,8 +22,8 @@ def test_trip_at_gain_30_and_recovery():
     assert board.trip.tick == board.tick == len(trace["plant.displacement"]) < 20_000
     assert np.all(np.isfinite(trace["plant.displacement"])) and np.all(np.isfinite(trace["drive.voltage"]))
     assert board.advance(10).count == 0
-    do(board, {"kind": "set", "values": {"controllers.mrac.adaptation_gain": 1.0}})
-    do(board, {"kind": "reset_trip"})
+    do(board, {"set": {"controllers.mrac.adaptation_gain": 1.0}})
+    do(board, {"reset_trip": True})
     assert board.trip is None
     trace = play(board, 10_000)
     assert board.trip is None

@@ -184,7 +184,7 @@ def test_squeeze_film_between_two_stators():
 def test_squeeze_film_is_rarefied(pressure, fault):
     """4 n mu L t^3/g^3 of a continuous gas over 1 + 9.638 Kn^1.159; a fault of the damping multiplies it."""
     board = bench(0.0, {"environment.pressure_pa": pressure})
-    do(board, {"kind": "inject", "fault": "damping", "severity": fault})
+    do(board, {"fault": "damping", "severity": fault})
     board.advance(2)
     _, s = insides(board)
     mu, path = 1.8459e-5, 67.0e-3 * 101325.0 / pressure

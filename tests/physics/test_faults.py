@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core import registry
+from core.board.instances import faults_of
 from tests.lab import RICH, do, inject, make, play
 
 STILL = {"reference": {"kind": "constant", "amplitude_v": 0.0}}
@@ -20,9 +20,9 @@ def test_severity_0_is_bit_for_bit_no_fault(plant):
     values = {"plant.model": plant, "device.id": "lcr-350"}
     healthy = make(values, base=RICH)
     play(healthy, 300)
-    for fault in registry.blocks("faults"):
+    for fault in faults_of(()):
         board = make(values, base=RICH)
-        do(board, {"kind": "inject", "fault": fault, "severity": 0.0})
+        do(board, {"fault": fault, "severity": 0.0})
         play(board, 300)
         assert board.digest() == healthy.digest(), fault
 
@@ -30,10 +30,10 @@ def test_severity_0_is_bit_for_bit_no_fault(plant):
 @pytest.mark.parametrize("plant", PLANTS)
 def test_a_healed_fault_leaves_no_effect(plant):
     board = make({"plant.model": plant, "device.id": "lcr-350", "guard.stop_on_contact": False}, base=RICH)
-    for fault, block in registry.blocks("faults").items():
-        do(board, {"kind": "inject", "fault": fault, "severity": block.suggested})
+    for fault, block in faults_of(()).items():
+        do(board, {"fault": fault, "severity": block.suggested})
     play(board, 20)
-    do(board, {"kind": "heal", "faults": "all"})
+    do(board, {"heal": "all"})
     play(board, 1)
     healthy = make({"plant.model": plant, "device.id": "lcr-350"}, base=RICH)
     play(healthy, 1)
@@ -80,7 +80,7 @@ def test_shock_along_the_drive(plant):
     if plant == "nonlinear":
         values["plant.cubic_n_m3"] = 0.0
     board = make(values)
-    do(board, {"kind": "inject", "fault": "shock", "severity": 20.0, "parameters": {"pulse_ms": 40.0}})
+    do(board, {"fault": "shock", "severity": 20.0, "parameters": {"pulse_ms": 40.0}})
     trace = play(board, 6000)
     static = 2.209e-10 * 9.80665 / 0.0538 * 1e6
     assert static == pytest.approx(0.0403, rel=2e-3)
@@ -94,12 +94,12 @@ def test_shock_sideways_and_hard_shock():
     """10.6 pm per g sideways; 1000 g for 1 ms along the drive reaches the stop at 20 um, which holds."""
     still = {**LCR, **STILL, "device.bias_v": 0.0, "plant.model": "planar", "plant.thermal_noise": False}
     board = make(still)
-    do(board, {"kind": "inject", "fault": "shock", "severity": 1e3, "parameters": {"axis": "y", "pulse_ms": 2.0}})
+    do(board, {"fault": "shock", "severity": 1e3, "parameters": {"axis": "y", "pulse_ms": 2.0}})
     trace = play(board, 300)
     assert trace["plant.shift"].min() == pytest.approx(-1e3 * 2.209e-10 * 9.80665 / 205.4 * 1e6, rel=0.02)
     assert np.all(trace["plant.displacement"] == 0.0)
     board = make(still)
-    do(board, {"kind": "inject", "fault": "shock", "severity": 1e3, "parameters": {"pulse_ms": 1.0}})
+    do(board, {"fault": "shock", "severity": 1e3, "parameters": {"pulse_ms": 1.0}})
     x = play(board, 200)["plant.displacement"]
     assert board.trip is None and 20.0 < abs(x).max() < 21.0
 
@@ -123,11 +123,11 @@ def test_stuck_drive_holds_the_voltage_of_the_moment():
     board = make({**LCR, "reference": sine})
     play(board, 130)
     held = board.value("drive.voltage")
-    do(board, {"kind": "inject", "fault": "drive_gain", "severity": 1.0, "parameters": {"mode": "stuck"}})
+    do(board, {"fault": "drive_gain", "severity": 1.0, "parameters": {"mode": "stuck"}})
     trace = play(board, 1500)
     assert abs(trace["drive.voltage"][-200:]).max() == pytest.approx(4.0, rel=1e-3)
     assert trace["plant.displacement"][-1] == pytest.approx(-0.5455 * held, rel=2e-3)
-    do(board, {"kind": "heal", "faults": "all"})
+    do(board, {"heal": "all"})
     again = play(board, 600)["plant.displacement"][-300:]
     assert np.ptp(again) > 3.0
 
@@ -138,9 +138,9 @@ def test_a_short_leaves_the_other_comb(plant, comb, sign):
     """The comb that is left pulls with C' V^2 / 2, and goes on when the fault is healed."""
     values = {**LCR, **STILL, "plant.model": plant, "plant.thermal_noise": False, "guard.stop_on_contact": False}
     board = make(values)
-    do(board, {"kind": "inject", "fault": "short_circuit", "severity": 1.0, "parameters": {"comb": comb}})
+    do(board, {"fault": "short_circuit", "severity": 1.0, "parameters": {"comb": comb}})
     play(board, 2)
-    do(board, {"kind": "heal", "faults": "all"})
+    do(board, {"heal": "all"})
     x = play(board, 1500)["plant.displacement"][-1]
     gradient = 2 * 87 * 8.8541878128e-12 * 2.0 / 2.1 * 1e6
     if plant == "slaved_lateral":
@@ -152,12 +152,12 @@ def test_a_short_leaves_the_other_comb(plant, comb, sign):
 def test_the_board_stops_on_a_short_unless_told_not_to():
     for fault, parameters in (("short_circuit", {}), ("debris", {"conductive": True})):
         board = make({"device.id": "lcr-350"})
-        do(board, {"kind": "inject", "fault": fault, "severity": 0.1, "parameters": parameters})
+        do(board, {"fault": fault, "severity": 0.1, "parameters": parameters})
         play(board, 10)
         assert board.trip is not None and board.trip.reason == "a comb is shorted"
         assert board.trip.signal == "plant.short" and board.trip.value == 1.0
         free = make({"device.id": "lcr-350", "guard.stop_on_contact": False})
-        do(free, {"kind": "inject", "fault": fault, "severity": 0.1, "parameters": parameters})
+        do(free, {"fault": fault, "severity": 0.1, "parameters": parameters})
         play(free, 10)
         assert free.trip is None
 
@@ -170,7 +170,7 @@ def test_debris_is_a_spring_off_the_axis():
     healthy = play(make(values), 1500)["plant.displacement"][-1]
     for place in (0.0, 300.0):
         board = make(values)
-        do(board, {"kind": "inject", "fault": "debris", "severity": 0.5, "parameters": {"place_um": place}})
+        do(board, {"fault": "debris", "severity": 0.5, "parameters": {"place_um": place}})
         trace = play(board, 1500)
         kd, kt = 0.5 * 0.0538, 4.51e5
         k = np.array([[0.0538 + kd, -kd * place], [-kd * place, kt + kd * place**2]])
@@ -187,7 +187,7 @@ def truth_under(fault, severity, hypotheses=None, **parameters):
     if hypotheses:
         values["diagnosers"] = {"kalman": {"kind": "mmae", "hypotheses": hypotheses}}
     board = make(values, base=RICH)
-    do(board, {"kind": "inject", "fault": fault, "severity": severity, "parameters": parameters})
+    do(board, {"fault": fault, "severity": severity, "parameters": parameters})
     return play(board, 10)["kalman.truth"][-1]
 
 

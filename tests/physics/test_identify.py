@@ -179,13 +179,13 @@ def test_covariance_stays_below_its_limit_under_a_constant():
 def test_switched_off_it_holds_and_on_again_it_trusts_nothing():
     board = bench({"kind": "least_squares", "initial_covariance": 123.0}, FOUR)
     play(board, 2000)
-    do(board, {"kind": "set", "values": {"identifiers.x.enabled": False}})
+    do(board, {"set": {"identifiers.x.enabled": False}})
     inject(board, stiffness=0.5)
     off = play(board, 1000)
     for name in NAMES:
         assert np.ptp(off[f"x.coefficient.{name}"]) == 0.0
     assert off["x.covariance_trace"][-1] < 200
-    do(board, {"kind": "set", "values": {"identifiers.x.enabled": True}})
+    do(board, {"set": {"identifiers.x.enabled": True}})
     on = play(board, 3000)
     assert 2 * 123.0 < on["x.covariance_trace"][0] < 3 * 123.0  # the first sample tells of one direction of three
     assert on["x.estimate.stiffness"][-1] == pytest.approx(1.5, abs=0.02)
@@ -217,7 +217,7 @@ def test_noise_does_not_pass_for_excitation(kind, noise_um):
 def test_noise_that_is_turned_up_live_is_taken_out_as_well():
     board = bench({"kind": "excitation"}, ONE, {"sensor.noise_um": 0.0})
     play(board, 4000)
-    do(board, {"kind": "set", "values": {"sensor.noise_um": 0.1}})
+    do(board, {"set": {"sensor.noise_um": 0.1}})
     assert np.all(play(board, 12_000)["x.identifiable"][2500:] == 0.0)
 
 

@@ -32,7 +32,7 @@ def test_only_sentences_are_said():
 def ours(fault: str, parameters: dict[str, str], travel: float) -> tuple[float, float, float]:
     """Force along x at a travel and where the planar plant rests across it."""
     board = bench(0.0)
-    do(board, {"kind": "inject", "fault": fault, "severity": 1.0, "parameters": parameters})
+    do(board, {"fault": fault, "severity": 1.0, "parameters": parameters})
     board.advance(2)
     k = board.wiring.state("plant").suspension
     shift, turn = k.sideways * travel * travel, (k.turn + k.turn_cubic * travel * travel) * travel

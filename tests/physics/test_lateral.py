@@ -35,7 +35,7 @@ def test_thermal_motion_obeys_equipartition(factor):
     """kT/2 in each of x, y and theta, whatever the damping: 0.2775 nm, 4.49 pm, 95.8 nrad."""
     board = bench(0.0, thermal_noise=True)
     if factor != 1.0:
-        do(board, {"kind": "inject", "fault": "damping", "severity": factor - 1})
+        do(board, {"fault": "damping", "severity": factor - 1})
     play(board, 2000)
     trace = play(board, 400_000 if factor == 1.0 else 200_000)
     assert rms(trace["plant.displacement"]) == pytest.approx(math.sqrt(KT / 0.0538) * 1e6, rel=0.03)
@@ -98,7 +98,7 @@ def test_pull_in_of_a_perfect_device_waits_for_noise():
 def folded(bias, fault=None, parameters=None, **plant):
     board = bench(bias, **plant)
     if fault:
-        do(board, {"kind": "inject", "fault": fault, "severity": 1.0, "parameters": parameters or {}})
+        do(board, {"fault": fault, "severity": 1.0, "parameters": parameters or {}})
     board.advance(2)
     return lateral_metrics(board)
 
@@ -172,13 +172,13 @@ def test_a_short_stays_until_the_board_is_reset():
     board = ramped(0.25, **{"guard.stop_on_contact": False})
     play(board, 250)
     assert board.value("plant.short") != 0.0
-    do(board, {"kind": "set", "values": {"reference": {"kind": "constant", "amplitude_v": 0.0}}})
+    do(board, {"set": {"reference": {"kind": "constant", "amplitude_v": 0.0}}})
     trace = play(board, 500)
     assert np.all(trace["plant.short"] == trace["plant.short"][0]) and trace["plant.short"][0] != 0.0
     assert np.all(np.isfinite(trace["plant.displacement"]))
     stopped = ramped(0.25)
     play(stopped, 400)
-    do(stopped, {"kind": "reset_trip"})
+    do(stopped, {"reset_trip": True})
     assert stopped.value("plant.short") == 0.0
 
 
@@ -186,7 +186,7 @@ def test_insulated_fingers_stay_latched_without_any_drive():
     """Hysteresis: the bias alone holds what the drive has pulled in."""
     board = ramped(0.25, **{"guard.stop_on_contact": False, "plant.short_on_contact": False})
     play(board, 250)
-    do(board, {"kind": "set", "values": {"reference": {"kind": "constant", "amplitude_v": 0.0}}})
+    do(board, {"set": {"reference": {"kind": "constant", "amplitude_v": 0.0}}})
     trace = play(board, 500)
     assert trace["plant.contact"][-100:].min() == 1.0 and trace["plant.short"].max() == 0.0
     assert abs(trace["plant.lateral"][-1]) == pytest.approx(G - 0.15, abs=0.02)
@@ -203,7 +203,7 @@ def test_plants_are_exchanged_while_running():
     for model in ("linear", "planar", "slaved_lateral", "nonlinear", "planar"):
         # what only the old plant has is left behind
         before = board.value("plant.displacement")
-        do(board, {"kind": "set", "values": {"plant.model": model}})
+        do(board, {"set": {"plant.model": model}})
         trace = play(board, 40)
         assert abs(trace["plant.displacement"][0] - before) < 1.0
         if model in ("linear", "nonlinear"):

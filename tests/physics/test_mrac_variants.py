@@ -126,7 +126,7 @@ def test_bias_regressor_takes_a_constant_load_out():
     for bias in (0.0, 10.0):
         board = make({"controller": {"kind": "mrac", "bias_v": bias}})
         play(board, 471)  # a quarter of 1.5 periods: 10 V
-        stuck = {"kind": "inject", "fault": "drive_gain", "severity": -0.1, "parameters": {"mode": "stuck"}}
+        stuck = {"fault": "drive_gain", "severity": -0.1, "parameters": {"mode": "stuck"}}
         do(board, stuck)
         trace = play(board, 60_000)
         mean = np.mean((trace["plant.displacement"] - trace["model.displacement"])[-6283:])

@@ -62,9 +62,9 @@ def test_pull_in_is_that_of_the_gap_whatever_the_plant():
 def test_a_plant_that_takes_over_keeps_the_gap_and_nobody_changes_it_in_motion():
     board = bench("planar", plant__gap_um=4.2)
     board.advance(2000)
-    do(board, {"kind": "set", "values": {"plant.model": "linear"}})
+    do(board, {"set": {"plant.model": "linear"}})
     trace = play(board, 2000)
     assert np.ptp(trace["plant.displacement"]) < 1e-4
     with pytest.raises(InputError, match="cannot change while the board runs") as refused:
-        do(board, {"kind": "set", "values": {"plant.gap_um": 3.0}})
+        do(board, {"set": {"plant.gap_um": 3.0}})
     assert refused.value.field == "plant.gap_um"

@@ -13,7 +13,7 @@ from core.device.catalogue import devices
 from tests.lab import inject, make, play, rms
 from tests.loop import KRAD, tail
 
-RESONATORS = [device.id for device in devices() if device.transfer_function is None]
+RESONATORS = [device.id for device in devices() if device.usual_plant == "linear"]
 SOME = ["ch4", "lcr-350", "table-1-1-350-min", "table-1-1-500-max", "fabricated-2"]
 FOLLOWERS = ["mrac", "mrac_velocity", "indirect_mrac", "stvsc", "self_sliding"]
 AGED = {"added_mass": 0.05, "stiffness": 0.8}

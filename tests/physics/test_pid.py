@@ -104,7 +104,7 @@ def test_pid_integral_does_not_wind_up():
     wound = 1.3**3 / abs(KP) * W0 * abs(error) * 30.0
     assert np.abs(far["pid.integral"]).max() < 40 < 0.02 * wound
     assert np.ptp(far["pid.integral"][1500:]) < 1e-9
-    do(board, {"kind": "set", "values": {"reference.amplitude_v": 2.0}})
+    do(board, {"set": {"reference.amplitude_v": 2.0}})
     near = play(board, 1500)
     assert np.flatnonzero(np.abs(near["drive.voltage"]) < 5.0)[0] < 20
     assert abs(near["pid.error"][-1]) < 1e-3

@@ -14,6 +14,7 @@ from core.block import Context
 from core.diagnose.hypothesis import Hypothesis
 from core.faults.fault import FaultParams
 from core.loop import score
+from core.plain import plain
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
@@ -55,18 +56,19 @@ def test_score_against_its_definition(data):
         truth += [now] * length
     context = Context(dt_ms=0.01, every=1, seed=0, device=NOMINAL, model=NOMINAL)
     p, s = score.Score.pack(params, context), score.Score.state(params, context)
+    step = plain(score.Score.step)
     w = np.zeros(32)
     w[16] = 1.0
     # probability, nis, three scales, drive gain, other, the environment twice, outputs, taps
-    io = np.array([2, 5, 8, 9, 10, 16, 17, 16, 16, 11, 12, 13, 14, 15])
+    io = np.array([2, 5, 8, 9, 10, 16, 17, 16, 16, 11, 12, 13, 14, 15, 18, 19])
     for tick, (who, what) in enumerate(zip(winner, truth, strict=True)):
         w[0] = tick
         w[2:5] = 0.1
         w[2 + who] = 0.8
         w[8:11] = factors[what] if what >= 0 else (1.3, 1.0, 1.0)
-        score.Score.step(p, s, score.Score.Ports(w, io))
+        step(p, s, score.Score.Ports(w, io))
         assert w[11] == who and w[12] == what
-    found = score.read(s, ["0", "1", "2"], winner[-1])
+    found = score.read(s, ["0", "1", "2"], winner[-1], False)
     share, exits, delays = by_definition(np.array(winner), np.array(truth))
     assert found.correct_fraction == pytest.approx(share)
     assert found.false_switches == exits
@@ -117,14 +119,14 @@ def test_a_device_is_as_healthy_elsewhere_as_at_300_k_and_1_atm(environment):
 def test_the_environment_may_change_and_a_leak_or_ageing_stays_a_fault():
     board = make({**BENCH, "environment": {"pressure_pa": 1000.0}})
     steps = (
-        ({"kind": "set", "values": {"environment.temperature_k": 320.0}}, 0),
+        ({"set": {"environment.temperature_k": 320.0}}, 0),
         (fault("vacuum_loss", 1.0), -1),
-        ({"kind": "set", "values": {"environment.pressure_pa": 101325.0}}, 0),  # nothing is left to leak
-        ({"kind": "set", "values": {"environment.pressure_pa": 1000.0}}, -1),
-        ({"kind": "heal", "faults": "all"}, 0),
+        ({"set": {"environment.pressure_pa": 101325.0}}, 0),  # nothing is left to leak
+        ({"set": {"environment.pressure_pa": 1000.0}}, -1),
+        ({"heal": "all"}, 0),
         (fault("ageing", 4.0), -1),
-        ({"kind": "heal", "faults": "all"}, 0),
-        ({"kind": "set", "values": {"environment.age_weeks": 4.0}}, 0),
+        ({"heal": "all"}, 0),
+        ({"set": {"environment.age_weeks": 4.0}}, 0),
     )
     for command, truth in steps:
         do(board, command)
@@ -176,7 +178,8 @@ def test_probabilities_that_are_no_numbers_are_not_right():
     w = np.ones(32)
     w[2:4] = math.nan
     w[11] = 0.0
-    score.Score.step(p, s, score.Score.Ports(w, np.array([2, 5, 7, 8, 9, 10, 11, 9, 9, 12, 13, 14, 15, 16])))
+    io = np.array([2, 5, 7, 8, 9, 10, 11, 9, 9, 12, 13, 14, 15, 16, 17, 18])
+    plain(score.Score.step)(p, s, score.Score.Ports(w, io))
     assert w[12] == -1.0 and w[13] == 0.0
-    found = score.read(s, ["healthy", "m+5"], -1)
+    found = score.read(s, ["healthy", "m+5"], -1, False)
     assert found.correct_fraction == 0.0 and found.confusion == [[0, 0], [0, 0]]

@@ -230,9 +230,9 @@ def test_without_a_drive_nothing_is_evidence(kind):
     board = make({**BENCH, **values, "reference.amplitude_v": 0.0})
     quiet = of_bank(play(board, 2000), "probability")
     np.testing.assert_allclose(quiet, 1.0 / 6.0)
-    do(board, {"kind": "set", "values": {"reference.amplitude_v": 10.0}})
+    do(board, {"set": {"reference.amplitude_v": 10.0}})
     driven = of_bank(play(board, 1000), "probability")
-    do(board, {"kind": "set", "values": {"reference.amplitude_v": 0.0}})
+    do(board, {"set": {"reference.amplitude_v": 0.0}})
     play(board, 600)  # 30 ms, some 50 times what the shuttle remembers
     still = of_bank(play(board, 2000), "probability")
     assert np.abs(driven - 1.0 / 6.0).max() > 0.1

@@ -17,7 +17,7 @@ SENSOR = ("sensor_noise", "sensor_bias", "sensor_dropout", "sensor_quantisation"
 def measured(fault: str, severity: float, ticks: int, **more):
     """Return what is measured and what is true under one fault of a noiseless sensor."""
     board = make({**SINE, **more.pop("values", {})})
-    do(board, {"kind": "inject", "fault": fault, "severity": severity, **more})
+    do(board, {"fault": fault, "severity": severity, **more})
     trace = play(board, ticks)
     return trace["sensor.displacement"], trace["plant.displacement"]
 
@@ -34,7 +34,7 @@ def test_noise_is_white_normal_and_as_strong_as_it_says():
 
 def test_noise_is_independent_of_that_of_the_sensor():
     board = make({**SINE, "sensor.noise_um": 0.3})
-    do(board, {"kind": "inject", "fault": "sensor_noise", "severity": 0.4})
+    do(board, {"fault": "sensor_noise", "severity": 0.4})
     trace = play(board, 40_000)
     assert rms(trace["sensor.displacement"] - trace["plant.displacement"]) == pytest.approx(0.5, rel=0.02)
 
@@ -67,7 +67,6 @@ def test_a_loose_contact_holds_for_as_long_as_it_is_open():
     do(
         board,
         {
-            "kind": "inject",
             "fault": "sensor_dropout",
             "severity": 1.0,
             "profile": {"kind": "intermittent", "period_ms": 1.0, "duty": 0.25},
@@ -98,7 +97,7 @@ def test_they_meet_in_the_order_of_the_chain():
     """Added before the converter; the coarser converter counts; what is lost is lost behind it."""
     board = make({**SINE, "sensor.quantum_um": 0.01})
     for fault, severity in (("sensor_bias", 0.1), ("sensor_hum", 0.2), ("sensor_quantisation", 0.5)):
-        do(board, {"kind": "inject", "fault": fault, "severity": severity})
+        do(board, {"fault": fault, "severity": severity})
     trace = play(board, 2000)
     hum = 0.2 * np.sin(2e-5 * np.pi * 50 * np.arange(2000))
     seen = np.floor(trace["ideal.displacement"] / 0.5 + (0.1 + hum) / 0.5 + 0.5) * 0.5
@@ -111,7 +110,7 @@ def test_the_shuttle_does_not_feel_them_but_the_loop_does(fault):
     for controller, same in (("open_loop", True), ("pid", False)):
         healthy = make({**SINE, "controller.kind": controller})
         faulty = make({**SINE, "controller.kind": controller})
-        do(faulty, {"kind": "inject", "fault": fault, "severity": 0.5})
+        do(faulty, {"fault": fault, "severity": 0.5})
         a, b = play(healthy, 1500)["plant.displacement"], play(faulty, 1500)["plant.displacement"]
         assert np.array_equal(a, b) == same
 
@@ -119,7 +118,7 @@ def test_the_shuttle_does_not_feel_them_but_the_loop_does(fault):
 @pytest.mark.parametrize("sensor", ["ideal", "capacitive", "quadrature_kalman", "single_beam"])
 def test_every_sensor_can_be_biased(sensor):
     board = make({**SINE, "sensor": {"kind": sensor}})
-    do(board, {"kind": "inject", "fault": "sensor_bias", "severity": 0.5})
+    do(board, {"fault": "sensor_bias", "severity": 0.5})
     trace = play(board, 200)
     np.testing.assert_allclose(trace["sensor.displacement"] - trace[f"{sensor}.displacement"], 0.5, atol=1e-12)
 
@@ -129,9 +128,9 @@ def test_no_hypothesis_is_true_meanwhile(fault):
     board = make({}, base=RICH)
     play(board, 10)
     assert board.value("kalman.truth") == 0
-    do(board, {"kind": "inject", "fault": fault, "severity": 0.1})
+    do(board, {"fault": fault, "severity": 0.1})
     assert np.all(play(board, 50)["kalman.truth"] == -1)
-    do(board, {"kind": "heal", "faults": [fault]})
+    do(board, {"heal": [fault]})
     assert np.all(play(board, 50)["kalman.truth"] == 0)
 
 
@@ -140,6 +139,6 @@ def test_pid_follows_what_a_biased_sensor_says():
     board = make({"reference": {"kind": "constant", "amplitude_v": 5.0}, "controller.kind": "pid"})
     play(board, 4000)
     before = board.value("plant.displacement")
-    do(board, {"kind": "inject", "fault": "sensor_bias", "severity": 0.2})
+    do(board, {"fault": "sensor_bias", "severity": 0.2})
     play(board, 8000)
     assert board.value("plant.displacement") - before == pytest.approx(-0.2, rel=1e-3)

@@ -206,7 +206,7 @@ def test_a_layer_thinner_than_a_sample_is_warned_of():
     assert warnings[0].tick == np.flatnonzero(needed > 0.05)[0] == np.flatnonzero(trace["stvsc.layer_exceeded"])[0]
     board, _ = story(0.05, "pid")
     assert all(entry.kind != "warning" for entry in board.log)
-    do(board, {"kind": "switch", "controller": "stvsc"})
+    do(board, {"switch": "stvsc"})
     play(board, 10)
     assert board.log[-1].kind == "warning"
 

@@ -160,7 +160,7 @@ def test_static_displacement_under_faults(plant, fault, parameters, ratio):
     for severity in (0.0, 1.0):
         board = make(values)
         if severity:
-            do(board, {"kind": "inject", "fault": fault, "severity": severity, "parameters": parameters})
+            do(board, {"fault": fault, "severity": severity, "parameters": parameters})
         found.append(play(board, 1500)["plant.displacement"][-1])
     assert found[0] / found[1] == pytest.approx(ratio, rel=0.01)
 
@@ -199,9 +199,9 @@ def test_parameters_of_a_fault_are_checked():
     board = make({})
     for parameters, field in (({"beam": "middle"}, "parameters.beam"), ({"bean": 1}, "parameters.bean")):
         with pytest.raises(InputError) as caught:
-            do(board, {"kind": "inject", "fault": "point_adhesion", "severity": 1.0, "parameters": parameters})
+            do(board, {"fault": "point_adhesion", "severity": 1.0, "parameters": parameters})
         assert caught.value.field == field
     with pytest.raises(InputError) as caught:
-        do(board, {"kind": "inject", "fault": "point_adhesion", "severity": 1.5})
+        do(board, {"fault": "point_adhesion", "severity": 1.5})
     assert caught.value.field == "severity"
     assert board.faults == {} and PointAdhesion.name not in board.faults

@@ -25,7 +25,7 @@ def takeovers(first: str, order: tuple[str, ...], *, cold: bool = False, faults:
     found = []
     for name in order:
         before = trace["drive.voltage"][-1]
-        do(board, {"kind": "switch", "controller": name, "cold": cold})
+        do(board, {"switch": name, "cold": cold})
         trace = play(board, 20 * ms)
         worst = np.abs(trace["plant.displacement"] - trace["model.displacement"])[: 5 * ms].max()
         found.append((worst, abs(trace["drive.voltage"][0] - before)))
@@ -123,7 +123,7 @@ def test_what_ran_away_in_shadow_takes_over_anew():
     board = make(bench)
     play(board, 4000)
     assert board.trip is None and not math.isfinite(board.value("self_sliding.voltage"))
-    board.apply(parse_command({"kind": "switch", "controller": "self_sliding"}))
+    board.apply(parse_command({"switch": "self_sliding"}))
     warning, switched = list(board.log)[-2:]
     assert switched.kind == "switch" and "self_sliding had run away" in warning.text
     trace = play(board, 500)

@@ -11,7 +11,7 @@ from core import registry
 from core.errors import InputError
 from tests.lab import inject, make, play
 
-KINDS = sorted(registry.blocks("diagnose"))
+KINDS = sorted(name for name, block in registry.blocks("diagnose").items() if not block.axes)
 LISTED = [name for name in KINDS if "hypotheses" in registry.blocks("diagnose")[name].Params.model_fields]
 WITH_GAIN = [
     {"name": "healthy"},

@@ -67,7 +67,7 @@ def test_another_tone_while_running_is_heard_in_a_window_of_its_own():
     """What was heard before of another tone is no evidence of this one; the power stays."""
     board = make({**BENCH, "diagnosers": {"kalman": {"kind": "consistency", "window": 50}}})
     first = play(board, 310)
-    do(board, {"kind": "set", "values": {"reference.frequency_hz": 200.0}})
+    do(board, {"set": {"reference.frequency_hz": 200.0}})
     second = play(board, 190)
     trace = {name: np.concatenate([first[name], second[name]]) for name in first}
     nu = normalised(trace)

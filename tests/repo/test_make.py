@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 from pathlib import Path
@@ -23,6 +24,13 @@ def test_help_lists_every_target_with_its_meaning(root: Path) -> None:
     for name, meaning in targets(root).items():
         assert meaning, f"make {name} has no ## comment"
         assert re.search(rf"^  make {name} +{re.escape(meaning)}$", shown, re.M)
+
+
+def test_python_keeps_its_bytecode_whatever_the_environment_says(root: Path) -> None:
+    command = ["make", "-s", "--eval", "told: ; @env", "told"]
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", "TOLD": "1"}
+    told = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, check=True).stdout
+    assert "TOLD=1" in told.splitlines() and "BYTECODE" not in told
 
 
 def test_documents_name_only_targets_that_exist(root: Path, documents: dict[str, str]) -> None:

@@ -53,17 +53,17 @@ class Proportional(Block):
 '''
 
 
-def checked(path: Path, text: str) -> str:
-    path.write_text(text)
-    command = [sys.executable, "-m", "mypy", "--no-error-summary", "--follow-imports", "silent", str(path)]
+def checked(*paths: Path) -> str:
+    command = [sys.executable, "-m", "mypy", "--no-error-summary", "--follow-imports", "silent", *map(str, paths)]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout
 
 
 def test_a_misspelt_port_parameter_or_state_is_an_error_before_anything_runs(tmp_path):
-    path = tmp_path / "proportional.py"
-    assert checked(path, UNIT) == ""
+    right, wrong = tmp_path / "proportional.py", tmp_path / "misspelt.py"
+    right.write_text(UNIT)
     misspelt = UNIT.replace("x.model - x.measured", "x.model - x.mesured").replace("p.gain *", "p.gian *")
-    misspelt = misspelt.replace("s.last[0] = x", "s.lost[0] = x").replace("x.voltage =", "x.volts =")
-    found = checked(path, misspelt)
+    wrong.write_text(misspelt.replace("s.last[0] = x", "s.lost[0] = x").replace("x.voltage =", "x.volts ="))
+    found = checked(right, wrong)
     for name in ("mesured", "gian", "lost", "volts"):
         assert f'has no attribute "{name}"' in found
+    assert all("misspelt.py" in line for line in found.splitlines()), found

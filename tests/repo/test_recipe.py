@@ -45,7 +45,7 @@ def test_it_takes_over_from_the_voltage_that_was_applied(recipe):
     """In shadow I = u - Kp e at every tick, so that the first voltage is u + Kp (e - e before) + Ki e dt."""
     board = make({"controller.kind": "open_loop"}, base=RICH)
     shadow = play(board, 300)
-    do(board, {"kind": "switch", "controller": "pi"})
+    do(board, {"switch": "pi"})
     after = play(board, 1)
     e, e_before = after["pi.error"][0], shadow["pi.error"][-1]
     applied = shadow["drive.voltage"][-2]  # over the sample that ended with the last tick in shadow

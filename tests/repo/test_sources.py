@@ -55,3 +55,10 @@ def test_no_file_names_a_machine_or_a_registry(root: Path, files: list[Path]) ->
 def test_no_file_is_big(root: Path, files: list[Path]) -> None:
     big = {str(p.relative_to(root)): p.stat().st_size for p in files if p.stat().st_size > 1_000_000}
     assert not big, "the repository holds sources, not data"
+
+
+def test_the_board_and_its_loop_do_not_know_what_turns(root: Path) -> None:
+    sources = [*root.glob("core/board/*.py"), *root.glob("core/loop/*.py")]
+    words = re.compile("gyro|coriolis", re.IGNORECASE)
+    assert len(sources) > 20
+    assert [path.name for path in sources if words.search(path.read_text())] == []

@@ -21,6 +21,7 @@ import numpy as np
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core import registry
+from core.board.instances import faults_of
 from core.device.catalogue import devices
 from core.errors import InputError
 from scenarios.library import library
@@ -64,10 +65,10 @@ class Draw:
 def bench(number: int, attempt: int) -> dict[str, Any]:
     """Return the scenario of one bench; not all that is drawn fits together."""
     draw = Draw(number, attempt)
-    device = draw.one(*(entry for entry in devices() if entry.transfer_function is None))
+    device = draw.one(*(entry for entry in devices() if entry.usual_plant == "linear"))
     natural_hz = device.oscillator().natural_frequency * 1e3 / (2 * np.pi)
     controllers = sorted(set(registry.blocks("control")) - {"gain_adaptation"})
-    faults = registry.blocks("faults")
+    faults = faults_of(())
     reference = draw.one("sine", "sine", "multi_sine", "square", "prbs", "chirp", "step", "constant")
     document: dict[str, Any] = {
         "schema": 1,
@@ -92,7 +93,8 @@ def bench(number: int, attempt: int) -> dict[str, Any]:
             document["plant"]["drive"], document["controller"], controllers = "analogue", {"kind": "open_loop"}, []
     if document["sensor"]["kind"] == "ideal":
         document["sensor"]["noise_um"] = draw.one(0.0, 0.01, 0.05)
-    for kind in draw.some(sorted(set(registry.blocks("diagnose"))), 3):
+    diagnosers = [name for name, block in registry.blocks("diagnose").items() if not block.axes]
+    for kind in draw.some(sorted(diagnosers), 3):
         chosen = {"kind": kind, "every": draw.one(1, 1, 2, 5)}
         if "hypotheses" in registry.block("diagnose", kind).Params.model_fields:
             chosen["hypotheses"] = CHEAP

@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from core.board.instances import faults_of
 from tests.scenarios import digests
 
 
@@ -30,7 +31,7 @@ def test_the_benches_are_worth_it() -> None:
     assert len({one["digest"] for one in digests.kept()["benches"]}) == digests.BENCHES
     assert {one["plant"]["model"] for one in benches} == {"linear", "nonlinear", "slaved_lateral", "planar"}
     faults = {event["fault"] for one in benches for event in one["events"] if "fault" in event}
-    assert faults == set(digests.registry.blocks("faults"))
+    assert faults == set(faults_of(()))
     drives = {one["controller"]["kind"] for one in benches}
     drives |= {event["switch"] for one in benches for event in one["events"] if "switch" in event}
     assert drives >= {"pid", "mrac", "mrac_velocity", "indirect_mrac", "stvsc", "vsc", "vsmrc", "self_sliding"}

@@ -96,11 +96,11 @@ def test_twins_from_specs_are_the_twins_from_the_document():
 def disturb(board: Board) -> None:
     """Do to a board what changes it: a fault, values, another controller, and the fault healed."""
     inject(board, stiffness=0.2)
-    do(board, {"kind": "set", "values": {"reference.amplitude_v": 3.0, "sensors.ideal.noise_um": 0.5}})
-    do(board, {"kind": "set", "values": {"environment.temperature_k": 350.0, "diagnosers.kalman.every": 1}})
-    do(board, {"kind": "switch", "controller": "open_loop"})
+    do(board, {"set": {"reference.amplitude_v": 3.0, "sensors.ideal.noise_um": 0.5}})
+    do(board, {"set": {"environment.temperature_k": 350.0, "diagnosers.kalman.every": 1}})
+    do(board, {"switch": "open_loop"})
     board.advance(400)
-    do(board, {"kind": "heal", "faults": "all"})
+    do(board, {"heal": "all"})
     board.advance(300)
 
 

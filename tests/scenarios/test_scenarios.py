@@ -8,17 +8,21 @@ from typing import Any
 import pytest
 
 from core import registry
+from core.board.commands import parse_event
 from core.device.catalogue import device
 from core.device.device import Device
+from core.device.drawn_gyroscope import DrawnGyroscope
 from core.device.geometry import Geometry
 from core.errors import InputError
+from core.loop.axis_drive import AxisDrive
+from core.loop.axis_guard import AxisGuard
 from core.loop.drive import Drive
 from core.loop.guard import Guard
 from core.loop.model import Model
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, library
 from scenarios.run import run
-from scenarios.schema import Event, Expectation, Head, Scenario
+from scenarios.schema import Expectation, Head, Scenario
 from tests.lab import document
 
 RESONATOR = device({}).oscillator()
@@ -80,7 +84,8 @@ def test_library_scenario_gives_the_same_bits_again(scenario):
     short = shortened(scenario)
     first, again = run(short), run(Scenario.load(short.toml()))
     assert first.digest == again.digest
-    no_chance = scenario.study or "noise_um = 0.0" in short.toml()
+    quiet = scenario.spec.axes and "thermal_noise = false" in short.toml()
+    no_chance = scenario.study or quiet or "noise_um = 0.0" in short.toml()
     assert run(short, seed=99).digest != first.digest or no_chance
 
 
@@ -129,17 +134,23 @@ def other_value(parameter: registry.ParameterCard) -> Any:
     raise AssertionError(parameter)
 
 
+AXES: dict[str, Any] = {"device": {"id": "gyro-a"}, "plant": {"model": "gyroscope_pair"}}
+"""What a bench needs for blocks of axes."""
+
+
 def leaves() -> list[Any]:
     found = []
 
     def add(table: str, block: Any, base: dict[str, Any]) -> None:
         card = registry.card(block)
-        if block.unsuited(RESONATOR, RESONATOR):
+        if block.axes or block.per_axis:
+            base = {**AXES, **base}
+        elif block.unsuited(RESONATOR, RESONATOR):
             base = {**base, "device": {"id": "second-order-gain"}, "plant": {"model": "transfer_function"}}
         for parameter in card.parameters:
             if parameter.type in ("list", "table"):
                 continue
-            if parameter.name == "amplitude_um":
+            if parameter.name == "amplitude_um" and block.family == "reference":
                 base = {"reference": {"kind": block.name, "amplitude_um": 0.5}}
             elif parameter.name == "amplitude_v":
                 base = {"reference": {"kind": block.name, "amplitude_v": 1.0}}
@@ -156,20 +167,26 @@ def leaves() -> list[Any]:
         if any(port.name == "displacement" for port in block.outputs):
             add("sensor", block, {"sensor": {"kind": block.name}})
     for block in registry.blocks("control").values():
-        add("controller", block, {"controller": {"kind": block.name}})
+        if block.slot != "drive":
+            add("controller", block, {"controller": {"kind": block.name}})
         add(f"controllers.{block.name}", block, {})
     for block in registry.blocks("diagnose").values():
         add("diagnosers.bank", block, {"diagnosers": {"bank": {"kind": block.name}}})
     for block in registry.blocks("identify").values():
         add("identifiers.one", block, {"identifiers": {"one": {"kind": block.name}}})
-    for block in (Drive, Guard, Model):
-        add(block.name, block, {})
+    for block in registry.blocks("rate").values():
+        add("rate", block, {"rate": {"kind": block.name}})
+    for block in registry.blocks("readout").values():
+        add("readouts.one", block, {"readouts": {"one": {"kind": block.name}}})
+    for block in (Drive, Guard, Model, AxisGuard):
+        add(block.name.removeprefix("axis_"), block, {})
+    add("drive", AxisDrive, {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}})
     return found
 
 
 @pytest.mark.parametrize(("base", "table", "name", "value"), leaves())
 def test_set_reaches_every_parameter(base, table, name, value):
-    scenario = Scenario.load(document({**base}))
+    scenario = Scenario.load(base if base.get("device") == AXES["device"] else document({**base}))
     found = with_values(scenario, {f"{table}.{name}": value})
     spec = found.spec
     if table == "controller":
@@ -182,6 +199,10 @@ def test_set_reaches_every_parameter(base, table, name, value):
         section = spec.diagnosers["bank"]
     elif table.startswith("identifiers."):
         section = spec.identifiers["one"]
+    elif table.startswith("readouts."):
+        section = spec.readouts["one"]
+    elif table == "rate":
+        section = spec.generators["rate"]
     elif table == "sensor":
         section = spec.sensors[spec.measuring]
     else:
@@ -204,7 +225,18 @@ def test_set_reaches_every_length_of_a_drawing(name):
         assert before != after, "a length that changes nothing"
 
 
-@pytest.mark.parametrize("name", sorted(set(Device.model_fields) - {"id", "geometry", "transfer_function", "printed"}))
+@pytest.mark.parametrize("name", sorted(set(DrawnGyroscope.model_fields)))
+def test_set_reaches_every_number_of_a_drawn_gyroscope(name):
+    base = get("gyro-comb-device")
+    old = getattr(base.spec.device.drawn_gyroscope, name)
+    found = with_values(base, {f"device.drawn_gyroscope.{name}": old - 1 if isinstance(old, int) else old * 1.01})
+    assert base.spec.device.metrics() != found.spec.device.metrics(), "a number that changes nothing"
+
+
+TABLES_OF_A_DEVICE = {"id", "geometry", "transfer_function", "gyroscope", "drawn_gyroscope", "printed"}
+
+
+@pytest.mark.parametrize("name", sorted(set(Device.model_fields) - TABLES_OF_A_DEVICE))
 def test_set_reaches_every_value_of_a_device(name):
     value: Any = {"title": "x", "source": "y", "fingers": 25}.get(name, 2.5)
     found = with_values(Scenario.load(document()), {f"device.{name}": value})
@@ -228,11 +260,11 @@ def test_set_reaches_head_events_and_expectations():
         },
     )
     assert found.samples == 123 and found.spec.seed == 5 and found.spec.dt_ms == 0.05
-    assert found.head.title == "other" and found.head.events[0].severity == 0.07
-    assert found.head.events[1].at_sample == 77 and found.head.expect[0].min == 0.5
+    assert found.head.title == "other" and found.events[0][0].document()["severity"] == 0.07
+    assert found.events[1][0].at_sample == 77 and found.head.expect[0].min == 0.5
     assert found.spec.diagnosers["kalman"].params.hypotheses[1].mass == 1.07
     assert found.head.metrics.tail_share == 0.5
-    assert base.samples == 9000 and base.head.events[0].severity == 0.05, "the original is untouched"
+    assert base.samples == 9000 and base.head.events[0]["severity"] == 0.05, "the original is untouched"
     for name in Head.model_fields:
         assert name in ("schema_", "id", "title", "source", "summary", "claim", "verdict", "samples", "duration_ms",
                         "events", "expect", "metrics", "study")  # fmt: skip
@@ -264,13 +296,30 @@ def test_bad_assignments(text):
 
 
 def test_an_event_is_several_commands_in_order():
-    event = Event.model_validate(
-        {"at_ms": 1.0, "heal": ["damping"], "fault": "stiffness", "severity": 0.1, "set": {"seed": 1}, "switch": "pid"}
-    )
-    assert [command.kind for command in event.commands()] == ["heal", "inject", "set", "switch"]
-    assert all(command.at_ms == 1.0 for command in event.commands())
-    reset = Event(at_sample=1, reset_trip=True, heal="all").commands()
+    event = {"switch": "pid", "heal": ["damping"], "fault": "stiffness", "severity": 0.1, "set": {"seed": 1}}
+    commands = parse_event({"at_ms": 1.0, **event})
+    assert [command.kind for command in commands] == ["heal", "inject", "set", "switch"]
+    assert all(command.at_ms == 1.0 for command in commands)
+    assert {key: value for command in commands for key, value in command.document().items()} == {"at_ms": 1.0, **event}
+    reset = parse_event({"at_sample": 1, "reset_trip": True, "heal": "all"})
     assert [command.kind for command in reset] == ["reset_trip", "heal"]
+
+
+@pytest.mark.parametrize(
+    ("event", "says"),
+    [
+        ({"heal": "all"}, "needs one of at_sample, at_ms, when"),
+        ({"at_ms": 1.0}, "needs one of reset_trip, heal, fault, set, switch"),
+        ({"at_ms": 1.0, "severity": 0.1, "heal": "all"}, "events.0.severity: goes with fault"),
+        ({"at_ms": 1.0, "fault": "stiffness"}, "events.0.severity: is required"),
+        ({"at_ms": 1.0, "fault": "stiffness", "severity": True}, "events.0.severity: must be a number"),
+        ({"at_ms": 1.0, "kind": "heal"}, "events.0.kind: unknown field"),
+        ("heal", "events.0: must be a table"),
+    ],
+)
+def test_what_is_wrong_with_an_event_is_said_in_one_line(event, says):
+    with pytest.raises(InputError, match=says):
+        Scenario.load({**document(), "events": [event]})
 
 
 def test_length_in_samples_or_time():

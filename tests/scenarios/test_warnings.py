@@ -86,9 +86,9 @@ def test_feedback_is_refused_while_the_drive_is_analogue_and_the_board_runs_on()
     board = make({"plant.drive": "analogue"})
     play(board, 10)
     for command in (
-        {"kind": "switch", "controller": "mrac"},
-        {"kind": "switch", "controller": "mrac", "at_sample": 100},
-        {"kind": "set", "values": {"controller.kind": "pid"}},
+        {"switch": "mrac"},
+        {"switch": "mrac", "at_sample": 100},
+        {"set": {"controller.kind": "pid"}},
     ):
         with pytest.raises(InputError) as caught:
             do(board, command)
@@ -97,7 +97,7 @@ def test_feedback_is_refused_while_the_drive_is_analogue_and_the_board_runs_on()
     assert board.spec.active == "open_loop" and board.tick == 210
     closed = make({"controller.kind": "pid"})
     with pytest.raises(InputError) as caught:
-        do(closed, {"kind": "set", "values": {"plant.drive": "analogue"}})
+        do(closed, {"set": {"plant.drive": "analogue"}})
     assert caught.value.field == "plant.drive"
 
 

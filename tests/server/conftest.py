@@ -99,8 +99,9 @@ class Stream:
             except TimeoutError:
                 return
 
-    def command(self, kind: str, **fields: Any) -> dict[str, Any]:
-        self.send(type="command", id=f"c{len(self.messages)}", command={"kind": kind, **fields})
+    def command(self, kind: str = "", **fields: Any) -> dict[str, Any]:
+        """Give a command that runs the bench, by its kind, or one to the board."""
+        self.send(type="command", id=f"c{len(self.messages)}", command={**({"kind": kind} if kind else {}), **fields})
         return self.until_type("reply")
 
 
@@ -127,8 +128,10 @@ class Live:
         found: dict[str, Any] = self.http.get(f"/api/v1/benches/{bench_id}").json()
         return found
 
-    def command(self, bench_id: str, kind: str, **fields: Any) -> httpx.Response:
-        return self.http.post(f"/api/v1/benches/{bench_id}/commands", json={"kind": kind, **fields})
+    def command(self, bench_id: str, kind: str = "", **fields: Any) -> httpx.Response:
+        """Give a command that runs the bench, by its kind, or one to the board."""
+        command = {**({"kind": kind} if kind else {}), **fields}
+        return self.http.post(f"/api/v1/benches/{bench_id}/commands", json=command)
 
     @contextmanager
     def stream(self, bench_id: str, **options: Any) -> Iterator[Stream]:

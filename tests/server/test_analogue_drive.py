@@ -24,10 +24,10 @@ def test_a_switch_to_feedback_is_refused_and_the_bench_runs_on(live: Any) -> Non
         answer = live.command(bench["id"], kind, **fields)
         assert answer.status_code == 422 and answer.json()["error"]["field"].endswith("plant.drive")
     before = live.get(bench["id"])["tick"]
-    assert live.command(bench["id"], "inject", fault="damping", severity=0.3).status_code == 200
+    assert live.command(bench["id"], fault="damping", severity=0.3).status_code == 200
     assert live.get(bench["id"])["tick"] >= before
     closed = live.bench(set={"controller.kind": "pid"})
-    answer = live.command(closed["id"], "set", values={"plant.drive": "analogue"})
+    answer = live.command(closed["id"], set={"plant.drive": "analogue"})
     assert answer.status_code == 422 and answer.json()["error"]["field"].endswith("plant.drive")
 
 

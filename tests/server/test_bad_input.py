@@ -119,18 +119,18 @@ def test_a_body_that_is_not_json(live: Any) -> None:
 
 COMMANDS: list[tuple[str, dict[str, Any], str, list[str]]] = [
     ("unknown command", {"kind": "explode"}, "unknown", ["explode", "inject"]),
-    ("unknown fault", {"kind": "inject", "fault": "rust", "severity": 1}, "unknown", ["rust", "added_mass"]),
-    ("unknown controller", {"kind": "switch", "controller": "magic"}, "unknown", ["magic", "mrac"]),
-    ("wrong type", {"kind": "inject", "fault": "damping", "severity": "heavy"}, "invalid", ["severity"]),
-    ("one of two types", {"kind": "heal", "faults": 5}, "invalid", ["faults: must be a list or one of 'all'"]),
-    ("a wrong entry", {"kind": "heal", "faults": [5]}, "invalid", ["faults.0: must be a text"]),
-    ("unknown field", {"kind": "switch", "controller": "pid", "fast": True}, "unknown", ["fast"]),
-    ("healing what is not there", {"kind": "heal", "faults": ["damping"]}, "conflict", ["damping", "not there"]),
-    ("not live", {"kind": "set", "values": {"sample_rate_khz": 10}}, "not_live", ["sample_rate_khz"]),
-    ("unknown path", {"kind": "set", "values": {"sensor.colour": 1}}, "unknown", ["sensor.colour"]),
-    ("out of range", {"kind": "set", "values": {"sensor.noise_um": -3}}, "invalid", ["sensor.noise_um"]),
-    ("in the past", {"kind": "switch", "controller": "pid", "at_sample": 0}, "invalid", ["passed"]),
-    ("a condition on nothing", {"kind": "heal", "when": "moon > 1"}, "unknown", ["moon"]),
+    ("unknown fault", {"fault": "rust", "severity": 1}, "unknown", ["rust", "added_mass"]),
+    ("unknown controller", {"switch": "magic"}, "unknown", ["magic", "mrac"]),
+    ("wrong type", {"fault": "damping", "severity": "heavy"}, "invalid", ["severity"]),
+    ("one of two types", {"heal": 5}, "invalid", ["heal: must be a list or one of 'all'"]),
+    ("a wrong entry", {"heal": [5]}, "invalid", ["heal.0: must be a text"]),
+    ("unknown field", {"switch": "pid", "fast": True}, "unknown", ["fast"]),
+    ("healing what is not there", {"heal": ["damping"]}, "conflict", ["damping", "not there"]),
+    ("not live", {"set": {"sample_rate_khz": 10}}, "not_live", ["sample_rate_khz"]),
+    ("unknown path", {"set": {"sensor.colour": 1}}, "unknown", ["sensor.colour"]),
+    ("out of range", {"set": {"sensor.noise_um": -3}}, "invalid", ["sensor.noise_um"]),
+    ("in the past", {"switch": "pid", "at_sample": 0}, "invalid", ["passed"]),
+    ("a condition on nothing", {"heal": "all", "when": "moon > 1"}, "unknown", ["moon"]),
     ("time scale", {"kind": "time_scale", "value": 0}, "invalid", ["value"]),
 ]
 
@@ -149,8 +149,8 @@ def test_a_wrong_command(live: Any, what: str, command: dict[str, Any], code: st
 
 def test_a_fault_twice(live: Any) -> None:
     bench = live.bench(set={"events": []})
-    assert live.command(bench["id"], "inject", fault="added_mass", severity=0.05).status_code == 200
-    again = live.command(bench["id"], "inject", fault="added_mass", severity=0.05)
+    assert live.command(bench["id"], fault="added_mass", severity=0.05).status_code == 200
+    again = live.command(bench["id"], fault="added_mass", severity=0.05)
     check(again, 422, "conflict", "added_mass", "already")
     assert len(live.get(bench["id"])["faults"]) == 1
     runs_on(live, bench)

@@ -132,6 +132,30 @@ def test_a_transfer_function_has_the_figures_that_mean_something_without_units(l
     assert found == pytest.approx(has)
 
 
+def test_a_gyroscope_has_figures_of_both_axes(live):
+    found = {figure["name"]: figure["value"] for figure in ask(live, "evaluate", device={"id": "gyro-c"})["figures"]}
+    assert found["gyro.mode_hz.2"] == pytest.approx(3978.45, abs=0.01)
+    assert found["gyro.scale_pm_per_dps"] == pytest.approx(258.6, rel=1e-3)
+    assert found["gyro.arw_deg_per_rt_h"] == pytest.approx(0.0107, abs=5e-5)
+    assert "static_gain_um_per_v" not in found and "pull_in_v" not in found
+
+
+def test_a_drawn_gyroscope_follows_its_drawing(live):
+    """Beams of one length along both axes, all else alike, match the modes."""
+    found = ask(live, "evaluate", device={"id": "gyro-lcr-350", "drawn_gyroscope": {"sense_beam_length_um": 350.0}})
+    values = {figure["name"]: figure["value"] for figure in found["figures"]}
+    assert values["gyro.stiffness_x_n_m"] == values["gyro.stiffness_y_n_m"]
+    assert values["gyro.split_hz"] == pytest.approx(0.0, abs=1e-3)
+    resonator = figures(live, device={"id": "lcr-350"})
+    assert values["gyro.stiffness_x_n_m"] == pytest.approx(2 * resonator["stiffness_n_m"]["value"], rel=1e-12)
+    assert values["gyro.force_x_nn_per_v2"] * 10.0 == pytest.approx(
+        1e9 * resonator["force_n_per_v"]["value"], rel=1e-12
+    )
+    assert found["geometry"]["fingers"] == 87 and found["sensitivities"] == {}
+    few = ask(live, "evaluate", device={"id": "gyro-lcr-350", "drawn_gyroscope": {"sense_fingers": 29}})["metrics"]
+    assert few["gyro.sense_ff_per_um"] == pytest.approx(values["gyro.sense_ff_per_um"] / 3, rel=1e-12)
+
+
 @pytest.mark.parametrize("stators", [{"bias_v": 0}, {"opposite_bias_v": 10.0}])
 def test_without_a_force_the_response_is_that_of_the_mechanics(live, stators):
     """Displacement per volt over that at rest does not depend on the bias: its limit is the same at none."""
@@ -180,7 +204,16 @@ def test_devices_are_drawn_in_their_environment(live):
         ("evaluate", {"device": {"stiffness_n_m": 1e300}}, "device.stiffness_n_m", "<= 1000000000"),
         ("bode", {"device": {"id": "double-integrator"}}, "device.id", "without mass or stiffness"),
         ("bode", {"device": {"id": "second-order-gain"}}, "device.id", "without mass or stiffness"),
+        ("bode", {"device": {"id": "gyro-c"}}, "device.id", "two axes"),
+        ("bode", {"device": {"id": "gyro-lcr-350"}}, "device.id", "two axes"),
         ("spread", {"device": {"id": "ch3"}}, "device.id", "no drawing"),
+        ("spread", {"device": {"id": "gyro-lcr-350"}}, "device.id", "no drawing of a resonator"),
+        (
+            "evaluate",
+            {"device": {"id": "lcr-350", "drawn_gyroscope": {"sense_fingers": 88}}},
+            "device",
+            "88 fingers along y take 698 um of an arm of 690 um",
+        ),
         ("bode", {"points": 100_000}, "points", "2000"),
     ],
 )
@@ -189,3 +222,20 @@ def test_what_cannot_be_built_is_refused_in_one_line(live, what, body, field, wo
     assert answer.status_code == 422, answer.text
     error = answer.json()["error"]
     assert error["field"] == field and words in error["message"], error
+
+
+def test_a_device_says_which_plants_suit_it_and_the_bench_agrees(live):
+    devices = {entry["id"]: entry["plants"] for entry in live.http.get("/api/v1/devices").json()["devices"]}
+    plants = {entry["id"]: entry["plant"] for entry in live.http.get("/api/v1/scenarios").json()["scenarios"]}
+    for scenario in ("first-look", "gyro-first-look"):
+        for name in ("ch4", "gyro-b", "unstable-first-order"):
+            body = {"scenario": scenario, "set": {"device.id": name}, "paused": True}
+            answer = live.http.post("/api/v1/benches", json=body)
+            assert (answer.status_code == 201) == (plants[scenario] in devices[name]), answer.text
+            if answer.status_code == 201:
+                live.http.delete(f"/api/v1/benches/{answer.json()['id']}")
+            else:
+                assert "device" in answer.json()["error"]["message"]
+    for name, suited in devices.items():
+        of = device({"id": name})
+        assert ("gyroscope" in suited) == (of.gyroscope is not None or of.drawn_gyroscope is not None)

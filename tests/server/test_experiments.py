@@ -17,7 +17,7 @@ SLAVED = {**BARE, "device": {"id": "lcr-350", "bias_v": 5.0}, "plant": {"model":
 def test_a_sweep_finds_the_device_with_its_faults_and_the_bench_does_not_notice(live):
     bench = live.bench({**BARE, "sensor": {"kind": "ideal", "noise_um": 0.002}}, paused=True)
     live.command(bench["id"], "step", ticks=10)
-    live.command(bench["id"], "inject", fault="added_mass", severity=0.2)
+    live.command(bench["id"], fault="added_mass", severity=0.2)
     live.command(bench["id"], "step", ticks=10)
     before = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
     answer = live.http.post(f"/api/v1/benches/{bench['id']}/identification", json={"points": 15, "cycles": 20})
@@ -98,6 +98,15 @@ def test_the_boundary_divides_what_stays_from_what_pulls_in(live):
 def test_a_plant_that_cannot_pull_in_has_no_map(live):
     found = region(live, BARE)
     assert found["plant"] == "linear" and found["folds"] == [] and found["boundary"] is None
+
+
+def test_what_needs_one_displacement_says_so_to_a_gyroscope(live):
+    bench = live.bench({"schema": 1, "id": "two-axes", "device": {"id": "gyro-c"}}, paused=True)
+    path = f"/api/v1/benches/{bench['id']}"
+    found = live.http.get(f"{path}/unstable-region").json()
+    assert found["plant"] == "gyroscope" and found["folds"] == [] and found["boundary"] is None
+    answer = live.http.post(f"{path}/identification", json={})
+    assert answer.status_code == 422 and "along x, y" in answer.json()["error"]["message"]
 
 
 def test_the_cost_of_every_plant_is_measured(live):

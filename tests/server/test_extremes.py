@@ -20,15 +20,20 @@ PLACES = {
     "control": ("controller", "kind"),
     "identify": ("identifiers.mine", "kind"),
     "diagnose": ("diagnosers.mine", "kind"),
+    "rate": ("rate", "kind"),
+    "readout": ("readouts.mine", "kind"),
 }
 """Where the blocks of a family stand in a scenario, and what chooses one."""
 PARAMETERS = [
-    (card.family, card.name, entry.name)
+    (card.family, card.name, entry.name, bool(card.axes))
     for card in catalog()
     for entry in card.parameters
     if card.family in PLACES and isinstance(entry.default, int | float | None) and not isinstance(entry.default, bool)
 ]
 SMALL = {"schema": 1, "id": "mine", "samples": 300, "device": {"id": "ch3"}}
+
+
+AXES = {"schema": 1, "id": "mine", "samples": 300, "device": {"id": "gyro-a"}, "plant": {"model": "gyroscope_pair"}}
 
 
 def values_of(family: str, name: str, parameter: str, value: float) -> dict[str, Any]:
@@ -64,8 +69,9 @@ def test_a_number_nothing_can_be_computed_from_is_refused(
 def test_every_parameter_at_its_extremes_is_refused_or_works(live: Any) -> None:
     @settings(max_examples=150)
     @given(st.sampled_from(PARAMETERS), st.sampled_from(EXTREMES))
-    def tried(parameter: tuple[str, str, str], value: float) -> None:
-        body = {"scenario": SMALL, "set": values_of(*parameter, value), "paused": True}
+    def tried(parameter: tuple[str, str, str, bool], value: float) -> None:
+        *place, has_axes = parameter
+        body = {"scenario": AXES if has_axes else SMALL, "set": values_of(*place, value), "paused": True}
         made = live.http.post("/api/v1/benches", json=body)
         if made.status_code != 201:
             check(made, 422, None)

@@ -68,10 +68,10 @@ def test_live_with_watchers_and_headless_give_the_same_bits(live: Any) -> None:
 def test_what_happened_live_is_saved_and_run_headless_with_the_same_bits(live: Any) -> None:
     bench = live.bench(set={"events": []}, time_scale=0.05)
     for command in (
-        {"kind": "inject", "fault": "added_mass", "severity": 0.05},
-        {"kind": "switch", "controller": "mrac"},
-        {"kind": "set", "values": {"reference.amplitude_v": 8.0, "sensor.noise_um": 0.1}},
-        {"kind": "heal"},
+        {"fault": "added_mass", "severity": 0.05},
+        {"switch": "mrac"},
+        {"set": {"reference.amplitude_v": 8.0, "sensor.noise_um": 0.1}},
+        {"heal": "all"},
         {"kind": "pause"},
     ):
         time.sleep(0.1)
@@ -126,7 +126,7 @@ def test_as_fast_as_possible_is_faster_than_real_time_and_still_takes_commands(l
     bench = live.bench(set={"samples": 100_000_000, "events": []}, time_scale=None)
     time.sleep(1.0)
     began = time.perf_counter()
-    answer = live.command(bench["id"], "inject", fault="added_mass", severity=0.05)
+    answer = live.command(bench["id"], fault="added_mass", severity=0.05)
     assert answer.status_code == 200
     assert time.perf_counter() - began < 0.2
     status = live.get(bench["id"])
@@ -161,7 +161,7 @@ def test_a_long_step_holds_up_no_other_bench(live: Any) -> None:
         while live.get(bench["id"])["tick"] == 0:
             time.sleep(0.01)
         for severity in (0.01, 0.02, 0.03):
-            assert live.command(other["id"], "inject", fault="added_mass", severity=severity).status_code == 200
+            assert live.command(other["id"], fault="added_mass", severity=severity).status_code == 200
         assert not asked.done()
         assert live.get(bench["id"])["state"] == "running"
         entry = asked.result(60).json()["entry"]
@@ -198,8 +198,8 @@ def test_a_trip_stops_one_bench_and_says_why(live: Any) -> None:
     assert "tripped" in kinds
     trace = live.http.get(f"/api/v1/benches/{bench['id']}/trace", params={"columns": 10})
     assert trace.status_code == 200
-    live.command(bench["id"], "set", values={"guard.travel_um": 25.0})
-    assert live.command(bench["id"], "reset_trip").status_code == 200
+    live.command(bench["id"], set={"guard.travel_um": 25.0})
+    assert live.command(bench["id"], reset_trip=True).status_code == 200
     assert live.command(bench["id"], "start").status_code == 200
     assert live.get(bench["id"])["state"] == "running"
     assert live.get(other["id"])["state"] == "running"

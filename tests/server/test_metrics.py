@@ -22,8 +22,8 @@ def test_every_metric_has_our_prefix_and_counts(serve: Any) -> None:
         before = metrics(live)
         assert all(name.startswith("combbench_") for name in before)
         bench = live.bench(set={"events": []})
-        live.command(bench["id"], "inject", fault="damping", severity=0.3)
-        live.command(bench["id"], "heal", faults=["added_mass"])
+        live.command(bench["id"], fault="damping", severity=0.3)
+        live.command(bench["id"], heal=["added_mass"])
         with live.stream(bench["id"]) as stream:
             stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
             stream.until(lambda m: not isinstance(m, dict) and m.head > 10)

@@ -58,10 +58,10 @@ def test_a_command_nested_too_deeply(live: Any, levels: int) -> None:
     variant = live.http.post(f"/api/v1/benches/{bench['id']}/variant", json={"set": {"device": nested(levels)}})
     check(variant, 400, "malformed", "at most 50 levels")
     with live.stream(bench["id"]) as stream:
-        command = {"kind": "set", "values": {"sensor.noise_um": nested(levels)}}
+        command = {"set": {"sensor.noise_um": nested(levels)}}
         stream.send(type="command", id="deep", command=command)
         assert "at most 50 levels" in stream.until_type("error")["error"]["message"]
-        assert stream.command("set", values={path(levels): 1})["error"]["code"] == "too_deep"
+        assert stream.command(set={path(levels): 1})["error"]["code"] == "too_deep"
         assert stream.command("time_scale", value=0.002)["ok"]
     runs_on(live, bench)
 

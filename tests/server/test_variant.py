@@ -15,8 +15,8 @@ def vary(live: Any, bench: Any, **values: Any) -> Any:
 
 def test_a_variant_has_the_live_changes_and_meets_the_same_noise(live: Any) -> None:
     bench = live.bench(WATCHED, paused=True)
-    live.command(bench["id"], "set", values={"sensor.noise_um": 0.07})
-    live.command(bench["id"], "inject", fault="added_mass", severity=0.1)
+    live.command(bench["id"], set={"sensor.noise_um": 0.07})
+    live.command(bench["id"], fault="added_mass", severity=0.1)
     live.command(bench["id"], "step", ticks=100)
     made = vary(live, bench, **{"diagnosers.kalman.assumed_noise_scale": 3.0}).json()
     assert made["id"] != bench["id"] and made["tick"] == 0 and made["state"] == "paused"
@@ -25,7 +25,7 @@ def test_a_variant_has_the_live_changes_and_meets_the_same_noise(live: Any) -> N
     assert made["parameters"]["diagnosers"]["kalman"]["assumed_noise_scale"] == 3.0
     assert made["faults"] == [] and len(made["pending"]) == 1  # what happened is not repeated, the story is
 
-    live.command(made["id"], "inject", fault="added_mass", severity=0.1)
+    live.command(made["id"], fault="added_mass", severity=0.1)
     live.command(made["id"], "step", ticks=100)
     query = {"signals": "sensor.displacement", "start_tick": 0, "end_tick": 100, "columns": 100}
     first, second = (

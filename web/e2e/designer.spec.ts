@@ -38,3 +38,33 @@ test("a device is designed, drawn from the process, and put on a bench", async (
   expect(made.parameters.device.geometry).toEqual({ beam_length_um: 175, beam_bias_um: 0.2 });
   await server.ask("DELETE", `/benches/${id}`);
 });
+
+test("a gyroscope is designed from beams and fingers and put on a bench", async ({ page, openBench, server }) => {
+  await openBench();
+  await page.keyboard.press("g");
+  await page.getByRole("combobox", { name: "Device" }).selectOption("gyro-lcr-350");
+  const split = page.getByRole("region", { name: "Figures" }).locator("div", { hasText: /^Split of the modes/ });
+  await expect(split).toContainText("145.7\u00a0Hz");
+  await seriousViolations(page).then((found) => expect(found).toEqual([]));
+
+  // f goes with the root of 1/L^3, so 20 um off 350 split the modes by 9 % of 3.3 kHz
+  const length = page.getByRole("textbox", { name: "Beam length along y, µm" });
+  await length.fill("330");
+  await length.press("Enter");
+  await expect(split).toContainText(/30\d\.\d\u00a0Hz/);
+  const fingers = page.getByRole("textbox", { name: "Fingers per side along y" });
+  await fingers.fill("88");
+  await fingers.press("Enter");
+  await expect(page.getByRole("alert").filter({ hasText: "88 fingers along y take 698 um" })).toBeVisible();
+  await fingers.fill("60");
+  await fingers.press("Enter");
+
+  await page.getByRole("button", { name: "Use on the bench" }).click();
+  await expect(page.getByRole("button", { name: /^Designed: Gyroscope with the beams/ })).toBeVisible();
+  const id = new URL(page.url()).searchParams.get("bench");
+  const made = await server.ask<{ parameters: { device: object } }>("GET", `/benches/${id}`);
+  expect(made.parameters.device).toMatchObject({
+    drawn_gyroscope: { sense_beam_length_um: 330, sense_fingers: 60 },
+  });
+  await server.ask("DELETE", `/benches/${id}`);
+});

@@ -22,15 +22,46 @@ test("an injected fault is found, the delay is printed, and healing clears it", 
 
 test("a fault can be set exactly and wait for its moment", async ({ page, openBench }) => {
   await openBench();
+  const faults = page.getByRole("region", { name: "Faults", exact: true });
+  const groups = faults.getByRole("heading", { level: 3 });
+  await expect(groups.first()).toHaveText("The usual");
+  await expect(groups.last()).toHaveText("Surroundings");
   await page.getByRole("button", { name: "Damping", exact: true }).click();
-  await page.getByRole("textbox", { name: "Severity of Damping, exact" }).fill("55");
-  await page.getByText("on a condition").click();
-  await page.getByRole("textbox", { name: "When" }).fill("plant.displacement > 500");
-  await page.getByRole("button", { name: /Let it wait/ }).click();
-  await expect(page.getByText(/^Waiting: inject damping \+0\.55/)).toBeVisible();
-
-  await page.getByRole("textbox", { name: "When" }).fill("nonsense > 2");
-  await page.getByRole("button", { name: /Let it wait/ }).click();
-  await expect(page.getByRole("alert").filter({ hasText: /nonsense/ })).toBeVisible();
+  const exact = faults.getByRole("textbox", { name: "Severity of Damping, exact" });
+  const slider = faults.getByRole("slider", { name: "Severity of Damping" });
+  await slider.focus();
+  for (let percent = 31; percent <= 33; percent += 1) {
+    await page.keyboard.press("ArrowRight");
+    await expect(exact).toHaveValue(`${percent} %`);
+  }
+  await exact.fill("5000");
+  await expect(faults.getByText("At most +2000\u00a0%")).toBeVisible();
+  await exact.fill("55");
+  await faults.getByText("on a condition").click();
+  await faults.getByRole("combobox", { name: "When" }).selectOption("plant displacement");
+  const level = faults.getByRole("textbox", { name: "Level" });
+  await level.fill("");
+  await faults.getByRole("button", { name: /Let it wait/ }).click();
+  await expect(faults.getByText("Say at what value")).toBeVisible();
+  await level.fill("500");
+  await faults.getByRole("button", { name: /Let it wait/ }).click();
+  await expect(page.getByText(/^Waiting: inject damping \+0\.55 when plant displacement > 500\sµm/)).toBeVisible();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
+});
+
+test("a fault that no hypothesis describes is called so, by the bank and by the bench", async ({ page, openBench }) => {
+  await openBench();
+  const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
+  await page.getByRole("button", { name: "Added mass", exact: true }).click();
+  await page.getByRole("textbox", { name: "Severity of Added mass, exact" }).fill("900");
+  await page.getByRole("button", { name: /^Inject \+900.*Added mass$/ }).click();
+  await expect(lanes.getByText("fits none")).toBeVisible();
+  await expect(lanes.getByText("not among the hypotheses")).toBeVisible();
+  await lanes.getByText("fits none").hover();
+  await expect(page.getByText(/misses by \d.* times what its filter expects/)).toBeVisible();
+  if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/fits-none.png` });
+
+  await page.getByRole("button", { name: "Heal all" }).click();
+  await expect(lanes.getByText("fits none")).toBeHidden();
+  await expect(lanes.getByText("healthy", { exact: true })).toBeVisible();
 });

@@ -4,6 +4,8 @@ import { LabServer } from "./lab-server";
 interface LabFixtures {
   /** Open a fresh bench of the first-look scenario in a layout, with values written over; closed after the test. */
   openBench(layout?: "lecture" | "lab" | "research", set?: Record<string, unknown>): Promise<void>;
+  /** Open a fresh bench of a document in the lab layout; closed after the test. Its id. */
+  openDocument(scenario: Record<string, unknown>): Promise<string>;
 }
 
 /** Tests against a real server, with a bench of their own. */
@@ -20,15 +22,28 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
   openBench: async ({ page, server }, use) => {
     const opened: string[] = [];
     await use(async (layout = "lab", set = {}) => {
-      await page.request.get(server.url);
-      const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: "first-look", set });
+      opened.push(await open(page, server, { scenario: "first-look", set }, layout));
+    });
+    for (const id of opened) await server.ask("DELETE", `/benches/${id}`);
+  },
+  openDocument: async ({ page, server }, use) => {
+    const opened: string[] = [];
+    await use(async (scenario) => {
+      const id = await open(page, server, { scenario }, "lab");
       opened.push(id);
-      await page.goto(`${server.origin}/?bench=${id}&layout=${layout}`);
-      await expect(page.getByTestId("bench-state")).toHaveText("running");
+      return id;
     });
     for (const id of opened) await server.ask("DELETE", `/benches/${id}`);
   },
 });
+
+async function open(page: Page, server: LabServer, bench: object, layout: string): Promise<string> {
+  await page.request.get(server.url);
+  const { id } = await server.ask<{ id: string }>("POST", "/benches", bench);
+  await page.goto(`${server.origin}/?bench=${id}&layout=${layout}`);
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+  return id;
+}
 
 export { expect };
 

@@ -2,11 +2,11 @@ import { expect, pictureOf, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
 interface Shown {
-  parameters: { environment: { pressure_pa: number } };
+  parameters: { environment?: { pressure_pa: number } };
 }
 
 interface Happened {
-  events: { command: { values?: Record<string, unknown> } | null }[];
+  events: { command: { set?: Record<string, unknown> } | null }[];
 }
 
 const CANVAS = "section[aria-label='Phase plane'] canvas";
@@ -36,11 +36,11 @@ test("a swept sine says what the device is, and the environment changes live", a
   // what the board has, not what the page shows: the sweep asks the board
   const air = async () => {
     const { parameters } = await server.ask<Shown>("GET", `/benches/${id}`);
-    return parameters.environment.pressure_pa;
+    return parameters.environment?.pressure_pa;
   };
   const sensors = async () => {
     const { events } = await server.ask<Happened>("GET", `/benches/${id}/events`);
-    return events.flatMap(({ command }) => command?.values?.["sensor.kind"] ?? []);
+    return events.flatMap(({ command }) => command?.set?.["sensor.kind"] ?? []);
   };
   await page.getByRole("tab", { name: "Environment" }).click();
   const pressure = page.getByRole("textbox", { name: "Pressure, Pa" });

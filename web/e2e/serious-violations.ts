@@ -3,6 +3,10 @@ import type { Page } from "@playwright/test";
 
 /** What axe finds on a page that keeps people out, one line each. */
 export async function seriousViolations(page: Page): Promise<string[]> {
+  // what fades in has the contrast of its end once it is there
+  await page.waitForFunction(() =>
+    document.getAnimations().every((a) => a.playState !== "running" || a.effect?.getTiming().iterations === Infinity),
+  );
   const { violations } = await new AxeBuilder({ page }).exclude("iframe").analyze();
   return violations
     .filter((v) => v.impact === "serious" || v.impact === "critical")

@@ -45,6 +45,7 @@ test("looking back does not stop the board, and LIVE returns", async ({ page, op
   await scope.getByLabel(/^Plot/).focus();
   await page.keyboard.press("ArrowLeft");
   await expect(scope.getByRole("button", { name: "LIVE" })).toHaveAttribute("aria-pressed", "false");
+  await expect(scope.getByRole("button", { name: "LIVE" })).toContainText("PAST");
   // the picture of the past may take a while to come; once it is there it stays while the clock goes on
   let still = "";
   const stands = async () => {
@@ -69,6 +70,8 @@ test("looking back does not stop the board, and LIVE returns", async ({ page, op
   await expect(scope.getByRole("button", { name: "LIVE" })).toHaveAttribute("aria-pressed", "true");
   const live = await pictureOf(page, SCOPE_CANVAS);
   await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(live);
+  await page.getByRole("button", { name: /^Pause/ }).click();
+  await expect(scope.getByRole("button", { name: "LIVE, PAUSED" })).toBeVisible();
 });
 
 test("a hidden page stays connected although it draws nothing and its timers stand still", async ({

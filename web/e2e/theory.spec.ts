@@ -30,6 +30,18 @@ test("a typed transfer function is judged, an input is weighed, and the MIT rule
     map.getByRole("img", { name: /^MIT rule: growth over frequency and gain; \d+ % unstable/ }),
   ).toBeVisible();
   await expect(map.getByText(/Under a constant it is beyond 0\.200/)).toBeVisible(); // b1/b2 over the gains
+
+  const index = page.getByRole("region", { name: "Equations" });
+  await expect(index.getByRole("status")).toHaveText(/^\d{3}\sequations, \d{2,} of them printed otherwise$/);
+  await expect(index.getByRole("listitem").first()).toBeVisible();
+  await index.getByRole("switch", { name: "Errata only" }).click();
+  await expect(index.getByRole("status")).toHaveText(/^\d{2,}\sequations printed otherwise$/);
+  await index.getByRole("textbox", { name: "Search equations" }).fill("consistency behaviour 5.1.3");
+  await expect(index.getByRole("listitem")).toHaveCount(1);
+  await expect(index.getByText("the same input gives many outputs")).toBeVisible();
+  await index.getByRole("textbox", { name: "Search equations" }).fill("nowhere to be found");
+  await expect(index.getByText("No equation has all these words.")).toBeVisible();
+  await index.getByRole("textbox", { name: "Search equations" }).fill("");
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 
   await page.keyboard.press("Escape");

@@ -112,7 +112,8 @@ def test_a_changed_wiring_is_the_one_it_would_have_from_the_start(commands):
         np.testing.assert_array_equal(wiring.p, fresh.p)
         np.testing.assert_array_equal(wiring.io, fresh.io)
         np.testing.assert_array_equal(wiring.table, fresh.table)
-        assert wiring.instances == fresh.instances and wiring.unread == fresh.unread
+        assert wiring.instances == fresh.instances
+        assert (wiring.unread, wiring.absent) == (fresh.unread, fresh.absent)
         engaged = [wiring.w[wiring.index[f"{name}.engaged"]] for name in spec.controllers]
         assert engaged == [float(name == spec.active) for name in spec.controllers]
 

@@ -22,7 +22,7 @@ def test_a_fault_takes_effect_at_its_tick(moment):
 
 
 def test_a_parameter_takes_effect_at_its_tick():
-    command = {"kind": "set", "values": {"reference.amplitude_v": 3.0, "sensor.noise_um": 0.5}, "at_sample": 70}
+    command = {"set": {"reference.amplitude_v": 3.0, "sensor.noise_um": 0.5}, "at_sample": 70}
     trace, plain = play(make(FAST, [command]), 100), play(make(FAST), 100)
     np.testing.assert_allclose(trace["reference.voltage"][70:], 0.3 * plain["reference.voltage"][70:], rtol=1e-14)
     assert np.array_equal(trace["reference.voltage"][:70], plain["reference.voltage"][:70])
@@ -33,7 +33,7 @@ def test_a_parameter_takes_effect_at_its_tick():
 def test_commands_of_one_tick_take_effect_in_the_order_given():
     commands = [
         fault("added_mass", 0.1, at_sample=10),
-        {"kind": "heal", "faults": ["added_mass"], "at_sample": 20},
+        {"heal": ["added_mass"], "at_sample": 20},
         fault("added_mass", 0.3, at_sample=20),
     ]
     trace = play(make(FAST, commands), 30)

@@ -38,11 +38,11 @@ def test_temperature_is_live_and_moves_the_displacement_at_rest():
     board = make({"reference": {"kind": "constant", "amplitude_v": 5.0}})
     play(board, 2000)
     cold = board.value("plant.displacement")
-    do(board, {"kind": "set", "values": {"environment.temperature_k": 400.0}})
+    do(board, {"set": {"environment.temperature_k": 400.0}})
     play(board, 2000)
     assert board.value("plant.displacement") / cold == pytest.approx(1 / (1 - 63e-6 * 100), rel=1e-9)
     assert board.log[-1].old == {"environment.temperature_k": 300.0}
-    do(board, {"kind": "set", "values": {"environment.temperature_k": 300.0}})
+    do(board, {"set": {"environment.temperature_k": 300.0}})
     play(board, 2000)
     assert board.value("effects.stiffness_scale") == 1.0
     assert board.value("plant.displacement") == pytest.approx(cold, rel=1e-9)
@@ -54,19 +54,19 @@ def test_a_leak_brings_the_air_back():
     assert board.value("environment.pressure") == 10.0
     assert 4.8623 / board.value("effects.damping_scale") == pytest.approx(2400, rel=0.02)
     ramp = {"kind": "ramp", "duration_ms": 2.0}
-    do(board, {"kind": "inject", "fault": "vacuum_loss", "severity": 1.0, "profile": ramp})
+    do(board, {"fault": "vacuum_loss", "severity": 1.0, "profile": ramp})
     seen = play(board, 300)
     air, damping = seen["environment.pressure"], seen["effects.damping_scale"]
     assert air[100] == pytest.approx(10 + 99 / 200 * (101325 - 10), rel=1e-6)
     assert np.all(np.diff(damping) >= 0) and damping[-1] == 1.0 and air[-1] == 101325.0
-    do(board, {"kind": "heal", "faults": ["vacuum_loss"]})
+    do(board, {"heal": ["vacuum_loss"]})
     play(board, 10)
     assert board.value("environment.pressure") == 10.0
 
 
 def test_a_leak_in_the_open_does_nothing():
     plain, leaking = make(), make()
-    do(leaking, {"kind": "inject", "fault": "vacuum_loss", "severity": 1.0})
+    do(leaking, {"fault": "vacuum_loss", "severity": 1.0})
     a, b = play(plain, 300), play(leaking, 300)
     assert np.array_equal(a["plant.displacement"], b["plant.displacement"])
 
@@ -75,8 +75,8 @@ def test_faults_multiply_what_the_environment_makes_of_the_device():
     board = make({"environment.pressure_pa": 1000.0, "environment.temperature_k": 350.0})
     play(board, 2)
     alone = {name: board.value(f"effects.{name}") for name in ("stiffness_scale", "damping_scale")}
-    do(board, {"kind": "inject", "fault": "damping", "severity": 0.5})
-    do(board, {"kind": "inject", "fault": "ageing", "severity": 4.0})
+    do(board, {"fault": "damping", "severity": 0.5})
+    do(board, {"fault": "ageing", "severity": 4.0})
     play(board, 2)
     assert board.value("effects.damping_scale") == pytest.approx(1.5 * alone["damping_scale"], rel=1e-12)
     assert board.value("effects.stiffness_scale") == pytest.approx(alone["stiffness_scale"] / 0.572, rel=1e-9)
@@ -86,7 +86,7 @@ def test_ageing_takes_42_8_percent_of_the_displacement():
     board = make({"reference": {"kind": "constant", "amplitude_v": 5.0}})
     play(board, 2000)
     new = board.value("plant.displacement")
-    do(board, {"kind": "inject", "fault": "ageing", "severity": 4.0})
+    do(board, {"fault": "ageing", "severity": 4.0})
     play(board, 2000)
     assert board.value("plant.displacement") / new == pytest.approx(0.572, rel=1e-6)
 
@@ -123,7 +123,7 @@ def dead_band(volts: float, *, fault: float = 0.0, **environment: float) -> bool
     """Whether a voltage from rest moves the shuttle: F/k over 0.6018 um/V, 20 nN are 0.618 V."""
     board = make({"reference": {"kind": "constant", "amplitude_v": volts}, "environment": environment})
     if fault:
-        do(board, {"kind": "inject", "fault": "stiction", "severity": fault})
+        do(board, {"fault": "stiction", "severity": fault})
     return abs(play(board, 400)["plant.displacement"][-1]) > 0.0
 
 
@@ -146,12 +146,12 @@ def test_friction_and_humidity_are_live():
     board = make({"environment.friction_nn": 20.0}, base=RICH)
     play(board, 400)
     assert board.value("kalman.truth") == -1 and board.value("effects.friction") == 0.02
-    do(board, {"kind": "set", "values": {"environment.humidity_pct": 80.0, "environment.friction_nn": 40.0}})
+    do(board, {"set": {"environment.humidity_pct": 80.0, "environment.friction_nn": 40.0}})
     play(board, 1)
     assert board.value("effects.friction") > 10.0  # it sticks for good
     x = play(board, 400)["plant.displacement"]
     assert np.all(x[50:] == x[50])
-    do(board, {"kind": "set", "values": {"environment.friction_nn": 0.0}})
+    do(board, {"set": {"environment.friction_nn": 0.0}})
     assert np.ptp(play(board, 400)["plant.displacement"]) > 1.0 and board.value("kalman.truth") == 0
 
 
@@ -160,8 +160,8 @@ def test_age_is_live_and_a_fault_goes_on_from_it():
     play(board, 2000)
     new = board.value("plant.displacement")
     for weeks, fault in ((4.0, 0.0), (1.5, 2.5), (0.0, 4.0)):
-        do(board, {"kind": "set", "values": {"environment.age_weeks": weeks}})
+        do(board, {"set": {"environment.age_weeks": weeks}})
         if fault:
-            do(board, {"kind": "inject", "fault": "ageing", "severity": fault})
+            do(board, {"fault": "ageing", "severity": fault})
         play(board, 2000)
         assert board.value("plant.displacement") / new == pytest.approx(0.572, rel=1e-6)

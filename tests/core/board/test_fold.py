@@ -114,16 +114,16 @@ def test_a_controller_counts_once_it_drives() -> None:
     """Its whole past counts then, so a controller that looks on otherwise changes nothing until it drives."""
     other = {"controllers.pid.integral_v_um_ms": 0.01}
     assert lab.run_digest(lab.make(), 200) == lab.run_digest(lab.make(other), 200)
-    switch = {"kind": "switch", "controller": "pid", "at_sample": 150}
-    later = {"kind": "switch", "controller": "pid", "at_sample": 201}
-    never = {"kind": "switch", "controller": "pid", "when": "plant.displacement > 1000"}
+    switch = {"switch": "pid", "at_sample": 150}
+    later = {"switch": "pid", "at_sample": 201}
+    never = {"switch": "pid", "when": "plant.displacement > 1000"}
     plain = lab.run_digest(lab.make(), 200)
     assert lab.run_digest(lab.make(commands=[later]), 200) == plain
     assert lab.run_digest(lab.make(commands=[never]), 200) == plain
     assert lab.run_digest(lab.make(commands=[switch]), 200) != plain
     assert lab.run_digest(lab.make(commands=[switch]), 150) == lab.run_digest(lab.make(), 150)
     # back again at the same tick: it has not driven
-    back = {"kind": "switch", "controller": "open_loop", "at_sample": 150}
+    back = {"switch": "open_loop", "at_sample": 150}
     assert lab.run_digest(lab.make(commands=[switch, back]), 200) == plain
 
 

@@ -50,8 +50,8 @@ def test_reset_starts_blocks_anew_and_keeps_faults_time_and_scores():
     play(board, 3000)
     assert board.trip is not None
     tick, steps = board.tick, board.scores()["kalman"].delays
-    do(board, {"kind": "set", "values": {"reference.amplitude_v": 1.0}})
-    do(board, {"kind": "reset_trip"})
+    do(board, {"set": {"reference.amplitude_v": 1.0}})
+    do(board, {"reset_trip": True})
     assert board.tick == tick and board.scores()["kalman"].delays == steps
     trace = play(board, 300)
     assert board.trip is None

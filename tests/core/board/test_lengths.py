@@ -45,7 +45,7 @@ def test_a_grating_of_more_harmonics_goes_on_from_where_the_board_is():
     play(board, 200)
     play(other, 200)
     before = len(board.wiring.parameters("dual_beam").amplitudes)
-    do(board, {"kind": "set", "values": {"sensors.dual_beam.spot_um": 0.1}})
+    do(board, {"set": {"sensors.dual_beam.spot_um": 0.1}})
     assert len(board.wiring.parameters("dual_beam").amplitudes) > before
     kept = {key: board.wiring.state_of(key).copy() for key in board.wiring.rows}
     assert all(np.array_equal(kept[key], other.wiring.state_of(key)) for key in kept)

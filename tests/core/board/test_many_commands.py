@@ -17,8 +17,8 @@ def calls(count: int) -> int:
     profile = cProfile.Profile()
     profile.enable()
     for number in range(count):
-        fault: dict[str, Any] = {"kind": "inject", "fault": "added_mass", "severity": 1e-3 + 1e-6 * number}
-        do(board, {**(fault if number % 2 else {"kind": "heal", "faults": "all"}), "at_sample": 10 + number})
+        fault: dict[str, Any] = {"fault": "added_mass", "severity": 1e-3 + 1e-6 * number}
+        do(board, {**(fault if number % 2 else {"heal": "all"}), "at_sample": 10 + number})
     while board.tick < 20 + count:
         board.advance(20 + count - board.tick)
     profile.disable()
@@ -37,9 +37,9 @@ def test_commands_of_one_tick_take_effect_in_the_order_asked(compiled: bool) -> 
     board = make(compiled=compiled)
     path = "reference.amplitude_v"
     for at, value in ((50, 1.0), (30, 2.0), (50, 3.0), (40, 4.0)):
-        do(board, {"kind": "set", "values": {path: value}, "at_sample": at})
-    do(board, {"kind": "set", "values": {path: 5.0}, "at_sample": 20, "when": "plant.displacement > -1e9"})
-    do(board, {"kind": "set", "values": {path: 6.0}, "at_sample": 21})
+        do(board, {"set": {path: value}, "at_sample": at})
+    do(board, {"set": {path: 5.0}, "at_sample": 20, "when": "plant.displacement > -1e9"})
+    do(board, {"set": {path: 6.0}, "at_sample": 21})
     while board.tick < 60:
         board.advance(60 - board.tick)
     done = [(entry.tick, entry.new[path]) for entry in board.log if entry.kind == "set"]
@@ -57,6 +57,6 @@ def test_a_change_of_some_parameters_gives_the_wiring_of_a_new_board() -> None:
     }
     changed, fresh = make(), make(values)
     for path, value in values.items():
-        do(changed, {"kind": "set", "values": {path: value}})
+        do(changed, {"set": {path: value}})
     assert (changed.wiring.p == fresh.wiring.p).all()
     assert (changed.wiring.io == fresh.wiring.io).all() and (changed.wiring.table == fresh.wiring.table).all()

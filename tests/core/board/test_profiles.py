@@ -40,10 +40,10 @@ def test_a_healed_device_is_the_nominal_one_again():
     inject(board, added_mass=0.2, stiffness=0.1, damping=3.0)
     do(board, fault("damping", 0.5, profile={"kind": "ramp", "duration_ms": 1.0}))
     play(board, 50)
-    do(board, {"kind": "heal", "faults": ["damping"]})
+    do(board, {"heal": ["damping"]})
     trace = play(board, 1)
     assert [trace[f"faults.{name}"][0] for name in ("added_mass", "stiffness", "damping")] == [0.2, 0.1, 0.0]
-    do(board, {"kind": "heal"})
+    do(board, {"heal": "all"})
     play(board, 2000)
     assert board.value("effects.mass_scale") == 1.0 and not board.faults
     late, plain = play(board, 500), make(FAST)

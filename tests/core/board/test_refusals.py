@@ -23,39 +23,43 @@ REFUSED: list[tuple[dict[str, Any], str, str]] = [
     (fault("stiffness", 0.1, profile={"kind": "ramp", "duration_ms": 0}), "profile.duration_ms", "invalid"),
     (fault("stiffness", 0.1, at_sample=-1), "at_sample", "invalid"),
     (fault("stiffness", 0.1, at_sample=500, at_ms=7.0), "", "invalid"),
-    ({"kind": "inject", "fault": "stiffness"}, "severity", "invalid"),
+    ({"fault": "stiffness"}, "severity", "invalid"),
     (fault("stiffness", math.nan), "severity", "invalid"),
     (fault("stiffness", 0.1, strength=2), "strength", "unknown"),
-    ({"kind": "heal", "faults": ["damping"]}, "faults", "conflict"),
-    ({"kind": "heal", "faults": ["added_mass", "damping"]}, "faults", "conflict"),
-    ({"kind": "heal", "faults": ["nothing"]}, "faults", "unknown"),
-    ({"kind": "switch", "controller": "nothing"}, "controller", "unknown"),
-    ({"kind": "switch", "controller": "open_loop"}, "controller", "conflict"),
-    ({"kind": "set", "values": {}}, "values", "invalid"),
-    ({"kind": "set", "values": {"controller.kind": "nothing"}}, "controller.kind", "unknown"),
-    ({"kind": "set", "values": {"controllers.mrac.filter_pole": 2.0}}, "controllers.mrac.filter_pole", "not_live"),
-    ({"kind": "set", "values": {"sample_rate_khz": 50}}, "sample_rate_khz", "not_live"),
-    ({"kind": "set", "values": {"seed": 9}}, "seed", "not_live"),
-    ({"kind": "set", "values": {"device.mass_kg": 1e-10}}, "device", "not_live"),
-    ({"kind": "set", "values": {"plant.initial_displacement_um": 1.0}}, "plant.initial_displacement_um", "not_live"),
-    ({"kind": "set", "values": {"diagnosers.kalman.every": 2}}, "diagnosers.kalman.every", "not_live"),
-    ({"kind": "set", "values": {"diagnosers.other.kind": "mmae"}}, "diagnosers", "not_live"),
-    ({"kind": "set", "values": {"drive.kind": "analogue"}}, "drive.kind", "not_live"),
-    ({"kind": "set", "values": {"plant.drive": "analogue"}}, "plant.drive", "not_live"),
+    ({"heal": ["damping"]}, "heal", "conflict"),
+    ({"heal": ["added_mass", "damping"]}, "heal", "conflict"),
+    ({"heal": ["nothing"]}, "heal", "unknown"),
+    ({"switch": "nothing"}, "switch", "unknown"),
+    ({"switch": "open_loop"}, "switch", "conflict"),
+    ({"set": {}}, "set", "invalid"),
+    ({"set": {"controller.kind": "nothing"}}, "controller.kind", "unknown"),
+    ({"set": {"controllers.mrac.filter_pole": 2.0}}, "controllers.mrac.filter_pole", "not_live"),
+    ({"set": {"sample_rate_khz": 50}}, "sample_rate_khz", "not_live"),
+    ({"set": {"seed": 9}}, "seed", "not_live"),
+    ({"set": {"device.mass_kg": 1e-10}}, "device", "not_live"),
+    ({"set": {"plant.initial_displacement_um": 1.0}}, "plant.initial_displacement_um", "not_live"),
+    ({"set": {"diagnosers.kalman.every": 2}}, "diagnosers.kalman.every", "not_live"),
+    ({"set": {"diagnosers.other.kind": "mmae"}}, "diagnosers", "not_live"),
+    ({"set": {"drive.kind": "analogue"}}, "drive.kind", "not_live"),
+    ({"set": {"plant.drive": "analogue"}}, "plant.drive", "not_live"),
     (
-        {"kind": "set", "values": {"controller.kind": "mrac", "controller.filter_pole": 2.0}},
+        {"set": {"controller.kind": "mrac", "controller.filter_pole": 2.0}},
         "controller.filter_pole",
         "not_live",
     ),
-    ({"kind": "set", "values": {"sensor.every": 2}}, "sensor.every", "not_live"),
-    ({"kind": "set", "values": {"sensor.noise_um": -1.0}}, "sensor.noise_um", "invalid"),
-    ({"kind": "set", "values": {"sensor.noise_um": "much"}}, "sensor.noise_um", "invalid"),
-    ({"kind": "set", "values": {"sensor.noise_nm": 1.0}}, "sensor.noise_nm", "unit"),
-    ({"kind": "set", "values": {"sensor.noise_um": 0.3, "sensor.colour": 1}}, "sensor.colour", "unknown"),
-    ({"kind": "set", "values": {"nothing.at_all": 1}}, "nothing", "unknown"),
-    ({"kind": "reset_trip"}, "kind", "conflict"),
+    ({"set": {"sensor.every": 2}}, "sensor.every", "not_live"),
+    ({"set": {"sensor.noise_um": -1.0}}, "sensor.noise_um", "invalid"),
+    ({"set": {"sensor.noise_um": "much"}}, "sensor.noise_um", "invalid"),
+    ({"set": {"sensor.noise_nm": 1.0}}, "sensor.noise_nm", "unit"),
+    ({"set": {"sensor.noise_um": 0.3, "sensor.colour": 1}}, "sensor.colour", "unknown"),
+    ({"set": {"nothing.at_all": 1}}, "nothing", "unknown"),
+    ({"reset_trip": True}, "reset_trip", "conflict"),
     ({"kind": "explode"}, "kind", "unknown"),
-    ({}, "kind", "unknown"),
+    ({}, "", "invalid"),
+    ({"heal": "all", "switch": "pid"}, "switch", "invalid"),
+    ({"heal": "all", "cold": True}, "cold", "invalid"),
+    ({"heal": None}, "", "invalid"),
+    ({"reset_trip": False}, "", "invalid"),
 ]
 
 
@@ -76,9 +80,7 @@ def test_a_refused_command_changes_nothing(command, field, code):
     assert run_digest(board, 200) == run_digest(twin, 200)
 
 
-@pytest.mark.parametrize(
-    "command", [fault("added_mass", 50.0, at_sample=90), {"kind": "switch", "controller": "x", "at_ms": 9.0}]
-)
+@pytest.mark.parametrize("command", [fault("added_mass", 50.0, at_sample=90), {"switch": "x", "at_ms": 9.0}])
 def test_a_command_for_later_that_can_never_work_is_refused_now(command):
     board = make(FAST)
     with pytest.raises(InputError):
@@ -87,9 +89,7 @@ def test_a_command_for_later_that_can_never_work_is_refused_now(command):
 
 
 def test_a_command_for_later_that_no_longer_fits_is_refused_then():
-    board = make(
-        FAST, [fault("added_mass", 0.1, at_sample=10), {"kind": "heal", "faults": ["damping"], "at_sample": 20}]
-    )
+    board = make(FAST, [fault("added_mass", 0.1, at_sample=10), {"heal": ["damping"], "at_sample": 20}])
     expected = run_digest(make(FAST, [fault("added_mass", 0.1, at_sample=10)]), 60)
     assert run_digest(board, 60) == expected
     entry = board.log[-1]
@@ -124,7 +124,7 @@ def test_a_fault_may_change_its_severity():
 def test_live_parameters_change_and_the_log_knows_the_old_value(values, path, old):
     board = make()
     play(board, 30)
-    entry = do(board, {"kind": "set", "values": values})
+    entry = do(board, {"set": values})
     assert entry.old == {path: old} and entry.new == values and entry.tick == 30
     assert run_digest(board, 200) != run_digest(make(), 230) or path in (
         "controllers.mrac.adaptation_gain",
@@ -140,6 +140,6 @@ def test_commands_leave_their_values_alone():
     with_values(document(), values)
     assert table == {"kind": "sine", "amplitude_v": 1.0} and values["controllers"] == {"pid": {}}
     board = make()
-    do(board, {"kind": "set", "values": values})
+    do(board, {"set": values})
     assert table["amplitude_v"] == 1.0
     assert play(board, 101)["reference.voltage"].max() == pytest.approx(2.0, rel=1e-6)

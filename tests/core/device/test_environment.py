@@ -11,6 +11,9 @@ from core.board.parse import parse
 from core.device import environment as law
 from core.device.catalogue import device
 from core.loop.environment import Environment
+from scenarios.measure.metrics import device_metrics
+from tests.lab import inject, make, play
+from tests.two_axis import GYRO
 
 MOLAR = 0.0289647  # kg/mol, dry air
 
@@ -155,3 +158,49 @@ def test_squeeze_film_of_a_rarefied_gas():
 def test_age_counts_in_the_figures_of_the_device():
     stiffness, damping = scales(age_weeks=4.0)
     assert stiffness == pytest.approx(1 / 0.572, rel=1e-9) and damping == 1.0
+
+
+@pytest.mark.parametrize("name", ["gyro-a", "gyro-b", "gyro-c", "gyro-4-5"])
+def test_a_sealed_gyroscope_feels_the_temperature_and_not_the_air_outside(name):
+    """Young's modulus falls by 63 ppm/K, so the modes by half of that, and Q ~ sqrt(k)/d as well."""
+    assert scales(device=name, pressure_pa=10.0, humidity_pct=90.0, friction_nn=50.0) == (1.0, 1.0)
+    assert scales(device=name, pressure_pa=1e6, temperature_k=400.0) == (pytest.approx(1.0 - 63e-6 * 100.0), 1.0)
+    assert scales(pressure_pa=10.0)[1] < 0.1, "a comb in air feels it"
+
+    def figures(temperature):
+        spec = parse({"device": {"id": name}, "environment": {"temperature_k": temperature, "pressure_pa": 5.0}})
+        return device_metrics(spec)
+
+    room, warm = figures(300.0), figures(400.0)
+    softer = math.sqrt(1.0 - 6.3e-3)
+    for mode in (1, 2):
+        assert warm[f"gyro.mode_hz.{mode}"] / room[f"gyro.mode_hz.{mode}"] == pytest.approx(softer, rel=1e-5)
+        ratio = warm[f"gyro.quality_factor.{mode}"] / room[f"gyro.quality_factor.{mode}"]
+        assert ratio == pytest.approx(softer, rel=1e-5)
+    # the floor goes with sqrt(T), over w
+    floor = warm["gyro.floor_deg_per_h_rthz"] / room["gyro.floor_deg_per_h_rthz"]
+    assert floor == pytest.approx(math.sqrt(4.0 / 3.0) / softer, rel=1e-9)
+
+
+def test_only_a_leak_of_the_package_damps_a_gyroscope():
+    """Its swing dies away alike in any air outside; with 100 Pa gained at 100 Pa, 1.8 times as fast."""
+
+    def decay(pressure, leak=0.0):
+        board = make(
+            {
+                "device.id": "gyro-c",
+                "plant.thermal_noise": False,
+                "plant.initial_x_um": 5.0,
+                "environment.pressure_pa": pressure,
+                "slots.drive": "forced_drive",
+                "controllers.forced_drive.force_un": 0.0,
+                "controller.kind": "open_loop_rate",
+            },
+            base=GYRO,
+        )
+        inject(board, package_leak=leak)
+        energy = play(board, 5000)["plant.energy"]
+        return math.log(energy[0] / energy[-1])
+
+    assert decay(101325.0) == decay(10.0)
+    assert decay(10.0, 100.0) / decay(10.0) == pytest.approx(1.8, rel=1e-3)

@@ -23,7 +23,7 @@ DOCUMENT: dict[str, Any] = {
 def make(values: dict[str, Any] | None = None, *, seed: int = 1, stiffness: float = 0.0) -> Board:
     board = lab.make({"seed": seed, **(values or {})}, base=DOCUMENT)
     if stiffness:
-        do(board, {"kind": "inject", "fault": "stiffness", "severity": stiffness})
+        do(board, {"fault": "stiffness", "severity": stiffness})
     return board
 
 

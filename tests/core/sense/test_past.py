@@ -21,7 +21,7 @@ SOURCES = {
     "quadrature": {"sensor.kind": "quadrature"},
     "quadrature_kalman": {"sensor.kind": "quadrature_kalman"},
 }
-TAKE_OVER = {"kind": "set", "values": {"sensor.kind": "single_beam"}}
+TAKE_OVER = {"set": {"sensor.kind": "single_beam"}}
 
 
 def moments(rate_khz: float) -> list[int]:
@@ -35,7 +35,7 @@ def taken_over(values: dict[str, object], ticks: int, *, fault: dict[str, float]
     play(board, ticks - 200)
     for name, severity in fault.items():
         if name != "stiffness":
-            do(board, {"kind": "inject", "fault": name, "severity": severity})
+            do(board, {"fault": name, "severity": severity})
     play(board, 200)
     do(board, TAKE_OVER)
     return board

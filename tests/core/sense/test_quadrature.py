@@ -72,7 +72,7 @@ def test_taking_over_keeps_the_fringe():
     board = make({"sensor.kind": "ideal"})
     play(board, 3210)
     assert abs(board.value("plant.displacement")) > 2.5
-    do(board, {"kind": "set", "values": {"sensor.kind": "quadrature"}})
+    do(board, {"set": {"sensor.kind": "quadrature"}})
     trace = play(board, 1000)
     assert np.abs(trace["sensor.displacement"] - trace["plant.displacement"]).max() < 0.1
 

@@ -24,7 +24,7 @@ def test_what_runs_follows_a_change_of_the_sensor_in_use():
     seen = []
     for kind in ("ideal", "quadrature", "ideal"):
         if kind != board.spec.measuring:
-            do(board, {"kind": "set", "values": {"sensor.kind": kind}})
+            do(board, {"set": {"sensor.kind": kind}})
         trace = play(board, 100)
         assert trace["sensor.displacement"].all()
         seen.append([trace[name].any() for name in own])

@@ -61,7 +61,7 @@ def test_takes_over_in_full_motion():
     for seed in range(1, 6):
         board = make({"sensor.kind": "ideal"}, seed=seed, stiffness=0.3)
         play(board, 3000 + 37 * seed)
-        do(board, {"kind": "set", "values": {"sensor.kind": "single_beam"}})
+        do(board, {"set": {"sensor.kind": "single_beam"}})
         trace = play(board, 4000)
         gone.append(np.mean(np.abs(trace["single_beam.error"]) > 2.0))
     assert max(gone) < 0.02

@@ -11,7 +11,7 @@ import pytest
 
 from scenarios.campaign.outcome import EVIDENCE, Outcome, outcome
 from scenarios.campaign.sweep import Sweep
-from scenarios.campaign.tally import receiver_operating_characteristic, tally
+from scenarios.campaign.tally import Spread, receiver_operating_characteristic, tally
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.report.campaign import campaign_report, results_table
@@ -110,6 +110,15 @@ def test_the_report_is_one_whole_file_that_loads_nothing(campaign: tuple[Sweep, 
     for drawing in drawings:
         ElementTree.fromstring(drawing)
     assert "6 of 6 runs" in text and "Receiver operating characteristic" in text
+
+
+def test_the_report_tells_few_errors_from_none(campaign: tuple[Sweep, dict[str, Outcome]]) -> None:
+    """A share that is almost all keeps its digits, and what was counted is whole."""
+    sweep, outcomes = campaign
+    means = {"diagnosis.kalman.correct_fraction": 0.99997, "diagnosis.kalman.false_switches": 53.0}
+    metrics = {name: Spread(count=3, mean=mean, std=0.0, min=mean, max=mean) for name, mean in means.items()}
+    text = campaign_report(sweep, [point.model_copy(update={"metrics": metrics}) for point in tally(sweep, outcomes)])
+    assert text.count("<td>0.99997 ± 0</td>") == text.count("<td>53 ± 0</td>") == 2
 
 
 def test_the_table_has_a_row_for_each_run_and_partial_ones_are_possible(

@@ -16,8 +16,9 @@ import pytest
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.report.keeping import keep
+from scenarios.report.palette import hypothesis
 from scenarios.report.svg import Mark, Series, chart, thin
-from scenarios.report.thumbnail import HEALTHY, thumbnail
+from scenarios.report.thumbnail import thumbnail
 from scenarios.run import run
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -79,7 +80,7 @@ def test_a_drawing_shows_motion_verdicts_and_what_was_done() -> None:
     lanes = list(drawing.iter(f"{SVG}rect"))
     truth = [one for one in lanes if one.attrib["height"] == "3"]
     # healthy, then the six steps of the scenario, then healthy: seven strips, the first as long as the scenario says
-    assert [one.attrib["fill"] == HEALTHY for one in truth] == [True, *[False] * 5, True]
+    assert [one.attrib["fill"] == hypothesis(0).colour for one in truth] == [True, *[False] * 5, True]
     assert float(truth[0].attrib["width"]) == pytest.approx(240 * 2000 / 9000, abs=2.1)
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from core import registry
 from core.board.board import CHUNK, Board
+from scenarios.speed.gyroscope import ALIVE, ONE, running
 from scenarios.speed.interconnected import adaptive_loop, simulate
 from scenarios.speed.peers import interconnected_sample
 from scenarios.speed.ratios import ADAPTIVE, GAIN
@@ -49,5 +50,8 @@ def test_every_controller_has_its_price():
         board.advance(CHUNK)
         for name in board.spec.controllers:
             costs |= block_costs(board, name)
+    board = running(ONE)
+    for name in board.spec.controllers:
+        costs |= block_costs(board, name, alive=ALIVE)
     assert set(costs) == set(registry.blocks("control"))
     assert np.isfinite(list(costs.values())).all()

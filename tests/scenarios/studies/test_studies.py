@@ -105,8 +105,8 @@ def test_a_sweep_sees_faults_and_air():
 def test_a_sweep_of_a_live_board_leaves_it_alone():
     board, twin = make(), make()
     for one in (board, twin):
-        do(one, {"kind": "switch", "controller": "pid"})
-        do(one, {"kind": "inject", "fault": "stiffness", "severity": 0.2})
+        do(one, {"switch": "pid"})
+        do(one, {"fault": "stiffness", "severity": 0.2})
         play(one, 100)
     found = sweep_sine(board, points=9, cycles=20).found
     assert found.stiffness_n_m == pytest.approx(1.2 * 0.0538, rel=2e-3)

@@ -62,15 +62,15 @@ def test_a_trip_pauses_it_and_only_a_reset_leads_out() -> None:
     bench = session("ch3-mrac-spring-x2", **{"controllers.mrac.adaptation_gain": 30.0})
     if bench.scenario.samples is not None:
         bench._ends_at = None
-    bench.execute(parse({"kind": "set", "values": {"guard.travel_um": 0.01}}), "test")
+    bench.execute(parse({"set": {"guard.travel_um": 0.01}}), "test")
     advance(bench, 20_000)
     assert bench.status.state == "tripped" and not bench.is_running
     assert bench.status.trip is not None and bench.status.trip.signal == "plant.displacement"
     with pytest.raises(InputError, match="tripped"):
         bench.execute(parse({"kind": "start"}), "test")
     tick = bench.board.tick
-    bench.execute(parse({"kind": "set", "values": {"guard.travel_um": 25.0}}), "test")
-    bench.execute(parse({"kind": "reset_trip"}), "test")
+    bench.execute(parse({"set": {"guard.travel_um": 25.0}}), "test")
+    bench.execute(parse({"reset_trip": True}), "test")
     assert bench.status.state == "paused" and bench.board.tick == tick
     bench.execute(parse({"kind": "start"}), "test")
     advance(bench, tick + 10)
@@ -82,10 +82,10 @@ def test_a_refused_command_changes_nothing() -> None:
     advance(bench, 100)
     before = bench.board.save(), bench.events.last
     for refused in (
-        {"kind": "heal", "faults": ["damping"]},
-        {"kind": "switch", "controller": "nobody"},
-        {"kind": "set", "values": {"sensor.noise_um": -1}},
-        {"kind": "set", "values": {"sensor.noise_um": 0.1, "sample_rate_khz": 10}},
+        {"heal": ["damping"]},
+        {"switch": "nobody"},
+        {"set": {"sensor.noise_um": -1}},
+        {"set": {"sensor.noise_um": 0.1, "sample_rate_khz": 10}},
     ):
         with pytest.raises(InputError):
             bench.execute(parse_command(refused), "test")
@@ -111,7 +111,7 @@ def test_a_long_step_is_taken_in_slices_with_commands_between() -> None:
     asked, behind = step(bench, ticks=5000), step(bench, ticks=3)
     bench.slice(bench.target(0.0))
     assert bench.board.tick == bench.board.chunk and bench.is_running and not bench.is_started
-    bench.execute(parse_command({"kind": "inject", "fault": "damping", "severity": 0.3}), "test")
+    bench.execute(parse_command({"fault": "damping", "severity": 0.3}), "test")
     bench.slice(bench.target(0.0))
     bench.finish_round(bench.target(0.0), 0.0)
     assert (bench.pacer.overruns, bench.status.state, bench.status.achieved_scale) == (0, "running", 0.0)
@@ -142,7 +142,7 @@ def test_who_waits_for_a_step_hears_how_it_ended(how: str) -> None:
     elif how == "start":
         bench.execute(parse({"kind": "start"}), "test")
     else:
-        bench.execute(parse({"kind": "set", "values": {"guard.travel_um": 1e-3}}), "test")
+        bench.execute(parse({"set": {"guard.travel_um": 1e-3}}), "test")
         while bench.is_running:
             bench.slice(None)
     assert asked.result(0).text == f"stepped {asked.result(0).text.split()[1]} of 5000 ticks"
@@ -207,7 +207,7 @@ def test_a_fork_goes_its_own_way_from_the_same_moment() -> None:
     twin = bench.fork(None)
     twin.begin(True)
     np.testing.assert_array_equal(twin.history.read([3], 0, 1000), bench.history.read([3], 0, 1000))
-    twin.execute(parse({"kind": "inject", "fault": "added_mass", "severity": 0.1}), "test")
+    twin.execute(parse({"fault": "added_mass", "severity": 0.1}), "test")
     advance(bench, 1800)
     advance(twin, 1800)
     assert bench.board.digest() == run(with_values(get("ch5-seven-step"), {"samples": 1800})).digest
@@ -230,10 +230,10 @@ def test_a_reset_begins_again_with_other_values() -> None:
 def test_what_happened_is_saved_as_a_scenario_with_the_same_bits() -> None:
     bench = session()
     advance(bench, 333)
-    bench.execute(parse({"kind": "switch", "controller": "mrac"}), "test")
+    bench.execute(parse({"switch": "mrac"}), "test")
     advance(bench, 777)
-    bench.execute(parse({"kind": "inject", "fault": "damping", "severity": 0.3}), "test")
-    bench.execute(parse({"kind": "set", "values": {"sensor.noise_um": 0.1}}), "test")
+    bench.execute(parse({"fault": "damping", "severity": 0.3}), "test")
+    bench.execute(parse({"set": {"sensor.noise_um": 0.1}}), "test")
     advance(bench, 2501)
     saved = Scenario.load(Scenario.load(document_of(bench)).toml())
     result = run(saved)
@@ -245,14 +245,14 @@ def test_commands_that_wait_are_limited() -> None:
     bench = session()
     with pytest.raises(InputError, match="wait for their moment"):
         for _ in range(200):
-            bench.execute(parse({"kind": "switch", "controller": "pid", "at_sample": 8000}), "test")
+            bench.execute(parse({"switch": "pid", "at_sample": 8000}), "test")
 
 
 def test_status_says_what_was_chosen_for_a_fault() -> None:
     bench = session()
-    bench.execute(parse({"kind": "inject", "fault": "sensor_hum", "severity": 0.2}), "test")
+    bench.execute(parse({"fault": "sensor_hum", "severity": 0.2}), "test")
     chosen = {"beam": "outer", "position": 0.5}
-    bench.execute(parse({"kind": "inject", "fault": "point_adhesion", "severity": 1.0, "parameters": chosen}), "test")
-    bench.execute(parse({"kind": "inject", "fault": "added_mass", "severity": 0.1}), "test")
+    bench.execute(parse({"fault": "point_adhesion", "severity": 1.0, "parameters": chosen}), "test")
+    bench.execute(parse({"fault": "added_mass", "severity": 0.1}), "test")
     acting = {fault.name: fault.parameters for fault in bench.status.faults}
     assert acting == {"sensor_hum": {"frequency_hz": 50.0}, "point_adhesion": chosen, "added_mass": {}}

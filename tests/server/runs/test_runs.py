@@ -16,9 +16,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from scenarios.edit import with_values
-from scenarios.library import get
+from scenarios.library import get, library
 from scenarios.run import build, run, run_bytes
 from scenarios.seeds import run_seeds
+from server.runs.length import check_length
+from server.settings import Settings
 from server.store.models import RunRow
 
 
@@ -220,6 +222,14 @@ def test_a_study_is_a_run_too(live: Any) -> None:
     for name in few["study.signals"]:
         assert 0.5 < metrics[f"roc.{name}.area"] <= 1.0 and metrics[f"detectors.{name}.missed"] <= 1.0
     assert metrics["detectors.glr100.tone.healthy.delay"] > 0
+
+
+def test_every_scenario_of_the_library_may_run_on_a_server_as_it_comes() -> None:
+    usual = Settings()
+    for scenario in library():
+        check_length(scenario, 1, usual, scenario.id, "scenario")
+        needed = run_bytes(build(scenario), scenario.samples or 0, taps=False)
+        assert scenario.study is not None or needed <= usual.max_run_mb * 1e6
 
 
 def test_a_run_takes_no_more_memory_than_is_reckoned_with(tmp_path: Any) -> None:

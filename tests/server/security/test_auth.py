@@ -53,12 +53,18 @@ def test_paths_that_are_no_route_refuse_a_stranger_too(live: Any, path: str) -> 
         assert stranger.get(path).status_code == 401
 
 
-def test_the_refusal_tells_a_person_how_to_get_in(live: Any) -> None:
+def test_the_refusal_tells_a_person_what_this_is_and_how_to_get_in(live: Any) -> None:
+    html = {"Accept": "text/html"}
     with live.anonymous() as stranger:
-        answer = stranger.get("/", headers={"Accept": "text/html"})
-    assert answer.status_code == 401
-    assert "address with a token" in answer.text
+        answer = stranger.get("/?scenario=first-look&a=%22%3E%3Cb%3E", headers=html)
+        wrong = stranger.get("/?token=%3Cscript%3E", headers=html)
+    assert answer.status_code == wrong.status_code == 401
+    assert "comb resonators" in answer.text and "Ask whoever runs it" in answer.text
+    assert '<input type="hidden" name="scenario" value="first-look">' in answer.text
+    assert 'value="&quot;&gt;&lt;b&gt;"' in answer.text and "<b>" not in answer.text
     assert answer.headers["content-type"].startswith("text/html")
+    assert "not the one of this bench" in wrong.text and "not the one of this bench" not in answer.text
+    assert "script" not in wrong.text
 
 
 @pytest.mark.parametrize("path", ["/api/v1/benches/x/stream", "/benches/x/3d", "/nothing"])

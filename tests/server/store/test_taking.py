@@ -98,7 +98,7 @@ def test_a_condition_that_never_comes_can_be_called_off(live: Any) -> None:
 def test_a_recording_says_all_it_takes_to_repeat_it(live: Any) -> None:
     bench = stepped(live, 700, seed=11)
     started = live.http.post(recordings(bench), json={"layout": {"panels": ["scope"]}}).json()
-    live.command(bench["id"], "inject", fault="damping", severity=0.2)
+    live.command(bench["id"], fault="damping", severity=0.2)
     live.command(bench["id"], "step", ticks=600)
     live.http.post(f"{recordings(bench)}/{started['id']}/stop")
     found = ended(live, started["id"])
@@ -119,11 +119,11 @@ def test_a_recording_says_all_it_takes_to_repeat_it(live: Any) -> None:
 def test_a_recording_knows_the_faults_that_act_at_its_start_and_the_events_of_its_past(live: Any) -> None:
     bench = stepped(live, 100)
     for fault in ("damping", "stiffness", "added_mass"):
-        live.command(bench["id"], "inject", fault=fault, severity=0.2)
-    live.command(bench["id"], "heal", faults=["damping"])
-    live.command(bench["id"], "inject", fault="stiffness", severity=0.3)
+        live.command(bench["id"], fault=fault, severity=0.2)
+    live.command(bench["id"], heal=["damping"])
+    live.command(bench["id"], fault="stiffness", severity=0.3)
     live.command(bench["id"], "step", ticks=400)
-    live.command(bench["id"], "inject", fault="drive_gain", severity=-0.1)
+    live.command(bench["id"], fault="drive_gain", severity=-0.1)
     live.command(bench["id"], "step", ticks=100)
     kept = live.http.post(recordings(bench), json={"past_ticks": 200, "ticks": 0}).json()
     events = ended(live, kept["id"])["events"]
@@ -186,7 +186,7 @@ def test_recordings_are_compared_signal_by_signal(live: Any) -> None:
 
 def test_a_recording_is_played_on_the_streams_of_a_bench(live: Any) -> None:
     bench = stepped(live, 4000, time_scale=0.01)
-    live.command(bench["id"], "inject", fault="damping", severity=0.2)
+    live.command(bench["id"], fault="damping", severity=0.2)
     kept = live.http.post(recordings(bench), json={"past_ticks": 3000, "ticks": 0}).json()["id"]
     answer = live.http.post(f"/api/v1/recordings/{kept}/replay", json={"speed": 10.0, "paused": True})
     assert answer.status_code == 201, answer.text
@@ -205,7 +205,7 @@ def test_a_recording_is_played_on_the_streams_of_a_bench(live: Any) -> None:
     # the page sees it as a bench: frames come, and the past cannot be changed
     with live.stream(replay["id"]) as stream:
         stream.until_type("hello")
-    refused = live.command(replay["id"], "inject", fault="damping", severity=0.1)
+    refused = live.command(replay["id"], fault="damping", severity=0.1)
     assert refused.status_code in (409, 422) and "recording" in refused.text
     assert live.http.post(f"/api/v1/benches/{replay['id']}/snapshots", json={"name": "x"}).status_code in (409, 422)
 
@@ -241,8 +241,8 @@ def test_a_replay_seeks_and_loops(live: Any) -> None:
 
 def test_a_live_bench_is_saved_and_graded_headless_to_the_same_bits(live: Any) -> None:
     bench = stepped(live, 1500)
-    live.command(bench["id"], "inject", fault="stiffness", severity=0.05)
-    live.command(bench["id"], "switch", controller="pid")
+    live.command(bench["id"], fault="stiffness", severity=0.05)
+    live.command(bench["id"], switch="pid")
     live.command(bench["id"], "step", ticks=2000)
     seen = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
     text = live.http.get(f"/api/v1/benches/{bench['id']}/scenario").text

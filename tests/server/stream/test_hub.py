@@ -151,7 +151,7 @@ def test_parameters_are_told_when_they_have_changed() -> None:
         assert [told(), told()] == [[True], [False]]
         bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
         assert told() == [False]  # an event, but nothing of the scenario
-        bench.session.execute(parse({"kind": "set", "values": {"reference.amplitude_v": 3.0}}), "test")
+        bench.session.execute(parse({"set": {"reference.amplitude_v": 3.0}}), "test")
         assert [told(), told()] == [[True], [False]]
 
     on_loop(play)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import json
 import time
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from uvicorn.config import Config
+from uvicorn.server import ServerState
 from websockets.frames import Frame, Opcode
 
-from server.stream.line import binary_head, ends_whole, short_text, text_message
+from server.stream.line import Line, binary_head, ends_whole, short_text, text_message
 
 SIZES = st.one_of(st.integers(0, 130), st.sampled_from([65_535, 65_536]))
 OPCODES = st.sampled_from([Opcode.TEXT, Opcode.BINARY, Opcode.PING])
@@ -68,3 +72,44 @@ def test_messages_are_heard_however_they_are_cut(live: Any, pieces: int) -> None
                 stream.step()
             last = stream.frames[-1].frame
         assert last > 12
+
+
+REQUEST = (
+    b"GET / HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+    b"Sec-WebSocket-Key: MDAwMDAwMDAwMDAwMDAwMA==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+)
+
+
+EARLY = {
+    "not UTF-8": sent(b"\xff\xfe"),
+    "end of nothing": sent(b"x", Opcode.CONT),
+    "unknown kind": b"\x85\x81\0\0\0\0x",
+}
+
+
+@pytest.mark.parametrize("refused", EARLY.values(), ids=EARLY)
+def test_who_breaks_the_rules_before_the_answer_is_cut(refused: bytes, caplog: pytest.LogCaptureFixture) -> None:
+    heard = []
+
+    async def answer(_scope: Any, receive: Any, send: Any) -> None:
+        heard.append(await receive())
+        await send({"type": "websocket.accept"})
+        raise AssertionError("nobody is there")
+
+    async def meet() -> Mock:
+        config = Config(answer, interface="asgi3", log_config=None)
+        config.load()
+        line, transport = Line(config, ServerState(), {}, asyncio.get_running_loop()), Mock()
+        transport.get_extra_info.return_value = None
+        transport.is_closing.side_effect = lambda: transport.abort.called
+        line.connection_made(transport)
+        line.data_received(REQUEST)
+        line.data_received(refused)  # in the same turn of the loop: the application has not answered yet
+        await asyncio.gather(*line.tasks)
+        return transport
+
+    transport = asyncio.run(meet())
+    transport.abort.assert_called_once_with()
+    transport.write.assert_not_called()
+    assert [message["type"] for message in heard] == ["websocket.connect"]
+    assert all(record.message.startswith("Invalid UTF-8") for record in caplog.records)

@@ -236,13 +236,13 @@ def test_events_come_in_order_and_are_replayed_after_a_reconnect(live: Any) -> N
     bench = live.bench(set={"events": []})
     with live.stream(bench["id"]) as stream:
         for severity in (0.01, 0.02, 0.03):
-            assert stream.command("inject", fault="added_mass", severity=severity)["ok"]
-        stream.until_type("events", timeout=3)
+            assert stream.command(fault="added_mass", severity=severity)["ok"]
+        stream.until_event(text="inject added_mass +0.03")
         stream.drain(0.2)
         seen = [event["seq"] for event in stream.events]
         assert seen == list(range(seen[0], seen[0] + len(seen)))
     for severity in (0.04, 0.05):
-        live.command(bench["id"], "inject", fault="added_mass", severity=severity)
+        live.command(bench["id"], fault="added_mass", severity=severity)
     with live.stream(bench["id"]) as stream:
         hello = stream.step()
         stream.send(type="resume", after=seen[-1])
@@ -271,10 +271,10 @@ def test_a_long_backlog_is_replayed_whole(live: Any) -> None:
 
 def test_a_new_page_gets_only_what_is_new(live: Any) -> None:
     bench = live.bench(set={"events": []})
-    live.command(bench["id"], "inject", fault="added_mass", severity=0.05)
+    live.command(bench["id"], fault="added_mass", severity=0.05)
     with live.stream(bench["id"]) as stream:
         hello = stream.step()
-        live.command(bench["id"], "heal")
+        live.command(bench["id"], heal="all")
         event = stream.until_event()
         assert event["seq"] > hello["last_event"]
 
@@ -283,7 +283,7 @@ def test_a_command_is_answered_with_its_tick(live: Any) -> None:
     bench = live.bench(set={"events": []}, time_scale=0.01)
     with live.stream(bench["id"]) as stream:
         before = stream.until_type("status")["tick"]
-        stream.send(type="command", id="mine", command={"kind": "switch", "controller": "mrac"})
+        stream.send(type="command", id="mine", command={"switch": "mrac"})
         reply = stream.until_type("reply")
         assert reply["id"] == "mine" and reply["ok"] and reply["tick"] >= before
         # who reads the answer has read before it what the command changed
@@ -300,7 +300,7 @@ def test_the_status_stands_before_every_answer_to_a_command(live: Any) -> None:
     bench = live.bench(set={"events": []}, paused=True)
     with live.stream(bench["id"]) as stream:
         for number in range(1, 21):
-            assert stream.command("set", values={"plant.drive_noise_v": 0.01 * number})["ok"]
+            assert stream.command(set={"plant.drive_noise_v": 0.01 * number})["ok"]
             told = [m["parameters"] for m in stream.messages if m["type"] == "status" and m["parameters"]]
             assert told[-1]["plant"]["drive_noise_v"] == 0.01 * number
 
@@ -313,7 +313,7 @@ def test_from_a_command_to_its_effect_on_the_screen(live: Any) -> None:
         stream.until_frame()
         waits = []
         for number in range(20):
-            kind = {"kind": "inject", "fault": "damping", "severity": 0.3} if number % 2 == 0 else {"kind": "heal"}
+            kind = {"fault": "damping", "severity": 0.3} if number % 2 == 0 else {"heal": "all"}
             wanted = np.float32(0.3 if number % 2 == 0 else 0.0)
             began = time.monotonic()
             stream.send(type="command", id=f"{number}", command=kind)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from core.device.geometry import Geometry
+from core.plant.linear import Linear
 from core.plant.planar import Planar
+from server.view3d.colours import ATTENTION, MOVING, blend, in_batch
 from server.view3d.layout import UM_PER_UNIT, Layout
 from server.view3d.motion import (
     TURN_EXAGGERATIONS,
@@ -20,7 +22,6 @@ from server.view3d.motion import (
 )
 from server.view3d.page import cameras
 from server.view3d.pose import combs_of
-from server.view3d.scene import ATTENTION, MOVING, blend, in_batch
 from server.view3d.suspension import flexure
 
 LAYOUT = Layout(Geometry())
@@ -103,7 +104,7 @@ def test_fingers_are_off_centre_by_shift_and_rotation() -> None:
     plant = Planar.Params(misalignment_um=0.1, misalignment_mrad=1.0)
     right, left = combs_of(0.2, 2e-3, 166.0, plant)
     assert right == pytest.approx(0.3 + 3e-3 * 166.0) and left == pytest.approx(0.3 - 3e-3 * 166.0)
-    assert combs_of(0.2, 0.0, 166.0, object()) == (0.2, 0.2)
+    assert combs_of(0.2, 0.0, 166.0, Linear.Params()) == (0.2, 0.2)
 
 
 def test_colours_of_a_batch_are_linear() -> None:

@@ -49,6 +49,8 @@ export const api = {
     data(client.POST("/api/v1/theory/positive-real", { body: { numerator, denominator } })),
   persistency: (body: ExcitationSource) => data(client.POST("/api/v1/theory/persistency", { body })),
   instabilityMap: (body: MapSource) => data(client.POST("/api/v1/theory/instability-map", { body })),
+  readout: (bench_id: string, name: string) =>
+    data(client.GET("/api/v1/benches/{bench_id}/readouts/{name}", { params: { path: { bench_id, name } } })),
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,

@@ -248,6 +248,9 @@ export interface paths {
         /**
          * Command
          * @description Carry out a command at the next tick edge.
+         *
+         *     Commands to the board are events of a scenario; their earlier notation, by the kinds inject, heal, set, switch and
+         *     reset_trip, is still read.
          */
         post: operations["command_api_v1_benches__bench_id__commands_post"];
         delete?: never;
@@ -450,6 +453,26 @@ export interface paths {
          * @description Work out how a sample changed every hypothesis: prior, residual, likelihood, posterior.
          */
         get: operations["explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/readouts/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Readout
+         * @description Fit angle random walk, bias instability and rate random walk to the record so far.
+         */
+        get: operations["get_readout_api_v1_benches__bench_id__readouts__name__get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1166,6 +1189,16 @@ export interface components {
             /** Floor */
             floor: number;
             /**
+             * Residuals
+             * @description Signals of the residuals, below the name of the diagnoser
+             */
+            residuals: string[];
+            /**
+             * Weighed
+             * @description What the prior is, in words
+             */
+            weighed: string;
+            /**
              * Evidence
              * @description What log_likelihood is, in LaTeX; empty for that of the normal density
              */
@@ -1288,7 +1321,7 @@ export interface components {
             achieved_scale: number;
             /**
              * Capped
-             * @description The machine cannot keep up
+             * @description The machine has been below 80 % of the rate for 3 s
              */
             capped: boolean;
             /**
@@ -1301,8 +1334,18 @@ export interface components {
              * @description Wall time given up catching up
              */
             given_up_ms: number;
-            /** Controller */
+            /**
+             * Controller
+             * @description The controller that drives, of the last slot where there are several
+             */
             controller: string;
+            /**
+             * Slots
+             * @description The controller that drives in each slot, in their order
+             */
+            slots: {
+                [key: string]: string;
+            };
             /** Faults */
             faults: components["schemas"]["ActiveFault"][];
             /**
@@ -1375,6 +1418,11 @@ export interface components {
             drive_period_ticks: number | null;
             /** History Ticks */
             history_ticks: number;
+            /**
+             * Axes
+             * @description Axes the plant moves along; none for one displacement
+             */
+            axes: string[];
             /** Signals */
             signals: components["schemas"]["Signal"][];
             /** Controllers */
@@ -1425,6 +1473,8 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+            /** Group */
+            group: string;
             /** Summary */
             summary: string;
             /** Changes */
@@ -1435,6 +1485,12 @@ export interface components {
             suggested: number | null;
             /** Weaknesses */
             weaknesses: string[];
+            /** Axes */
+            axes: string[] | null;
+            /** Per Axis */
+            per_axis: boolean;
+            /** Slot */
+            slot: string;
             /** Equations */
             equations: components["schemas"]["EquationCard"][];
             /** Parameters */
@@ -1689,6 +1745,11 @@ export interface components {
             parameters: {
                 [key: string]: unknown;
             };
+            /**
+             * Plants
+             * @description Plants that suit it
+             */
+            plants: string[];
         };
         /**
          * Devices
@@ -1825,7 +1886,10 @@ export interface components {
              * @description One line for a person, past tense
              */
             text: string;
-            /** Command */
+            /**
+             * Command
+             * @description The command, as an event of a scenario if it is to the board
+             */
             command?: {
                 [key: string]: unknown;
             } | null;
@@ -2063,17 +2127,8 @@ export interface components {
              * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
-            /**
-             * Kind
-             * @default heal
-             * @constant
-             */
-            kind?: "heal";
-            /**
-             * Faults
-             * @default all
-             */
-            faults?: string[] | "all";
+            /** Heal */
+            heal: string[] | "all";
         };
         /**
          * Health
@@ -2236,12 +2291,6 @@ export interface components {
              * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
-            /**
-             * Kind
-             * @default inject
-             * @constant
-             */
-            kind?: "inject";
             /** Fault */
             fault: string;
             /** Severity */
@@ -2463,10 +2512,16 @@ export interface components {
         ModelAccount: {
             /** Name */
             name: string;
-            /** Residual Um */
-            residual_um: number;
-            /** Covariance Um2 */
-            covariance_um2: number | null;
+            /**
+             * Residual Um
+             * @description For each displacement measured
+             */
+            residual_um: number[];
+            /**
+             * Covariance Um2
+             * @description Of the residuals, row by row
+             */
+            covariance_um2: number[][] | null;
             /** Log Likelihood */
             log_likelihood: number | null;
             /** Prior */
@@ -2571,6 +2626,50 @@ export interface components {
             sweep: string | {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * NoiseFigure
+         * @description One of the three noises: what the record tells of it, and what the bench was given.
+         */
+        NoiseFigure: {
+            /** Name */
+            name: string;
+            /** Letter */
+            letter: string;
+            /** Unit */
+            unit: string;
+            /**
+             * Value
+             * @description Null where the record does not tell
+             */
+            value: number | null;
+            /**
+             * Error
+             * @description Standard error; without a value the most it may be, null if unknown
+             */
+            error: number | null;
+            /**
+             * Reason
+             * @description Why there is no value, and what it takes
+             */
+            reason: string;
+            /**
+             * True
+             * @description The noise of the angular rate itself; a sensor adds its own
+             */
+            true: number;
+        };
+        /**
+         * Octave
+         * @description The Allan deviation over one averaging time, from so many pairs of means.
+         */
+        Octave: {
+            /** Tau S */
+            tau_s: number;
+            /** Deviation Deg H */
+            deviation_deg_h: number;
+            /** Pairs */
+            pairs: number;
         };
         /**
          * Pair
@@ -2790,6 +2889,30 @@ export interface components {
             duty?: number;
         };
         /**
+         * RateReadout
+         * @description The Allan deviation of the rate so far, and the noises fitted to it.
+         */
+        RateReadout: {
+            /** Tick */
+            tick: number;
+            /** Record S */
+            record_s: number;
+            /**
+             * Octaves
+             * @description Those that have a pair, by rising averaging time
+             */
+            octaves: components["schemas"]["Octave"][];
+            /** Figures */
+            figures: components["schemas"]["NoiseFigure"][];
+            /**
+             * From S
+             * @description The shortest averaging time of the fit; 0 without one
+             */
+            from_s: number;
+            /** To S */
+            to_s: number;
+        };
+        /**
          * Recording
          * @description A recording as the API shows it.
          */
@@ -2959,11 +3082,10 @@ export interface components {
              */
             when?: string | null;
             /**
-             * Kind
-             * @default reset_trip
+             * Reset Trip
              * @constant
              */
-            kind?: "reset_trip";
+            reset_trip: true;
         };
         /**
          * Response
@@ -3068,6 +3190,11 @@ export interface components {
             /** Samples */
             samples: number | null;
             /**
+             * Plant
+             * @description Plant of the bench; null for a study
+             */
+            plant: string | null;
+            /**
              * Study
              * @description Kind of the study; null for a scenario that runs on a bench
              */
@@ -3127,6 +3254,10 @@ export interface components {
             since_tick: number;
             /** Nis */
             nis: number | null;
+            /** Least Nis */
+            least_nis: number;
+            /** Unexplained */
+            unexplained: boolean;
             /** Confusion */
             confusion: number[][];
         };
@@ -3164,14 +3295,8 @@ export interface components {
              * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
-            /**
-             * Kind
-             * @default set
-             * @constant
-             */
-            kind?: "set";
-            /** Values */
-            values: {
+            /** Set */
+            set: {
                 [key: string]: unknown;
             };
         };
@@ -3460,14 +3585,8 @@ export interface components {
              * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
              */
             when?: string | null;
-            /**
-             * Kind
-             * @default switch
-             * @constant
-             */
-            kind?: "switch";
-            /** Controller */
-            controller: string;
+            /** Switch */
+            switch: string;
             /**
              * Cold
              * @default false
@@ -3900,7 +4019,7 @@ export interface components {
             achieved_scale: number;
             /**
              * Capped
-             * @description The machine cannot keep up
+             * @description The machine has been below 80 % of the rate for 3 s
              */
             capped: boolean;
             /**
@@ -3913,8 +4032,18 @@ export interface components {
              * @description Wall time given up catching up
              */
             given_up_ms: number;
-            /** Controller */
+            /**
+             * Controller
+             * @description The controller that drives, of the last slot where there are several
+             */
             controller: string;
+            /**
+             * Slots
+             * @description The controller that drives in each slot, in their order
+             */
+            slots: {
+                [key: string]: string;
+            };
             /** Faults */
             faults: components["schemas"]["ActiveFault"][];
             /**
@@ -4800,6 +4929,38 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Account"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_readout_api_v1_benches__bench_id__readouts__name__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RateReadout"];
                 };
             };
             /** @description Refused or failed */

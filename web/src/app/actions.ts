@@ -1,5 +1,6 @@
 import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
+import { slotMates } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/jump";
 import { saveFile } from "../ui/save-file";
@@ -23,16 +24,16 @@ export const actions = {
     useView.setState({ sample: undefined });
     void send({ kind: "reset" }, "Reset");
   },
-  resetTrip: () => void send({ kind: "reset_trip" }, "Trip reset"),
+  resetTrip: () => void send({ reset_trip: true }, "Trip reset"),
   faster: () => scale(2),
   slower: () => scale(0.5),
-  healAll: () => void send({ kind: "heal", faults: "all" }, "All faults healed"),
+  healAll: () => void send({ heal: "all" }, "All faults healed"),
   live: () => jump.to("live"),
-  controller: (controller: string, cold = false) =>
-    void send({ kind: "switch", controller, cold }, `Controller ${controller}`),
+  controller: (controller: string, cold = false) => void send({ switch: controller, cold }, `Controller ${controller}`),
   nextController: () => {
     const { controllers = [], controller = "" } = bench() ?? {};
-    const next = controllers[(controllers.indexOf(controller) + 1) % controllers.length];
+    const others = slotMates(controller, controllers);
+    const next = others[(others.indexOf(controller) + 1) % others.length];
     if (next) actions.controller(next);
   },
   keys: () => useView.setState({ dialog: "keys" }),

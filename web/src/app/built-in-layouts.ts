@@ -14,7 +14,14 @@ interface Where {
   inactive?: boolean;
 }
 
-function add(api: DockviewApi, id: string, kind: string, where: Where = {}, scope?: ScopeConfig, title?: string): void {
+export function addTo(
+  api: DockviewApi,
+  id: string,
+  kind: string,
+  where: Where = {},
+  scope?: ScopeConfig,
+  title?: string,
+): void {
   const direction = where.below
     ? "below"
     : where.right
@@ -37,7 +44,7 @@ function add(api: DockviewApi, id: string, kind: string, where: Where = {}, scop
 }
 
 /** Set the heights and widths of panels, as shares of the page. */
-function size(
+export function size(
   api: DockviewApi,
   width: number,
   height: number,
@@ -48,33 +55,36 @@ function size(
 }
 
 /** The layouts everybody has; sizes are shares of the page. */
-export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, height: number) => void> = {
+export type Layouts = Record<LayoutName, (api: DockviewApi, width: number, height: number) => void>;
+
+/** Those of a device with one displacement. */
+export const BUILT_IN: Layouts = {
   lecture(api, width, height) {
-    add(api, "motion", "scope", {}, MOTION, "Displacement");
-    add(api, "faults", "faults", { right: "motion" });
-    add(api, "view3d", "view3d", { below: "faults" });
-    add(api, "lanes", "lanes", { below: "motion" });
+    addTo(api, "motion", "scope", {}, MOTION, "Displacement");
+    addTo(api, "faults", "faults", { right: "motion" });
+    addTo(api, "view3d", "view3d", { below: "faults" });
+    addTo(api, "lanes", "lanes", { below: "motion" });
     size(api, width, height, { faults: { w: 0.3, h: 0.42 }, lanes: { h: 0.52 } });
   },
   lab(api, width, height) {
-    add(api, "motion", "scope", {}, MOTION, "Displacement");
-    add(api, "schematic", "schematic", { left: "motion" });
-    add(api, "faults", "faults", { below: "schematic" });
-    add(api, "environment", "environment", { within: "faults", inactive: true });
-    add(api, "card", "card", { within: "faults", inactive: true });
-    add(api, "why", "why", { within: "faults", inactive: true });
-    add(api, "labs", "labs", { within: "faults", inactive: true });
-    add(api, "blind", "blind", { within: "faults", inactive: true });
-    add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
-    add(api, "lanes", "lanes", { below: "voltage" });
-    add(api, "events", "events", { within: "lanes", inactive: true });
-    add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
-    add(api, "twins", "twins", { within: "lanes", inactive: true });
-    add(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
-    add(api, "phase", "phase", { within: "lanes", inactive: true });
-    add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
-    add(api, "identify", "identify", { within: "lanes", inactive: true });
-    add(api, "recordings", "recordings", { within: "lanes", inactive: true });
+    addTo(api, "motion", "scope", {}, MOTION, "Displacement");
+    addTo(api, "schematic", "schematic", { left: "motion" });
+    addTo(api, "faults", "faults", { below: "schematic" });
+    addTo(api, "environment", "environment", { within: "faults", inactive: true });
+    addTo(api, "card", "card", { within: "faults", inactive: true });
+    addTo(api, "why", "why", { within: "faults", inactive: true });
+    addTo(api, "labs", "labs", { within: "faults", inactive: true });
+    addTo(api, "blind", "blind", { within: "faults", inactive: true });
+    addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
+    addTo(api, "lanes", "lanes", { below: "voltage" });
+    addTo(api, "events", "events", { within: "lanes", inactive: true });
+    addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    addTo(api, "twins", "twins", { within: "lanes", inactive: true });
+    addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
+    addTo(api, "phase", "phase", { within: "lanes", inactive: true });
+    addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
+    addTo(api, "identify", "identify", { within: "lanes", inactive: true });
+    addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.26, h: 0.34 },
       motion: { h: 0.34 },
@@ -83,26 +93,26 @@ export const BUILT_IN: Record<LayoutName, (api: DockviewApi, width: number, heig
     });
   },
   research(api, width, height) {
-    add(api, "motion", "scope", {}, MOTION, "Displacement");
-    add(api, "schematic", "schematic", { left: "motion" });
-    add(api, "view3d", "view3d", { right: "motion" });
-    add(api, "card", "card", { below: "view3d" });
-    add(api, "why", "why", { within: "card", inactive: true });
-    add(api, "scores", "scores", { within: "card", inactive: true });
-    add(api, "events", "events", { within: "card", inactive: true });
-    add(api, "faults", "faults", { below: "schematic" });
-    add(api, "environment", "environment", { within: "faults", inactive: true });
-    add(api, "labs", "labs", { within: "faults", inactive: true });
-    add(api, "blind", "blind", { within: "faults", inactive: true });
-    add(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
-    add(api, "lanes", "lanes", { below: "voltage" });
-    add(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
-    add(api, "twins", "twins", { within: "lanes", inactive: true });
-    add(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
-    add(api, "phase", "phase", { within: "lanes", inactive: true });
-    add(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
-    add(api, "identify", "identify", { within: "lanes", inactive: true });
-    add(api, "recordings", "recordings", { within: "lanes", inactive: true });
+    addTo(api, "motion", "scope", {}, MOTION, "Displacement");
+    addTo(api, "schematic", "schematic", { left: "motion" });
+    addTo(api, "view3d", "view3d", { right: "motion" });
+    addTo(api, "card", "card", { below: "view3d" });
+    addTo(api, "why", "why", { within: "card", inactive: true });
+    addTo(api, "scores", "scores", { within: "card", inactive: true });
+    addTo(api, "events", "events", { within: "card", inactive: true });
+    addTo(api, "faults", "faults", { below: "schematic" });
+    addTo(api, "environment", "environment", { within: "faults", inactive: true });
+    addTo(api, "labs", "labs", { within: "faults", inactive: true });
+    addTo(api, "blind", "blind", { within: "faults", inactive: true });
+    addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
+    addTo(api, "lanes", "lanes", { below: "voltage" });
+    addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
+    addTo(api, "twins", "twins", { within: "lanes", inactive: true });
+    addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
+    addTo(api, "phase", "phase", { within: "lanes", inactive: true });
+    addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
+    addTo(api, "identify", "identify", { within: "lanes", inactive: true });
+    addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: 0.225, h: 0.32 },
       view3d: { w: 0.25, h: 0.4 },

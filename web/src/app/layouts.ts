@@ -1,18 +1,33 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
+import { hasAxes } from "../api/fits";
 import type { Document } from "../api/types";
 import { scopeConfig } from "../panels/scope/scope-config";
+import { useBench } from "../stream/bench-store";
 import { BUILT_IN } from "./built-in-layouts";
 import { withGaps } from "./dock-gap";
 import { PANELS } from "./panels";
+import { BUILT_IN_AXES } from "./two-axis-layouts";
 import { type LayoutName, useView } from "./view-store";
 
 let current: DockviewApi | undefined;
 
-const storageKey = (name: LayoutName) => `combbench.layout.4.${name}`;
+/** Whether the panels stand as for a bench with axes. */
+let axes = false;
+
+const storageKey = (name: LayoutName) => `combbench.layout.4.${axes ? "axes." : ""}${name}`;
+
+/** Lay the panels out for the benches of a kind; within one kind they stay where they are. */
+export function layOutFor(withAxes: boolean): void {
+  if (withAxes === axes) return;
+  axes = withAxes;
+  const name = useView.getState().layout;
+  arrange(name, stored(name));
+}
 
 /** The dock to lay out; called once it stands. */
 export function attachDock(api: DockviewApi): void {
   current = api;
+  axes = hasAxes(useBench.getState().bench);
   const asked = new URLSearchParams(window.location.search).get("layout");
   const name = asked && asked in BUILT_IN ? (asked as LayoutName) : useView.getState().layout;
   arrange(name, stored(name));
@@ -94,5 +109,5 @@ function arrange(name: LayoutName, saved: SerializedDockview | undefined): void 
     }
   }
   api.clear();
-  BUILT_IN[name](api, api.width || window.innerWidth, api.height || window.innerHeight);
+  (axes ? BUILT_IN_AXES : BUILT_IN)[name](api, api.width || window.innerWidth, api.height || window.innerHeight);
 }

@@ -20,6 +20,9 @@ export function NewBench() {
   );
 }
 
+/** Whether a device can stand in for that of a scenario: its plant is for devices of this kind. */
+const suits = (device: Device, scenario: ScenarioSummary) => device.plants.includes(scenario.plant ?? "");
+
 function Gallery() {
   const [scenarios, setScenarios] = useState<ScenarioSummary[] | undefined>(undefined);
   const [devices, setDevices] = useState<Device[]>([]);
@@ -46,9 +49,13 @@ function Gallery() {
     }
   };
 
-  const found = scenarios
-    ?.filter((s) => s.study === null && `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()))
-    .sort(byChapter);
+  const benches = scenarios?.filter((s) => s.plant !== null).sort(byChapter);
+  const chosen = devices.find((d) => d.id === device);
+  const found = benches?.filter(
+    (s) =>
+      `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()) && (!chosen || suits(chosen, s)),
+  );
+  const unsuited = chosen && benches ? benches.filter((s) => !suits(chosen, s)).length : 0;
   return (
     <>
       <Button
@@ -82,6 +89,11 @@ function Gallery() {
         <Switch size="xs" label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />
       </div>
       {!found && <Text c="dimmed">Loading the library…</Text>}
+      {unsuited > 0 && (
+        <Text c="dimmed" size="xs" mb={4}>
+          {unsuited} scenarios are for another kind of device.
+        </Text>
+      )}
       {found?.length === 0 && <EmptyState title="Nothing matches">Try another word.</EmptyState>}
       <ul className={styles.gallery}>
         {found?.map((s) => (

@@ -1,7 +1,11 @@
 import type { ComponentType } from "react";
+import { hasAxes } from "../api/fits";
+import type { Bench } from "../api/types";
 import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
+import { AllanPanel } from "../panels/allan/allan-panel";
 import { BlindPanel } from "../panels/blind/blind-panel";
 import { CardPanel } from "../panels/card/card-panel";
+import { ControllersPanel } from "../panels/controllers/controllers-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
@@ -9,6 +13,7 @@ import { HypothesesPanel } from "../panels/hypotheses/hypotheses-panel";
 import { IdentifyPanel } from "../panels/identify/identify-panel";
 import { LabsPanel } from "../panels/labs/labs-panel";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
+import { LocusPanel } from "../panels/locus/locus-panel";
 import { PhasePanel } from "../panels/phase/phase-panel";
 import { RecordingsPanel } from "../panels/recordings/recordings-panel";
 import { SchematicPanel } from "../panels/schematic/schematic-panel";
@@ -31,6 +36,8 @@ export interface PanelKind {
   changes?: boolean;
   /** It tells what acts on the device or what a diagnoser takes it for, which is hidden while a fault is to be found. */
   tells?: boolean;
+  /** The benches it is for, unless for all: those with one displacement, or those with axes. */
+  only?: "displacement" | "axes";
   component: ComponentType<PanelProps>;
 }
 
@@ -38,24 +45,31 @@ export interface PanelKind {
 export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
   lanes: { title: "Diagnosis", tells: true, component: LanesPanel },
-  adaptation: { title: "Adaptation", component: AdaptationPanel },
-  hypotheses: { title: "Hypotheses", changes: true, component: HypothesesPanel },
-  labs: { title: "Noise and memory", changes: true, component: LabsPanel },
-  blind: { title: "Blind diagnosis", changes: true, component: BlindPanel },
+  adaptation: { title: "Adaptation", only: "displacement", component: AdaptationPanel },
+  hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
+  labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
+  blind: { title: "Blind diagnosis", only: "displacement", changes: true, component: BlindPanel },
   twins: { title: "Twins", changes: true, component: TwinsPanel },
   why: { title: "Why", tells: true, component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
+  controllers: { title: "Controllers", changes: true, component: ControllersPanel },
+  locus: { title: "Locus", only: "axes", component: LocusPanel },
+  allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
   faults: { title: "Faults", changes: true, tells: true, component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
   environment: { title: "Environment", changes: true, component: EnvironmentPanel },
   phase: { title: "Phase plane", component: PhasePanel },
   spectrum: { title: "Spectrum", component: SpectrumPanel },
-  identify: { title: "Swept sine", changes: true, component: IdentifyPanel },
+  identify: { title: "Swept sine", only: "displacement", changes: true, component: IdentifyPanel },
   recordings: { title: "Recordings", component: RecordingsPanel },
   events: { title: "Events", component: EventsPanel },
   scores: { title: "Scoreboard", tells: true, component: ScoreboardPanel },
   view3d: { title: "3D", tells: true, component: View3dPanel },
 };
+
+/** Whether a panel has something to show on a bench; before there is one, all may. */
+export const suits = ({ only }: Pick<PanelKind, "only">, bench: Pick<Bench, "axes"> | undefined): boolean =>
+  only === undefined || bench === undefined || (only === "axes") === hasAxes(bench);
 
 function Scope({ params, setParams }: PanelProps) {
   return <ScopePanel config={params.scope ?? scopeConfig([])} onChange={(scope) => setParams({ scope })} />;

@@ -1,7 +1,9 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { useEffect, useRef, useState } from "react";
-import { scopeConfig } from "../panels/scope/scope-config";
+import { hasAxes } from "../api/fits";
+import type { Bench } from "../api/types";
+import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { useBench } from "../stream/bench-store";
 import { ErrorFence } from "../ui/error-fence";
@@ -11,16 +13,21 @@ import { actions } from "./actions";
 import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";
 import { PanelBody } from "./panel-body";
-import { PANELS } from "./panels";
+import { PANELS, suits } from "./panels";
 import styles from "./phone.module.css";
 import { useView } from "./view-store";
+
+const MOTION = scopeConfig(["model.displacement", "plant.displacement"]);
+const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });
 
 /** A bench in the hand: status, one scope, the lanes, 3D, and the button that stops it. */
 export function Phone() {
   const running = useBench((s) => s.bench?.state === "running");
   const tripped = useBench((s) => s.bench?.state === "tripped");
   const title = useBench((s) => s.bench?.title);
-  const [scope, setScope] = useState(() => scopeConfig(["model.displacement", "plant.displacement"]));
+  const isFlat = useBench((s) => !hasAxes(s.bench));
+  const [chosen, setScope] = useState<ScopeConfig | undefined>(undefined);
+  const scope = chosen ?? (isFlat ? MOTION : RATE);
   const page = usePageVisible();
   return (
     <PanelVisible value={page}>
@@ -39,7 +46,7 @@ export function Phone() {
             </ErrorFence>
           </div>
           <div className={styles.lanes}>
-            <PanelBody kind={PANELS.lanes} params={{}} setParams={() => undefined} />
+            <PanelBody kind={isFlat ? PANELS.lanes : PANELS.locus} params={{}} setParams={() => undefined} />
           </div>
           <div className={styles.view}>
             <PanelBody kind={PANELS.view3d} params={{}} setParams={() => undefined} />
@@ -66,6 +73,7 @@ export function Phone() {
 /** One more panel, of any kind; what is clicked elsewhere opens here. */
 function Extra() {
   const kind = useView((s) => s.extra);
+  const bench = useBench((s) => s.bench);
   const place = useRef<HTMLDivElement>(null);
   const panel = PANELS[kind];
   useEffect(() => {
@@ -80,7 +88,7 @@ function Extra() {
         data={[
           { value: "", label: "Another panel…" },
           ...Object.entries(PANELS)
-            .filter(([name]) => !ALWAYS.includes(name))
+            .filter(([name, panel]) => !always(bench).includes(name) && suits(panel, bench))
             .map(([value, { title }]) => ({ value, label: title })),
         ]}
         onChange={(e) => useView.setState({ extra: e.currentTarget.value })}
@@ -95,4 +103,4 @@ function Extra() {
 }
 
 /** What a phone shows anyway. */
-const ALWAYS = ["scope", "lanes", "view3d"];
+const always = (bench: Bench | undefined) => ["scope", "view3d", hasAxes(bench) ? "locus" : "lanes"];

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { formatTimeScale, sliderToTimeScale, stepTimeScale, timeScaleToSlider } from "./time-scale";
+import { againstRealTime, formatTimeScale, sliderToTimeScale, stepTimeScale, timeScaleToSlider } from "./time-scale";
 
 it("reads as device time per second", () => {
   expect([1e-6, 0.002, 0.05, 1].map(formatTimeScale)).toEqual([
@@ -9,6 +9,15 @@ it("reads as device time per second", () => {
     "1.00\u00a0s/s",
   ]);
   expect(formatTimeScale(null)).toBe("as fast as possible");
+});
+
+it("is put against real time", () => {
+  expect([0.002, 1, 4, null].map(againstRealTime)).toEqual([
+    "500\u00a0× slower than real time",
+    "real time",
+    "4\u00a0× faster than real time",
+    "as fast as the machine can",
+  ]);
 });
 
 it("doubles and halves within the limits", () => {

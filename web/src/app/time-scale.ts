@@ -29,6 +29,15 @@ export function formatTimeScale(scale: number | null): string {
   return formatSi(scale, "s/s", 3);
 }
 
+/** A time scale against real time: "500 × slower than real time". */
+export function againstRealTime(scale: number | null): string {
+  if (scale === null) return "as fast as the machine can";
+  if (scale === FASTEST) return "real time";
+  return scale < FASTEST
+    ? `${formatShort(FASTEST / scale, "×", 3)} slower than real time`
+    : `${formatShort(scale, "×", 3)} faster than real time`;
+}
+
 /** Twice or half as fast, staying on the slider. */
 export function stepTimeScale(scale: number | null, factor: number): number | null {
   const next = (scale ?? FASTEST) * (scale === null && factor > 1 ? 1 : factor);

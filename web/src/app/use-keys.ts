@@ -23,6 +23,11 @@ function giveBack({ target }: Event): void {
   if (pointed && target instanceof HTMLElement && target.matches(CHOSEN)) target.blur();
 }
 
+/** Who leaves a field, or the list it opened, with Escape has the keys again. */
+function leave({ key, target }: KeyboardEvent): void {
+  if (key === "Escape" && target instanceof HTMLElement && target.matches("input, textarea, select")) target.blur();
+}
+
 /** Listens for the page's keys, except while something else wants them. */
 export function useKeys(): void {
   const scheme = useScheme();
@@ -45,6 +50,7 @@ export function useKeys(): void {
     const stop = new AbortController();
     const { signal } = stop;
     window.addEventListener("keydown", listen, { signal });
+    window.addEventListener("keydown", leave, { signal });
     window.addEventListener("keydown", noteKey, { capture: true, signal });
     window.addEventListener("pointerdown", notePointer, { capture: true, signal });
     window.addEventListener("change", giveBack, { signal });

@@ -9,14 +9,15 @@ import {
   type IDockviewPanelProps,
 } from "dockview-react";
 import { type FunctionComponent, useEffect, useState } from "react";
+import { hasAxes } from "../api/fits";
 import { useBench } from "../stream/bench-store";
 import { PanelVisible } from "../ui/panel-visible";
 import { usePageVisible } from "../ui/use-page-visible";
 import "./dock.css";
 import { DOCK_GAP } from "./dock-gap";
-import { addPanel, addScope, attachDock } from "./layouts";
+import { addPanel, addScope, attachDock, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
-import { PANELS, type PanelKind } from "./panels";
+import { PANELS, type PanelKind, suits } from "./panels";
 import { SCOPE_PRESETS } from "./scope-presets";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: DOCK_GAP };
@@ -25,6 +26,10 @@ const components = Object.fromEntries(Object.entries(PANELS).map(([name, kind]) 
 
 /** The panels, docked; they keep their places in this browser. */
 export function Workspace() {
+  const axes = useBench((s) => s.bench && hasAxes(s.bench));
+  useEffect(() => {
+    if (axes !== undefined) layOutFor(axes);
+  }, [axes]);
   return (
     <main className="workspace">
       <DockviewReact
@@ -66,10 +71,10 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
     const subscription = containerApi.onDidMaximizedGroupChange(() => setMaximised(containerApi.hasMaximizedGroup()));
     return () => subscription.dispose();
   }, [containerApi]);
-  const signals = useBench((s) => s.bench?.signals);
+  const bench = useBench((s) => s.bench);
   const scopes = SCOPE_PRESETS.map(({ title, pick }) => ({
     title,
-    signals: (signals ?? []).map((s) => s.name).filter((name) => pick.test(name)),
+    signals: (bench?.signals ?? []).map((s) => s.name).filter((name) => pick.test(name)),
   })).filter((preset) => preset.signals.length > 0);
   return (
     <div className="dock-actions">
@@ -94,7 +99,7 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
           <Menu.Item onClick={() => addScope("Scope", [])}>Empty scope</Menu.Item>
           <Menu.Divider />
           {Object.entries(PANELS)
-            .filter(([kind]) => kind !== "scope")
+            .filter(([kind, panel]) => kind !== "scope" && suits(panel, bench))
             .map(([kind, { title }]) => (
               <Menu.Item key={kind} onClick={() => addPanel(kind)}>
                 {title}

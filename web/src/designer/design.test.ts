@@ -1,6 +1,15 @@
 import { expect, it } from "vitest";
 import type { Device } from "../api/types";
-import { benchOf, catalogued, changed, designDocument, newDesign, valueIn } from "./design";
+import {
+  benchOf,
+  catalogued,
+  changed,
+  designDocument,
+  gyroscopeBenchOf,
+  isGyroscope,
+  newDesign,
+  valueIn,
+} from "./design";
 
 const device = {
   id: "lcr-350",
@@ -44,4 +53,30 @@ it("drives the bench below resonance, within some micrometres", () => {
   expect((amplitude * 0.545) / Math.hypot(0.36, 0.8 / 4.86)).toBeCloseTo(3, 0);
   const fast = benchOf({}, "X", { f0_hz: 40_000, static_gain_um_per_v: -1e-4, quality_factor: 50 });
   expect(fast.set).toMatchObject({ sample_rate_khz: 800, "reference.amplitude_v": 10 });
+});
+
+it("writes each table of a device once, and puts a gyroscope on a bench that reads its rate", () => {
+  let state = changed(newDesign("gyro-c"), "gyroscope.alpha_deg", 1, 0);
+  state = changed(state, "gyroscope.mass_x_kg", 2e-6, 1e-6);
+  const design = designDocument(state);
+  expect(design.device).toEqual({ id: "gyro-c", gyroscope: { alpha_deg: 1, mass_x_kg: 2e-6 } });
+  const { scenario } = gyroscopeBenchOf(design, "C", { f0_hz: 17_568 });
+  // twenty samples of each period of the carrier
+  expect(scenario).toMatchObject({
+    device: design.device,
+    sample_rate_khz: 352,
+    controller: { kind: "force_to_rebalance" },
+  });
+});
+
+it("keeps the drawing of a gyroscope and what y has beside it in a table each", () => {
+  const drawn = { id: "g", parameters: { geometry: { fingers: 87 }, drawn_gyroscope: {} } } as unknown as Device;
+  expect([isGyroscope(drawn), isGyroscope(device)]).toEqual([true, false]);
+  let state = changed(newDesign("g"), "geometry.fingers", 60, 87);
+  state = changed(state, "drawn_gyroscope.sense_fingers", 40, 87);
+  expect(designDocument(state).device).toEqual({
+    id: "g",
+    geometry: { fingers: 60 },
+    drawn_gyroscope: { sense_fingers: 40 },
+  });
 });

@@ -15,15 +15,21 @@ export const AIR: Record<string, number> = { temperature_k: 300, pressure_pa: 10
 
 export const newDesign = (id: string): DesignState => ({ id, changes: {}, environment: {}, drawn: undefined });
 
+/** Whether a device of the catalogue is a gyroscope made from a drawing. */
+export const isDrawnGyroscope = (device: Device | undefined): boolean =>
+  device?.parameters.drawn_gyroscope !== undefined;
+
+/** Whether a device of the catalogue is a gyroscope, by its numbers or by its drawing. */
+export const isGyroscope = (device: Device | undefined): boolean =>
+  device?.parameters.gyroscope !== undefined || isDrawnGyroscope(device);
+
 /** The device as a scenario would have it. */
 export function designDocument({ id, changes, environment, drawn }: DesignState): Design {
-  const device: Record<string, unknown> = { id };
-  const geometry: Record<string, number> = { ...drawn?.geometry };
+  const device: Record<string, unknown> = { id, ...(drawn && { geometry: { ...drawn.geometry } }) };
   for (const [path, value] of Object.entries(changes)) {
-    if (path.startsWith("geometry.")) geometry[path.slice(9)] = value;
-    else device[path] = value;
+    const [table, name] = path.split(".");
+    device[table] = name === undefined ? value : { ...(device[table] as object | undefined), [name]: value };
   }
-  if (Object.keys(geometry).length > 0) device.geometry = geometry;
   return { device, environment };
 }
 
@@ -61,7 +67,6 @@ export function benchOf(design: Design, title: string, metrics: Record<string, n
     Math.abs(metrics.static_gain_um_per_v) /
     Math.hypot(1 - ratio * ratio, ratio / Math.max(metrics.quality_factor, 1e-6));
   const amplitude = gain > 0 ? Math.min(MOST_V, TRAVEL_UM / gain) : MOST_V;
-  const khz = Math.max(100, Math.ceil((SAMPLES_PER_PERIOD * metrics.f0_hz) / 1e3));
   return {
     scenario: "first-look",
     paused: false,
@@ -69,11 +74,32 @@ export function benchOf(design: Design, title: string, metrics: Record<string, n
       title: `Designed: ${title}`,
       device: design.device ?? {},
       environment: design.environment ?? {},
-      sample_rate_khz: khz,
+      sample_rate_khz: sampleRate(metrics),
       "reference.frequency_hz": frequency,
       "reference.amplitude_v": round(amplitude),
     },
   };
 }
+
+/** A bench of a gyroscope: force to rebalance at a steady rate, with a read-out of its noise. */
+export function gyroscopeBenchOf(design: Design, title: string, metrics: Record<string, number>): NewBench {
+  return {
+    scenario: {
+      title: `Designed: ${title}`,
+      source: "device designer",
+      sample_rate_khz: sampleRate(metrics),
+      device: design.device ?? {},
+      environment: design.environment ?? {},
+      rate: { kind: "constant", deg_per_s: 100 },
+      controller: { kind: "force_to_rebalance" },
+      readouts: { allan: { kind: "allan" } },
+    },
+    set: {},
+    paused: false,
+  };
+}
+
+const sampleRate = (metrics: Record<string, number>) =>
+  Math.max(100, Math.ceil((SAMPLES_PER_PERIOD * metrics.f0_hz) / 1e3));
 
 const round = (value: number) => roundTo(value, 2);

@@ -1,9 +1,19 @@
 import { NativeSelect } from "@mantine/core";
 import type { Device, DeviceCatalogue } from "../api/types";
 import { Knob } from "../ui/knob";
-import { AIR, catalogued, changed, type DesignState, newDesign, valueIn } from "./design";
+import {
+  AIR,
+  catalogued,
+  changed,
+  type DesignState,
+  isDrawnGyroscope,
+  isGyroscope,
+  newDesign,
+  valueIn,
+} from "./design";
 import styles from "./designer.module.css";
-import { DRAWING, ENVIRONMENT, given, type Knob as KnobOf } from "./knobs";
+import { DRAWN_GYROSCOPE, gyroscopeKnobs } from "./gyroscope-knobs";
+import { AROUND_A_PACKAGE, DRAWING, ENVIRONMENT, given, type Knob as KnobOf } from "./knobs";
 
 interface DesignerControlsProps {
   catalogue: DeviceCatalogue;
@@ -15,7 +25,11 @@ interface DesignerControlsProps {
 /** Everything that can be turned about a device and the air around it. */
 export function DesignerControls({ catalogue, device, state, onChange }: DesignerControlsProps) {
   const base = (path: string) => catalogued(device, path);
-  const drawn = base("geometry.beam_length_um") !== undefined;
+  const groups = () => {
+    if (isDrawnGyroscope(device)) return DRAWN_GYROSCOPE;
+    if (isGyroscope(device)) return gyroscopeKnobs(base);
+    return base("geometry.beam_length_um") === undefined ? given(base) : DRAWING;
+  };
   const turn = (knob: KnobOf, original: number) => {
     const set = (value: number) => onChange(changed(state, knob.path, value, original));
     const card = catalogue.geometry.find((p) => `geometry.${p.name}` === knob.path);
@@ -42,7 +56,7 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
         onChange={(event) => onChange({ ...newDesign(event.currentTarget.value), environment: state.environment })}
       />
       <p className={styles.source}>{device.source}</p>
-      {(drawn ? DRAWING : given(base)).map((group) => (
+      {groups().map((group) => (
         <fieldset key={group.title} className={styles.group}>
           <legend>{group.title}</legend>
           {group.knobs.map((knob) => turn(knob, base(knob.path) ?? defaultOf(catalogue, knob.path)))}
@@ -50,7 +64,7 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
       ))}
       <fieldset className={styles.group}>
         <legend>Environment</legend>
-        {ENVIRONMENT.map((knob) => {
+        {(isGyroscope(device) ? AROUND_A_PACKAGE : ENVIRONMENT).map((knob) => {
           const set = (value: number) =>
             onChange({ ...state, environment: { ...state.environment, [knob.path]: value } });
           return (

@@ -8,7 +8,8 @@ import { showError } from "../app/send";
 import { setPage } from "../app/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatSi } from "../ui/format";
-import { benchOf, catalogued, designDocument, newDesign } from "./design";
+import { AxesView } from "./axes-view";
+import { benchOf, catalogued, designDocument, gyroscopeBenchOf, isGyroscope, newDesign } from "./design";
 import styles from "./designer.module.css";
 import { DesignerControls } from "./designer-controls";
 import { DeviceView } from "./device-view";
@@ -18,6 +19,9 @@ import { SensitivityTable } from "./sensitivity-table";
 import { useDesign } from "./use-design";
 
 const FIRST = "lcr-350";
+
+/** The others are worked out from the drawing of a resonator. */
+const isOfGyroscope = ({ name }: { name: string }) => name.startsWith("gyro.");
 
 /** The drawing board: turn a number of a device and see at once what it would be. */
 export function Designer() {
@@ -35,6 +39,7 @@ export function Designer() {
     api.evaluate({ device: { id: state.id }, environment: {} }).then(setOriginal, showError);
   }, [state.id]);
 
+  const device = catalogue?.devices.find((d) => d.id === state.id);
   const draw = async () => {
     const seed = (state.drawn?.seed ?? 0) + 1;
     const undrawn = { ...state, drawn: undefined };
@@ -50,7 +55,8 @@ export function Designer() {
     if (!evaluation) return;
     setBusy(true);
     try {
-      openBench((await api.createBench(benchOf(design, evaluation.title, evaluation.metrics))).id);
+      const wanted = isGyroscope(device) ? gyroscopeBenchOf : benchOf;
+      openBench((await api.createBench(wanted(design, evaluation.title, evaluation.metrics))).id);
       setPage("bench");
     } catch (error) {
       showError(error);
@@ -59,7 +65,6 @@ export function Designer() {
     }
   };
 
-  const device = catalogue?.devices.find((d) => d.id === state.id);
   if (!catalogue || !device)
     return <EmptyState title="Loading the devices">They come from the server's catalogue.</EmptyState>;
   return (
@@ -88,7 +93,7 @@ export function Designer() {
             size="xs"
             variant="default"
             leftSection={<IconDice5 size={16} />}
-            disabled={catalogued(device, "geometry.beam_length_um") === undefined}
+            disabled={isGyroscope(device) || catalogued(device, "geometry.beam_length_um") === undefined}
             title="A device as the process might make it; the same number gives the same device"
             onClick={draw}
           >
@@ -106,7 +111,18 @@ export function Designer() {
         </div>
       </header>
       <DesignerControls catalogue={catalogue} device={device} state={state} onChange={setState} />
-      {evaluation && bode && drawing ? (
+      {evaluation && "gyro.axis_deg" in evaluation.metrics ? (
+        <>
+          <section className={styles.drawing} aria-label="Drawing">
+            <AxesView metrics={evaluation.metrics} title={evaluation.title} />
+          </section>
+          <div className={styles.results}>
+            <section className={styles.figures} aria-label="Figures">
+              <FigureGrid figures={evaluation.figures.filter(isOfGyroscope)} original={original?.figures} drawn />
+            </section>
+          </div>
+        </>
+      ) : evaluation && bode && drawing ? (
         <>
           <section className={styles.drawing} aria-label="Drawing">
             <DeviceView

@@ -6,9 +6,10 @@ import { type DesignState, designDocument } from "./design";
 
 interface Worked {
   evaluation: Evaluation;
-  bode: Bode;
+  /** None of a gyroscope, which is no one displacement over one voltage. */
+  bode?: Bode;
   /** The drawing that the device was drawn from by the process; the device itself unless it was. */
-  drawing: Bode;
+  drawing?: Bode;
 }
 
 const SPAN = 10;
@@ -37,6 +38,11 @@ export function useDesign(state: DesignState) {
         asked = wanted.current;
         try {
           const evaluation = await api.evaluate(asked);
+          if ("gyro.split_hz" in evaluation.metrics) {
+            setWorked({ evaluation });
+            setRefusal(undefined);
+            continue;
+          }
           const f0 = evaluation.metrics.f0_hz;
           const over = { start_hz: f0 / SPAN, stop_hz: f0 * SPAN, points: 240, seed: 1 };
           const bode = await api.bode({ ...asked, ...over });

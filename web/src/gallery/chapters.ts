@@ -13,8 +13,9 @@ export interface GalleryFilter {
 
 export const EVERYTHING: GalleryFilter = { chapter: "all", verdict: "all", words: "" };
 
-/** The chapter a scenario belongs to, from its id: "ch3-..." is "3", "appA-..." is "A"; anything else is a live bench. */
+/** The chapter a scenario belongs to, from its id: "ch3-..." is "3", "appA-..." is "A", gyroscopes go with chapter 6; anything else is a live bench. */
 export function chapterOf(id: string): string {
+  if (id.startsWith("gyro-")) return "6";
   return /^(?:ch(\d+)|app([A-Z]))-/.exec(id)?.slice(1).find(Boolean) ?? "live";
 }
 

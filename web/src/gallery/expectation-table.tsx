@@ -1,6 +1,6 @@
 import { useState } from "react";
 import type { GalleryCard } from "../api/types";
-import { formatSi } from "../ui/format";
+import { formatFigure } from "../ui/format";
 import { metricName } from "../ui/metric-name";
 import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
@@ -47,7 +47,9 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
               <td>{entry.published?.replaceAll(" %", "\u00a0%") || "–"}</td>
               <td className={styles.expected}>{typeset(entry.expected)}</td>
               <td data-ok={entry.ok}>
-                {entry.measured === null || entry.measured === undefined ? "–" : formatSi(entry.measured, "")}
+                {entry.measured === null || entry.measured === undefined
+                  ? "–"
+                  : formatFigure(entry.metric, entry.measured)}
                 {entry.ok === false && " ✗"}
               </td>
             </tr>

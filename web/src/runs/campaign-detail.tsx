@@ -5,6 +5,7 @@ import type { PointTally, SweepRun } from "../api/types";
 import { useAnswer } from "../api/use-answer";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
+import { formatCount, formatNumber } from "../ui/format";
 import { LineChart } from "../ui/line-chart";
 import { metricTitle } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
@@ -33,7 +34,7 @@ export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
       <header>
         <h2>{sweep.title || `Campaign ${sweep.name}`}</h2>
         <small>
-          {sweep.done} of {sweep.runs} runs · {sweep.state}
+          {formatNumber(sweep.done ?? 0, 0)} of {formatCount(sweep.runs, "run")} · {sweep.state}
           {sweep.error && `: ${String(sweep.error.message)}`}
         </small>
       </header>

@@ -2,7 +2,7 @@ import { NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import type { PointTally } from "../api/types";
 import { Confusion } from "../panels/scoreboard/confusion";
-import { formatCount, formatSi } from "../ui/format";
+import { formatCount, formatShare } from "../ui/format";
 import { LineChart } from "../ui/line-chart";
 import { delayLine, pointName } from "./points";
 import styles from "./runs.module.css";
@@ -53,7 +53,7 @@ export function DiagnosisCharts({ points }: { points: PointTally[] }) {
             tally.roc
               ? [
                   {
-                    name: `${name} (area ${formatSi(tally.roc.area, "")})`,
+                    name: `${name} (area ${formatShare(tally.roc.area)})`,
                     x: tally.roc.false_alarm,
                     y: tally.roc.detection,
                   },

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { campaignOf, newDraft, parseValue, parseValues, pathsOf, pointCount, runOf } from "./draft";
+import { campaignOf, newDraft, parseValue, parseValues, pathsOf, pathTitle, pointCount, runOf } from "./draft";
 
 it("reads numbers, truth, lists and words", () => {
   expect(["0.3", " −2e-3 ", "true", "[1, 2]", "mrac"].map(parseValue)).toEqual([0.3, -0.002, true, [1, 2], "mrac"]);
@@ -59,4 +59,10 @@ it("writes a hypercube with its ranges", () => {
 it("offers the paths of single values of the bench", () => {
   const document = { id: "x", title: "t", samples: 9, device: { id: "ch3", geometry: { fingers: 9 } }, events: [{}] };
   expect(pathsOf(document)).toEqual(["samples", "device.id", "device.geometry.fingers"]);
+});
+
+it("says what a path is", () => {
+  expect(["sensor.noise_um", "environment.pressure_pa", "diagnosers.kalman.forgetting", "seed"].map(pathTitle)).toEqual(
+    ["noise, µm · sensor", "pressure, Pa · environment", "forgetting · diagnosers kalman", "seed"],
+  );
 });

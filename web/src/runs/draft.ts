@@ -1,4 +1,5 @@
 import type { Document } from "../api/types";
+import { metricName, metricTitle } from "../ui/metric-name";
 import { roundTo } from "../ui/unit-scale";
 
 /** A value at a dotted path of the scenario, as typed; one value or several. */
@@ -131,6 +132,13 @@ export function pathsOf(document: unknown, prefix = ""): string[] {
   return Object.entries(document)
     .filter(([key, value]) => prefix || (!HEAD.includes(key) && !Array.isArray(value)))
     .flatMap(([key, value]) => pathsOf(value, prefix ? `${prefix}.${key}` : key));
+}
+
+/** A path in words: "sensor.noise_um" reads "noise, µm · sensor". */
+export function pathTitle(path: string): string {
+  const [last = "", ...outer] = path.split(".").reverse();
+  const of = outer.reverse().map(metricName).join(" ");
+  return of ? `${metricTitle(last)} · ${of}` : metricTitle(last);
 }
 
 const HEAD = ["schema", "id", "title", "source", "summary", "claim", "verdict", "metrics"];

@@ -3,6 +3,7 @@ import { IconPlayerStopFilled } from "@tabler/icons-react";
 import { api } from "../api/api";
 import type { Run, SweepRun } from "../api/types";
 import { showError } from "../app/send";
+import { formatCount, formatNumber } from "../ui/format";
 import styles from "./runs.module.css";
 import type { Chosen } from "./use-chosen";
 
@@ -30,7 +31,7 @@ export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[]
         run,
         id: run.id,
         title: run.title || run.scenario_id,
-        about: `${run.scenario_id} · ${run.seeds.length > 1 ? `${run.seeds.length} seeds` : `seed ${run.seeds[0]}`}`,
+        about: `${run.scenario_id} · ${run.seeds.length > 1 ? formatCount(run.seeds.length, "seed") : `seed ${run.seeds[0]}`}`,
         state: run.state,
         created: run.created,
         progress: run.progress,
@@ -43,7 +44,7 @@ export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[]
         sweep,
         id: sweep.id,
         title: sweep.title || `Campaign ${sweep.name}`,
-        about: `${sweep.done} of ${sweep.runs} runs`,
+        about: `${formatNumber(sweep.done ?? 0, 0)} of ${formatCount(sweep.runs, "run")}`,
         state: sweep.state,
         created: sweep.created,
         progress: sweep.runs ? (sweep.done ?? 0) / sweep.runs : 0,

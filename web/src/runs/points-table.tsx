@@ -1,6 +1,6 @@
 import { useState } from "react";
 import type { PointTally } from "../api/types";
-import { formatCount, formatNumber, formatSi } from "../ui/format";
+import { formatCount, formatFigure, formatNumber, formatSi } from "../ui/format";
 import { metricName } from "../ui/metric-name";
 import { labelText } from "./points";
 import styles from "./runs.module.css";
@@ -37,7 +37,7 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
         of: (p) => p.metrics?.[metric]?.mean,
         say: (p) => {
           const found = p.metrics?.[metric];
-          return found ? `${formatSi(found.mean, "")} ± ${formatSi(found.std, "", 2)}` : "–";
+          return found ? `${formatFigure(metric, found.mean)} ± ${formatSi(found.std, "", 2)}` : "–";
         },
       }),
     ),

@@ -8,7 +8,8 @@ import { setPage } from "../app/view-store";
 import { ExpectationTable } from "../gallery/expectation-table";
 import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
-import { formatCount, formatPercent, formatShort, formatSi } from "../ui/format";
+import { formatCount, formatFigure, formatPercent, formatShort, formatSi } from "../ui/format";
+import { metricTitle } from "../ui/metric-name";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import styles from "./runs.module.css";
 
@@ -108,8 +109,10 @@ export function RunDetail({ run }: { run: Run }) {
         <tbody>
           {Object.entries(summary.metrics).map(([name, value]) => (
             <tr key={name}>
-              <th scope="row">{name}</th>
-              <td>{formatSi(value, "", 6)}</td>
+              <th scope="row" title={name}>
+                {metricTitle(name)}
+              </th>
+              <td>{formatFigure(name, value, 6)}</td>
               {summary.metrics_std && <td>{formatSi(summary.metrics_std[name] ?? 0, "", 3)}</td>}
             </tr>
           ))}

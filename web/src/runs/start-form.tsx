@@ -5,6 +5,7 @@ import { api } from "../api/api";
 import { ApiError } from "../api/api-error";
 import type { ApiErrorBody, ScenarioSummary } from "../api/types";
 import { showError } from "../app/send";
+import { formatCount } from "../ui/format";
 import { campaignOf, type Draft, EMPTY_RANGE, newDraft, pathsOf, pointCount, runOf } from "./draft";
 import styles from "./runs.module.css";
 import type { Chosen } from "./use-chosen";
@@ -111,6 +112,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           {draft.vary === "hypercube" && <Hypercube draft={draft} paths={paths} set={set} />}
           <NumberInput
             size="xs"
+            allowDecimal={false}
             label="Devices drawn from the process"
             description="0: the scenario's own. Needs a device with a drawing, such as lcr-350."
             min={0}
@@ -123,6 +125,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
       <div className={styles.pair}>
         <NumberInput
           size="xs"
+          allowDecimal={false}
           label="First seed"
           min={0}
           value={draft.firstSeed}
@@ -130,6 +133,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         />
         <NumberInput
           size="xs"
+          allowDecimal={false}
           label="Seeds"
           min={1}
           max={isRun ? 200 : 100_000}
@@ -144,11 +148,12 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         </p>
       )}
       <Button type="submit" size="sm" loading={busy} leftSection={<IconPlayerTrackNext size={17} />}>
-        {isRun ? `Run ${draft.seeds > 1 ? `${draft.seeds} seeds` : ""}` : `Start ${total} run${total === 1 ? "" : "s"}`}
+        {isRun
+          ? `Run ${draft.seeds > 1 ? formatCount(draft.seeds, "seed") : ""}`
+          : `Start ${formatCount(total, "run")}`}
       </Button>
       <p className={styles.note}>
-        {!isRun &&
-          `${points} point${points === 1 ? "" : "s"} with ${draft.seeds} seed${draft.seeds === 1 ? "" : "s"} each. `}
+        {!isRun && `${formatCount(points, "point")} with ${formatCount(draft.seeds, "seed")} each. `}
         Runs are headless, at lower priority than the live benches; what has been run before is not run again.
       </p>
     </form>
@@ -194,6 +199,7 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
       <div className={styles.pair}>
         <NumberInput
           size="xs"
+          allowDecimal={false}
           label="Points"
           min={1}
           max={20000}
@@ -202,6 +208,7 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
         />
         <NumberInput
           size="xs"
+          allowDecimal={false}
           label="Seed of the points"
           min={0}
           value={draft.hypercubeSeed}

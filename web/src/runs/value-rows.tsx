@@ -2,7 +2,7 @@ import { ActionIcon, Autocomplete, Button, TextInput } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import type { Row } from "./draft";
-import { EMPTY_ROW } from "./draft";
+import { EMPTY_ROW, pathTitle } from "./draft";
 import styles from "./runs.module.css";
 
 interface ValueRowsProps {
@@ -66,6 +66,13 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
               placeholder="sensor.noise_um"
               data={paths}
               limit={12}
+              comboboxProps={{ width: 280, position: "bottom-start" }}
+              renderOption={({ option }) => (
+                <span className={styles.path}>
+                  {option.value}
+                  <small>{pathTitle(option.value)}</small>
+                </span>
+              )}
               value={row.path}
               onChange={(path) => change(at, { ...row, path })}
             />

@@ -126,7 +126,7 @@ describe("StreamClient", () => {
   it("resolves a command with its tick, rejects a refusal in the server's words", async () => {
     last().accept();
     const done = client.command({ kind: "pause" });
-    const refused = client.command({ kind: "heal", faults: ["x"] });
+    const refused = client.command({ heal: ["x"] });
     last().say({ type: "reply", id: "c1", ok: true, tick: 42 });
     last().say({
       type: "reply",

@@ -56,7 +56,8 @@ export const veil = {
   },
 };
 
-const tells = (event: LogEntry): boolean => TELLING.includes(event.kind) || event.command?.kind === "inject";
+const tells = ({ kind, command }: LogEntry): boolean =>
+  TELLING.includes(kind) || Boolean(command && "fault" in command);
 
 const harmlessOf = new WeakMap<Signal[], Signal[]>();
 

@@ -11,14 +11,15 @@ export const FIELD = { left: 44, bottom: 34, right: 8, top: 8 };
 /** Growth, 1/time, that counts as none. */
 export const STILL = 1e-7;
 
-const UNSTABLE = { dark: [255, 107, 96], light: [196, 38, 29] };
-const STABLE = { dark: [31, 120, 90], light: [120, 190, 160] };
+/** Orange against blue, which every eye tells apart. */
+const UNSTABLE = { dark: [232, 112, 58], light: [200, 78, 0] };
+const STABLE = { dark: [58, 124, 165], light: [86, 160, 210] };
 
 /** On white, as a legend has them. */
 export const GROWS = `rgb(${UNSTABLE.light.join(" ")})`;
 export const SETTLES = `rgb(${STABLE.light.join(" ")} / 0.6)`;
 
-/** Frequency to the right, gain upward: red where something grows, the deeper the faster; framed, the titles of the axes stand outside. */
+/** Frequency to the right, gain upward: orange where something grows, the deeper the faster; framed, the titles of the axes stand outside. */
 export function paintMap(
   ctx: Pen,
   { frequency, gain, growth, critical_gain_constant: critical }: InstabilityMap,

@@ -1,9 +1,10 @@
+import { EquationIndex } from "./equation-index";
 import { Excitation } from "./excitation";
 import { Instability } from "./instability";
 import { PositiveReal } from "./positive-real";
 import styles from "./theory.module.css";
 
-/** What can be said of a system before anything is run: appendices A and B. */
+/** What can be said of a system before anything is run: appendices A and B, and every equation with its errata. */
 export function Theory() {
   return (
     <main className={styles.page}>
@@ -15,6 +16,7 @@ export function Theory() {
         <Excitation />
         <Instability />
       </div>
+      <EquationIndex />
     </main>
   );
 }

@@ -4,6 +4,7 @@ import {
   formatClock,
   formatCount,
   formatEntry,
+  formatFigure,
   formatIn,
   formatMoment,
   formatNumber,
@@ -34,6 +35,18 @@ it("has the units that Python has, and writes each as itself", () => {
   expect(Object.keys(UNITS).sort()).toEqual(Object.keys(cases.units).sort());
   for (const [unit, text] of Object.entries(cases.units)) expect(formatShort(1, unit)).toBe(text);
 });
+
+it.each(cases.percent as [number, number, string][])("writes the share %s in %s decimals as %s", (...one) => {
+  const [share, decimals, text] = one;
+  expect(formatPercent(share, decimals)).toBe(text);
+});
+
+it.each(cases.figure as [string, number, number, string][])("writes %s of %s in %s digits as %s", (...one) => {
+  const [metric, value, digits, text] = one;
+  expect(formatFigure(metric, value, digits)).toBe(text);
+});
+
+it.each(Object.entries(cases.text))("writes the unit %s as %s", (unit, text) => expect(unitText(unit)).toBe(text));
 
 it.each(cases.ticks as [number[], string[]][])("labels ticks as Python does, %s", (ticks, texts) =>
   expect(tickLabels(ticks)).toEqual(texts));
@@ -146,6 +159,22 @@ it("goes into an equation", () => {
   expect([formatSi(-2.5e-7, ""), formatNumber(123456, 0)].map(inTex)).toEqual(["-250.0\\cdot10^{-9}", "123\\,456"]);
 });
 
-it("writes units as people do", () => {
-  expect(["um/ms", "uN", "1", "um^2", "N s/m"].map(unitText)).toEqual(["µm/ms", "µN", "", "µm²", "N·s/m"]);
+it("says 0 and 100 % of nothing else, however close", () => {
+  const wrong: string[] = [];
+  for (const value of values(1000)) {
+    const share = Math.abs(value) < 1 ? Math.abs(value) : 1 - 1 / (1 + Math.abs(value));
+    if (share === 1) continue;
+    for (const decimals of [0, 1, 2]) {
+      const text = formatPercent(share, decimals);
+      const [, bound, digits] = /^([<>]\u00a0)?([\d.]+)\u00a0%$/.exec(text) ?? [];
+      const shown = Number(digits);
+      const holds = bound?.startsWith("<")
+        ? share * 100 < shown
+        : bound
+          ? share * 100 > shown
+          : Math.abs(shown - share * 100) <= 0.5001 * 10 ** -decimals;
+      if (!(shown > 0 && shown < 100 && holds)) wrong.push(`${share} as ${text}`);
+    }
+  }
+  expect(wrong).toEqual([]);
 });

@@ -46,9 +46,33 @@ export function formatIn(value: number, unit: string, decimals: number): string 
   return Number.isFinite(value) ? withUnit(formatNumber(value, decimals), unitText(unit)) : NOTHING;
 }
 
-/** A share as a percentage. */
+/** A share as a percentage; one close to 0 or 100 % keeps the digits that tell it from them. */
 export function formatPercent(share: number, decimals = 1): string {
-  return formatIn(share * 100, "%", decimals);
+  return formatPart(share * 100, 100, "%", decimals);
+}
+
+/** A share as a part of one, told from 0 and 1 in the same way. */
+export function formatShare(share: number, decimals = 4): string {
+  return formatPart(share, 1, "", decimals);
+}
+
+/** A measured figure by the name of its metric: what is whole, such as a count, is written whole. */
+export function formatFigure(metric: string, value: number, digits = 4): string {
+  if (metric.endsWith("_fraction")) return formatShare(value, digits);
+  return Number.isInteger(value) ? formatNumber(value, 0) : formatSi(value, "", digits);
+}
+
+/** A part of a whole; one that would read as none or all of it gets up to two more decimals, then a bound. */
+export function formatPart(part: number, whole: number, unit: string, decimals: number): string {
+  const ends = [0, whole];
+  const most = decimals + 2;
+  for (let kept = decimals; kept <= most; kept += 1)
+    if (ends.includes(part) || !ends.includes(Number(part.toFixed(kept)))) return formatIn(part, unit, kept);
+  if (part < 0 || part > whole || Number.isNaN(part)) return formatIn(part, unit, decimals);
+  const least = 10 ** -most;
+  return part < whole / 2
+    ? `<${SPACE}${formatIn(least, unit, most)}`
+    : `>${SPACE}${formatIn(whole - least, unit, most)}`;
 }
 
 /** A change, with its sign. */

@@ -10,6 +10,8 @@ it("says a metric in words and keeps whose it is", () => {
 
 it("titles an axis with the unit its name ends in", () => {
   expect(metricTitle("noise_um")).toBe("noise, µm");
+  expect(metricTitle("device.force_n_per_v")).toBe("force, N/V");
+  expect(metricTitle("integral_v_um_ms")).toBe("integral, V/(µm·ms)");
   expect(metricTitle("diagnosis.kalman.mean_delay_samples")).toBe("kalman mean delay, samples");
   expect(metricTitle("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
 });

@@ -1,16 +1,21 @@
+import palette from "../../../scenarios/report/palette.json";
+
 export type Scheme = "dark" | "light";
 
 /**
  * Okabe and Ito's colours in the order traces take them; on white the pale ones are darkened to stay visible.
- * Slot 0 is the neutral one: what should be.
+ * Slot 0 is the neutral one: what should be. Reports have the same.
  */
-export const TRACE_COLOURS: Record<Scheme, readonly string[]> = {
-  dark: ["#dfe4ea", "#56b4e9", "#e69f00", "#1fb88f", "#cc79a7", "#e8703a", "#f0e442", "#4a90e2"],
-  light: ["#2b3036", "#0072b2", "#b97900", "#00805c", "#b04f86", "#c84e00", "#7d7300", "#2f86c1"],
-};
+export const TRACE_COLOURS: Record<Scheme, readonly string[]> = palette.colours;
 
 /** Dashes in device-independent pixels; the first is solid. */
-export const DASHES: readonly (readonly number[])[] = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [12, 3, 2, 3, 2, 3]];
+export const DASHES: readonly (readonly number[])[] = palette.dashes;
+
+/** Slots of hypotheses, in their order. */
+export const HYPOTHESES: readonly number[] = palette.hypotheses;
+
+/** Slot and dash of the signals everybody looks at: colours that can be remembered. */
+export const SIGNALS: Partial<Record<string, readonly number[]>> = palette.signals;
 
 /** Canvas colours that CSS cannot reach; the rest are tokens in theme.css. */
 export const CANVAS: Record<

@@ -25,8 +25,13 @@ it("gives neighbouring signals different colours and dashes", () => {
 it("gives everything of one hypothesis its colour", () => {
   expect(style("kalman.probability.m+5")).toEqual(hypothesisStyle(1));
   expect(style("kalman.residual.m+5").slot).toBe(hypothesisStyle(1).slot);
+  expect(style("bank.residual_y.m+5").slot).toBe(hypothesisStyle(1).slot);
 });
 
 it("keeps the first eight hypotheses apart by colour alone", () => {
   expect(new Set(Array.from({ length: 8 }, (_, i) => hypothesisStyle(i).slot)).size).toBe(8);
+});
+
+it("gives the tenth hypothesis the colour of the second and a dash, as reports do", () => {
+  expect(hypothesisStyle(9)).toEqual({ slot: hypothesisStyle(1).slot, dash: 1 });
 });

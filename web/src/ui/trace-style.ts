@@ -1,4 +1,4 @@
-import { DASHES, type Scheme, TRACE_COLOURS } from "./palette";
+import { DASHES, HYPOTHESES, type Scheme, SIGNALS, TRACE_COLOURS } from "./palette";
 
 export interface TraceStyle {
   /** Slot in `TRACE_COLOURS`. */
@@ -7,17 +7,7 @@ export interface TraceStyle {
   dash: number;
 }
 
-/** The signals everybody looks at keep a colour that can be remembered. */
-const KNOWN: Record<string, TraceStyle> = {
-  "model.displacement": { slot: 0, dash: 1 },
-  "plant.displacement": { slot: 1, dash: 0 },
-  "sensor.displacement": { slot: 3, dash: 2 },
-  "reference.voltage": { slot: 2, dash: 0 },
-  "drive.voltage": { slot: 5, dash: 4 },
-  "plant.velocity": { slot: 4, dash: 0 },
-};
-
-const BANKS = /^[^.]+\.(?:probability|residual|log_likelihood|likelihood)\.(.+)$/;
+const BANKS = /^[^.]+\.(?:probability|residual(?:_[a-z]+)?|log_likelihood|likelihood)\.(.+)$/;
 
 /**
  * Colour and dash of a signal: the same in every panel, because it depends on the bench alone.
@@ -25,19 +15,19 @@ const BANKS = /^[^.]+\.(?:probability|residual|log_likelihood|likelihood)\.(.+)$
  * Signals of a hypothesis share the hypothesis' colour; the rest take slots in the order the bench lists them.
  */
 export function traceStyle(name: string, signals: readonly string[], hypotheses: readonly string[]): TraceStyle {
-  const known = KNOWN[name];
-  if (known) return known;
+  const known = SIGNALS[name];
+  if (known) return { slot: known[0], dash: known[1] };
   const label = BANKS.exec(name)?.[1];
   const hypothesis = label === undefined ? -1 : hypotheses.indexOf(label);
   if (hypothesis >= 0) return hypothesisStyle(hypothesis);
-  const at = Math.max(0, signals.filter((s) => !KNOWN[s] && !BANKS.test(s)).indexOf(name));
+  const at = Math.max(0, signals.filter((s) => !SIGNALS[s] && !BANKS.test(s)).indexOf(name));
   const slots = TRACE_COLOURS.dark.length;
   return { slot: 1 + (at % (slots - 1)), dash: (at + Math.floor(at / (slots - 1))) % DASHES.length };
 }
 
 export function hypothesisStyle(index: number): TraceStyle {
-  const order = [3, 2, 5, 1, 4, 6, 7, 0];
-  return { slot: order[index % order.length], dash: Math.floor(index / order.length) % DASHES.length };
+  const round = Math.floor(index / HYPOTHESES.length);
+  return { slot: HYPOTHESES[index % HYPOTHESES.length], dash: round % DASHES.length };
 }
 
 export function traceColour(style: TraceStyle, scheme: Scheme): string {

@@ -113,6 +113,8 @@ const BARE = ["", "1", "mixed"];
 export function unitText(unit: string): string {
   if (BARE.includes(unit)) return "";
   return unit
+    .replaceAll("rt h", "√h")
+    .replaceAll("rtHz", "√Hz")
     .replace(/\bu(?=[A-Za-z])/g, "µ")
     .replace(/[* ]/g, "·")
     .replaceAll("^2", "²")

@@ -1,34 +1,51 @@
 import { Select } from "@mantine/core";
+import { useMediaQuery } from "@mantine/hooks";
 import { useRef } from "react";
+import { useShallow } from "zustand/react/shallow";
+import { controllersOf } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
+import { ControllerWords } from "../../panels/controllers/controller-words";
+import { slotTitle } from "../../panels/controllers/slots";
 import { useBench } from "../../stream/bench-store";
 import { actions } from "../actions";
 
-/** Which controller drives the device; the others run in its shadow, so a change is bumpless. */
+/**
+ * Which controller drives the device, in each slot; the others run in their shadow, so a change is bumpless.
+ *
+ * A narrow page has room for that of the last slot; the panel of controllers has all.
+ */
 export function ControllerSelect() {
-  const active = useBench((s) => s.bench?.controller);
+  const slots = useBench(useShallow((s) => s.bench?.slots));
+  const wide = useMediaQuery("(min-width: 1560px)", undefined, { getInitialValueInEffect: false });
+  const all = Object.entries(slots ?? { "": undefined });
+  const active = wide ? all : all.slice(-1);
+  return active.map(([slot, name]) => <SlotSelect key={slot} slot={slot} active={name} />);
+}
+
+function SlotSelect({ slot, active }: { slot: string; active: string | undefined }) {
   const controllers = useBench((s) => s.bench?.controllers);
   const replay = useBench((s) => Boolean(s.bench?.replay_of));
   const closed = useBench((s) => s.connection.phase === "closed");
   const input = useRef<HTMLInputElement>(null);
-  const { block } = useCatalog();
+  const { blocks } = useCatalog();
+  const laws = controllersOf(slot, controllers ?? [], blocks);
   return (
     <Select
       ref={input}
       size="sm"
-      w={190}
-      flex="none"
-      aria-label="Controller"
+      miw={92}
+      flex="0 1 190px"
+      aria-label={slotTitle(slot)}
+      title={slotTitle(slot)}
       allowDeselect={false}
       value={active ?? null}
       disabled={!controllers || replay || closed}
-      data={(controllers ?? []).map((name) => ({
-        value: name,
-        label: block("control", name)?.title ?? name.replaceAll("_", " "),
-      }))}
+      data={laws.map(({ name, title }) => ({ value: name, label: title }))}
+      renderOption={({ option }) => <ControllerWords law={laws.find((b) => b.name === option.value)} />}
       onChange={(name) => name && name !== active && actions.controller(name)}
       onOptionSubmit={() => input.current?.blur()} // else the list keeps the page's keys
-      comboboxProps={{ shadow: "md", width: 300, position: "bottom-start" }}
+      maxDropdownHeight={420}
+      comboboxProps={{ shadow: "md", width: 340, position: "bottom-start" }}
     />
   );
 }

@@ -16,6 +16,7 @@ export function RunControls() {
   const closed = useBench((s) => s.connection.phase === "closed");
   const running = useBench((s) => s.bench?.state === "running") && !closed;
   const stuck = useBench((s) => s.bench?.state === "tripped") || closed;
+  const period = useBench((s) => s.bench?.drive_period_ticks ?? null);
   return (
     <div className={styles.run}>
       <Tooltip label={running ? "Pause (space)" : "Run (space)"}>
@@ -34,7 +35,12 @@ export function RunControls() {
       <Small label="One tick ( . )" name="Step one tick" onClick={actions.stepTick} disabled={stuck}>
         <IconPlayerSkipForward size={18} />
       </Small>
-      <Small label="One drive period ( , )" name="Step one period" onClick={actions.stepPeriod} disabled={stuck}>
+      <Small
+        label={period === null ? "The drive has no period of its own" : "One drive period ( , )"}
+        name="Step one period"
+        onClick={actions.stepPeriod}
+        disabled={stuck || period === null}
+      >
         <IconPlayerTrackNext size={18} />
       </Small>
       <Small label="Reset to the start (shift R)" name="Reset" onClick={actions.reset} disabled={closed}>

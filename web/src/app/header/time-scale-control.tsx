@@ -3,6 +3,7 @@ import { useState } from "react";
 import { useBench } from "../../stream/bench-store";
 import { send } from "../send";
 import {
+  againstRealTime,
   formatTimeScale,
   PRESETS,
   presetLabel,
@@ -23,6 +24,7 @@ export function TimeScaleControl() {
   const capped = useBench((s) => s.bench?.capped ?? false) && !closed;
   const running = useBench((s) => s.bench?.state === "running") && !closed;
   const [draft, setDraft] = useState<number | undefined>(undefined);
+  const wanted = draft === undefined ? target : sliderToTimeScale(draft);
   const shown = draft ?? timeScaleToSlider(target);
 
   return (
@@ -39,7 +41,7 @@ export function TimeScaleControl() {
       </Tooltip>
       <Popover width={400} position="bottom">
         <Popover.Target>
-          <button type="button" className={styles.target} title="Change the time scale">
+          <button type="button" className={styles.target} title={`${againstRealTime(target)}: change it`}>
             <span>{target === null ? "max" : formatTimeScale(target)}</span>
             <small data-capped={capped} data-idle={!running}>
               {capped && <b>CAPPED </b>}
@@ -50,8 +52,7 @@ export function TimeScaleControl() {
         <Popover.Dropdown>
           <Stack gap="sm">
             <Text size="sm">
-              Device time per second of yours:{" "}
-              <b>{formatTimeScale(draft === undefined ? target : sliderToTimeScale(draft))}</b>
+              Device time per second of yours: <b>{formatTimeScale(wanted)}</b>, {againstRealTime(wanted)}
             </Text>
             <Slider
               min={0}

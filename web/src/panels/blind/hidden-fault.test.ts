@@ -19,8 +19,8 @@ it("hides the same for the same seed, and each answer about equally often over m
 it("makes a hypothesis true by one fault for each factor", () => {
   expect(faultsOf({ name: "healthy" })).toEqual([]);
   expect(faultsOf({ name: "x", mass: 1.05, gain: 0.9 })).toEqual([
-    { kind: "inject", fault: "added_mass", severity: 0.05 },
-    { kind: "inject", fault: "drive_gain", severity: -0.1 },
+    { fault: "added_mass", severity: 0.05 },
+    { fault: "drive_gain", severity: -0.1 },
   ]);
 });
 

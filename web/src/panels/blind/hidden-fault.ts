@@ -25,7 +25,7 @@ export function faultsOf(hypothesis: Hypothesis): Command[] {
   return (Object.keys(FAULT_OF) as (keyof typeof FAULT_OF)[]).flatMap((factor): Command[] => {
     const severity = roundTo((hypothesis[factor] ?? 1) - 1, 10);
     if (severity === 0) return [];
-    return [{ kind: "inject", fault: FAULT_OF[factor], severity } as Command];
+    return [{ fault: FAULT_OF[factor], severity }];
   });
 }
 

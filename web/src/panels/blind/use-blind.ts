@@ -48,7 +48,7 @@ export async function hide(bench: string, seed: number, hypotheses: Hypothesis[]
   const names = hypotheses.map((h) => h.name);
   const { answer, delayTicks } = hiddenFault(seed, names, dtMs);
   const hypothesis = hypotheses.find((h) => h.name === answer);
-  if (!hypothesis || !(await send({ kind: "heal", faults: "all" }))) return;
+  if (!hypothesis || !(await send({ heal: "all" }))) return;
   jump.to("live");
   begin({ seed, bench, hypothesis, dueTick: stream.client.head.tick + delayTicks });
   await send({ kind: "start" });

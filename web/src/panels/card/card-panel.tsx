@@ -1,32 +1,27 @@
 import { Button, NativeSelect } from "@mantine/core";
-import { useMemo } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { Prose } from "../../ui/prose";
 import { Weaknesses } from "../../ui/weaknesses";
+import { KindChoice } from "../controllers/generator-form";
 import { BlockEquation } from "./block-equation";
 import styles from "./card.module.css";
-import { instances } from "./instances";
 import { LiveValues } from "./live-values";
 import { ParameterList } from "./parameter-list";
+import { useInstances } from "./use-instances";
+
+/** Families of what comes from outside: its kind is changed while the bench runs. */
+const GENERATORS = ["reference", "rate"];
 
 /** What was last clicked: what the block does, its equations and its parameters. */
 export function CardPanel() {
   const card = useView((s) => s.card);
   const parameters = useBench((s) => s.bench?.parameters);
   const controller = useBench((s) => s.bench?.controller);
-  const controllers = useBench((s) => s.bench?.controllers);
-  const diagnosers = useBench((s) => s.bench?.diagnosers);
+  const list = useInstances();
   const { blocks, block, failed, retry } = useCatalog();
-  const list = useMemo(
-    () =>
-      parameters && controller && controllers && diagnosers
-        ? instances({ parameters, controller, controllers, diagnosers })
-        : [],
-    [parameters, controller, controllers, diagnosers],
-  );
   const wanted = card === "controller" ? `controllers.${controller}` : card;
   const instance = list.find((i) => i.id === wanted) ?? list[0];
   if (!instance || !parameters)
@@ -62,7 +57,13 @@ export function CardPanel() {
             </div>
           )}
           <LiveValues key={`live ${instance.id} ${instance.name}`} instance={instance} />
-          <ParameterList key={instance.id} instance={instance} parameters={found.parameters} document={parameters} />
+          {GENERATORS.includes(instance.family) && <KindChoice instance={instance} />}
+          <ParameterList
+            key={`${instance.id} ${instance.name}`}
+            instance={instance}
+            parameters={found.parameters}
+            document={parameters}
+          />
         </>
       ) : (
         <EmptyState

@@ -7,17 +7,21 @@ import styles from "./card.module.css";
 export function EquationDetail({ equation }: { equation: Equation }) {
   return (
     <div className={styles.printed}>
-      <h3>As printed</h3>
-      <Printed text={equation.printed ?? ""} />
-      <h3>As it works</h3>
-      <Formula latex={equation.latex} />
+      <div>
+        <h3>As printed</h3>
+        <Printed text={equation.printed ?? ""} />
+      </div>
+      <div>
+        <h3>As it works</h3>
+        <Formula latex={equation.latex} />
+      </div>
       {equation.why && (
-        <>
+        <div>
           <h3>Why</h3>
           <p>
             <Prose text={equation.why} />
           </p>
-        </>
+        </div>
       )}
     </div>
   );

@@ -9,6 +9,8 @@ const parameters = {
 
 it("names each block on the bench and where its values are", () => {
   const list = instances({
+    axes: [],
+    slots: { "": "mrac" },
     parameters,
     controller: "mrac",
     controllers: ["open_loop", "mrac"],
@@ -26,7 +28,14 @@ it("reads values where commands put them, shadow sensors and the active controll
     sensor: { kind: "ideal", noise_um: 0.05 },
     sensors: { ideal: { noise_um: 0.07 } },
   };
-  const list = instances({ parameters: document, controller: "mrac", controllers: ["mrac"], diagnosers: {} });
+  const list = instances({
+    axes: [],
+    slots: { "": "mrac" },
+    parameters: document,
+    controller: "mrac",
+    controllers: ["mrac"],
+    diagnosers: {},
+  });
   const value = (id: string, name: string) => {
     const instance = list.find((i) => i.id === id);
     return instance && parameterValue(document, instance, name);
@@ -39,6 +48,8 @@ it("reads values where commands put them, shadow sensors and the active controll
 
 it("has cards for identifiers, and none for the diagnosers of twins", () => {
   const list = instances({
+    axes: [],
+    slots: { "": "pid" },
     parameters: { identifiers: { excitation: { kind: "excitation" } } },
     controller: "pid",
     controllers: ["pid"],
@@ -46,4 +57,28 @@ it("has cards for identifiers, and none for the diagnosers of twins", () => {
   });
   expect(list.find((i) => i.id === "identifiers.excitation")).toMatchObject({ family: "identify", name: "excitation" });
   expect(list.filter((i) => i.family === "diagnose").map((i) => i.id)).toEqual(["diagnosers.kalman"]);
+});
+
+it("has a rate, read-outs and a stage at each axis on a bench with axes, and no model", () => {
+  const list = instances({
+    axes: ["x", "y"],
+    slots: { drive: "drive_loop", sense: "whole_angle" },
+    parameters: { rate: { kind: "sine" }, readouts: { noise: { kind: "allan" } } },
+    controller: "whole_angle",
+    controllers: ["drive_loop", "forced_drive", "whole_angle"],
+    diagnosers: {},
+  });
+  expect(list.map((i) => `${i.id} ${i.family} ${i.name}`)).toEqual([
+    "rate rate sine",
+    "waveform reference constant",
+    "controllers.whole_angle control whole_angle",
+    "controllers.drive_loop control drive_loop",
+    "controllers.forced_drive control forced_drive",
+    "environment board environment",
+    "drive board axis_drive",
+    "plant plant gyroscope",
+    "sensor sense pick_off",
+    "readouts.noise readout allan",
+    "guard board axis_guard",
+  ]);
 });

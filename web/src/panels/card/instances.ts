@@ -28,11 +28,15 @@ export function parameterValue(document: Document, instance: Instance, parameter
 const ofTheBoard = (id: string) => !id.includes(":");
 
 /** Every block on a bench that has a card. */
-export function instances(bench: Pick<Bench, "parameters" | "controllers" | "controller" | "diagnosers">): Instance[] {
+export function instances(
+  bench: Pick<Bench, "axes" | "parameters" | "controllers" | "controller" | "diagnosers" | "slots">,
+): Instance[] {
   const { parameters } = bench;
   const text = (path: string, key: string, otherwise: string) => String(section(parameters, path)[key] ?? otherwise);
-  const controllers = [bench.controller, ...bench.controllers.filter((name) => name !== bench.controller)];
-  const sensor = text("sensor", "kind", "ideal");
+  const driving = Object.values(bench.slots).reverse();
+  const controllers = [...driving, ...bench.controllers.filter((name) => !driving.includes(name))];
+  const isFlat = bench.axes.length === 0;
+  const sensor = text("sensor", "kind", isFlat ? "ideal" : "pick_off");
   const single = (id: string, title: string, family: string, name: string): Instance => ({
     id,
     title,
@@ -42,14 +46,19 @@ export function instances(bench: Pick<Bench, "parameters" | "controllers" | "con
     also: [],
   });
   return [
-    single("reference", "Reference", "reference", text("reference", "kind", "sine")),
+    ...(isFlat
+      ? [single("reference", "Reference", "reference", text("reference", "kind", "sine"))]
+      : [
+          single("rate", "Angular rate", "rate", text("rate", "kind", "constant")),
+          single("waveform", "Waveform", "reference", text("waveform", "kind", "constant")),
+        ]),
     ...controllers.map((name) => ({
       ...single(`controllers.${name}`, "Controller", "control", name),
       also: name === bench.controller ? ["controller"] : [],
     })),
     single("environment", "Environment", "board", "environment"),
-    single("drive", "Drive", "board", "drive"),
-    single("plant", "Device", "plant", text("plant", "model", "linear")),
+    single("drive", "Drive", "board", isFlat ? "drive" : "axis_drive"),
+    single("plant", "Device", "plant", text("plant", "model", isFlat ? "linear" : "gyroscope")),
     { ...single("sensor", "Sensor", "sense", sensor), also: [`sensors.${sensor}`] },
     ...Object.entries((parameters.identifiers ?? {}) as Record<string, { kind?: string }>).map(([id, { kind = "" }]) =>
       single(`identifiers.${id}`, "Identifier", "identify", kind),
@@ -57,7 +66,10 @@ export function instances(bench: Pick<Bench, "parameters" | "controllers" | "con
     ...Object.keys(bench.diagnosers)
       .filter(ofTheBoard)
       .map((id) => single(`diagnosers.${id}`, "Diagnosis", "diagnose", text(`diagnosers.${id}`, "kind", "mmae"))),
-    single("model", "Reference model", "board", "model"),
-    single("guard", "Guard", "board", "guard"),
+    ...Object.entries((parameters.readouts ?? {}) as Record<string, { kind?: string }>).map(([id, { kind = "" }]) =>
+      single(`readouts.${id}`, "Read-out", "readout", kind),
+    ),
+    ...(isFlat ? [single("model", "Reference model", "board", "model")] : []),
+    single("guard", "Guard", "board", isFlat ? "guard" : "axis_guard"),
   ];
 }

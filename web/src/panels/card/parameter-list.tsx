@@ -5,6 +5,7 @@ import { send } from "../../app/send";
 import styles from "./card.module.css";
 import { type Instance, parameterValue } from "./instances";
 import { ParameterRow } from "./parameter-row";
+import { parameterTitle } from "./parameter-title";
 
 interface ParameterListProps {
   instance: Instance;
@@ -29,8 +30,8 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
         return [path, parameter && (current(parameter.name) ?? parameter.default)];
       }),
     );
-    const names = Object.keys(values).map((path) => path.split(".").at(-1)?.replaceAll("_", " "));
-    if (!(await send({ kind: "set", values }, `Set ${names.join(", ")}`))) return;
+    const named = parameters.filter((p) => `${instance.path}.${p.name}` in values).map(parameterTitle);
+    if (!(await send({ set: values }, `${named.join(", ")} set`))) return;
     setStaged({});
     setUndo(before);
   };

@@ -39,7 +39,7 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
       <div className={styles.entry}>
         {!isDefault && live && parameter.default !== null && type !== "list" && (
           <Tooltip
-            label={`Back to the default ${typeof parameter.default === "number" ? formatShort(parameter.default, parameter.unit, 6) : String(parameter.default)}`}
+            label={`Back to the default ${typeof parameter.default === "number" ? formatShort(parameter.default, parameter.unit, 6) : String(parameter.default).replaceAll("_", " ")}`}
           >
             <ActionIcon
               size={22}
@@ -66,7 +66,7 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
             aria-label={label}
             disabled={!live}
             value={String(value)}
-            data={parameter.choices ?? []}
+            data={(parameter.choices ?? []).map((choice) => ({ value: choice, label: choice.replaceAll("_", " ") }))}
             onChange={(e) => onChange(e.currentTarget.value)}
           />
         ) : typeof value === "number" || value === null || value === undefined ? (

@@ -6,5 +6,7 @@ it.each([
   ["noise um", "um", "Noise"],
   ["stiffness n m", "N/m", "Stiffness"],
   ["humidity pct", "%", "Humidity"],
+  ["deg per s", "deg/s", "Angular rate"],
   ["probability floor", "1", "Probability floor"],
-])("%s [%s] is %s", (label, unit, title) => expect(parameterTitle({ label, unit })).toBe(title));
+])("%s [%s] is %s", (label, unit, title) =>
+  expect(parameterTitle({ label, unit, meaning: "angular rate" })).toBe(title));

@@ -1,6 +1,7 @@
+import { hasAxes } from "../../api/fits";
 import { send } from "../../app/send";
 import { AIR } from "../../designer/design";
-import { ENVIRONMENT } from "../../designer/knobs";
+import { AROUND_A_PACKAGE, ENVIRONMENT } from "../../designer/knobs";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { Knob } from "../../ui/knob";
@@ -15,36 +16,42 @@ export function EnvironmentPanel() {
   const environment = useBench((s) => s.bench?.parameters.environment) as Record<string, number> | undefined;
   const faults = useBench((s) => s.bench?.faults);
   const id = useBench((s) => s.bench?.id);
+  const isFlat = useBench((s) => !hasAxes(s.bench));
   if (!id)
     return <EmptyState title="No bench yet">Air, friction, sensor and plant of the bench are set here.</EmptyState>;
 
   const friction = faults?.find((f) => f.name === "stiction")?.severity ?? 0;
   const rub = (value: number) =>
     value > 0
-      ? send({ kind: "inject", fault: "stiction", severity: value, profile: { kind: "step" } }, "Friction set")
-      : send({ kind: "heal", faults: ["stiction"] }, "Friction gone");
+      ? send({ fault: "stiction", severity: value, profile: { kind: "step" } }, "Friction set")
+      : send({ heal: ["stiction"] }, "Friction gone");
   return (
     <section className={styles.panel} aria-label="Environment">
-      <h2>Air</h2>
-      {ENVIRONMENT.map((knob) => (
+      <h2>{isFlat ? "Air" : "Around the package"}</h2>
+      {(isFlat ? ENVIRONMENT : AROUND_A_PACKAGE).map((knob) => (
         <Knob
           key={knob.path}
           {...knob}
           value={environment?.[knob.path] ?? AIR[knob.path]}
           original={AIR[knob.path]}
-          onChange={(value) =>
-            void send({ kind: "set", values: { [`environment.${knob.path}`]: value } }, `${knob.label} set`)
-          }
+          onChange={(value) => void send({ set: { [`environment.${knob.path}`]: value } }, `${knob.label} set`)}
         />
       ))}
-      <Knob
-        {...FRICTION}
-        value={friction}
-        original={0}
-        minimum={0}
-        note="The shuttle sticks while the net force is smaller: the fault stiction, as a slider."
-        onChange={(value) => void rub(value)}
-      />
+      {isFlat && (
+        <Knob
+          {...FRICTION}
+          value={friction}
+          original={0}
+          minimum={0}
+          note="The shuttle sticks while the net force is smaller: the fault stiction, as a slider."
+          onChange={(value) => void rub(value)}
+        />
+      )}
+      {!isFlat && (
+        <p className={styles.note}>
+          The device is sealed: air outside does not reach it. The fault Leak of the package raises the pressure inside.
+        </p>
+      )}
       <h2>Sensor</h2>
       <SensorChoice />
       <h2>Plant</h2>

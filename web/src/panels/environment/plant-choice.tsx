@@ -16,6 +16,7 @@ export function PlantChoice() {
   const model = useBench((s) =>
     String((s.bench?.parameters.plant as { model?: string } | undefined)?.model ?? "linear"),
   );
+  const axes = useBench((s) => s.bench?.axes.join());
   const dtMs = useBench((s) => s.bench?.dt_ms ?? 0);
   const visible = usePanelVisible();
   const { blocks, block } = useCatalog();
@@ -38,10 +39,12 @@ export function PlantChoice() {
       <Radio.Group
         aria-label="Plant"
         value={model}
-        onChange={(name) => void send({ kind: "set", values: { "plant.model": name } }, `Plant ${name}`)}
+        onChange={(name) =>
+          void send({ set: { "plant.model": name } }, `Plant: ${block("plant", name)?.title ?? name}`)
+        }
       >
         {blocks
-          .filter((b) => b.family === "plant")
+          .filter((b) => b.family === "plant" && b.axes?.join() === axes)
           .map((b) => {
             const cost = costs.find((c) => c.name === b.name);
             return (

@@ -1,5 +1,6 @@
 import { Button, NativeSelect, Switch } from "@mantine/core";
 import { useRef, useState } from "react";
+import { fits } from "../../api/fits";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
@@ -16,13 +17,14 @@ export const feeds = (sensor: BlockCard) => sensor.outputs.some((port) => port.n
 /** Which sensor feeds the controllers; the bypass is the ideal one, which sees the true displacement. */
 export function SensorChoice() {
   const parameters = useBench((s) => s.bench?.parameters);
+  const axes = useBench((s) => s.bench?.axes) ?? [];
   const { blocks } = useCatalog();
   const [last, setLast] = useState("capacitive");
   // What was chosen last counts until the board has answered: the next click is meant from there.
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const choice = useRef(0);
   const kind = wanted ?? String((parameters?.sensor as Document | undefined)?.kind ?? BYPASS);
-  const sensors = blocks.filter((b) => b.family === "sense");
+  const sensors = blocks.filter((b) => b.family === "sense" && fits(b, axes));
   const choices = sensors.filter(feeds);
   const chosen = sensors.find((b) => b.name === kind);
   const optical = sensors.filter((b) => !feeds(b));
@@ -33,7 +35,7 @@ export function SensorChoice() {
     const own = choice.current;
     if (kind !== BYPASS) setLast(kind);
     setWanted(name);
-    await send({ kind: "set", values: { "sensor.kind": name } }, `Sensor ${name.replaceAll("_", " ")}`);
+    await send({ set: { "sensor.kind": name } }, `Sensor: ${sensors.find((b) => b.name === name)?.title ?? name}`);
     if (own === choice.current) setWanted(undefined);
   };
   return (
@@ -47,15 +49,17 @@ export function SensorChoice() {
           data={choices.map((b) => ({ value: b.name, label: b.title }))}
           onChange={(event) => void use(event.currentTarget.value)}
         />
-        <Button
-          size="xs"
-          variant={kind === BYPASS ? "filled" : "default"}
-          aria-pressed={kind === BYPASS}
-          title="Feed the controllers with the true displacement"
-          onClick={() => void use(kind === BYPASS ? last : BYPASS)}
-        >
-          Bypass
-        </Button>
+        {sensors.some((b) => b.name === BYPASS) && (
+          <Button
+            size="xs"
+            variant={kind === BYPASS ? "filled" : "default"}
+            aria-pressed={kind === BYPASS}
+            title="Feed the controllers with the true displacement"
+            onClick={() => void use(kind === BYPASS ? last : BYPASS)}
+          >
+            Bypass
+          </Button>
+        )}
       </div>
       {chosen && (
         <>
@@ -79,7 +83,7 @@ export function SensorChoice() {
               checked={always(b.name)}
               onChange={(event) =>
                 void send(
-                  { kind: "set", values: { [`sensors.${b.name}.always`]: event.currentTarget.checked } },
+                  { set: { [`sensors.${b.name}.always`]: event.currentTarget.checked } },
                   `${b.title} ${event.currentTarget.checked ? "always runs" : "rests until needed"}`,
                 )
               }

@@ -1,10 +1,11 @@
 import { expect, it } from "vitest";
 import type { BlockCard } from "../../api/types";
-import { injectCommand, newDraft, ownParameters, refusals, scaled } from "./fault-draft";
+import { type FaultDraft, injectCommand, newDraft, ownParameters, refusals, scaled } from "./fault-draft";
+
+const scale = { percent: true, low: -0.5, high: 0.5, minimum: -0.95, maximum: 20, step: 1 };
 
 it("injects a step now by default", () => {
   expect(injectCommand("added_mass", newDraft(0.05))).toEqual({
-    kind: "inject",
     fault: "added_mass",
     severity: 0.05,
     profile: { kind: "step" },
@@ -14,13 +15,13 @@ it("injects a step now by default", () => {
 it("carries only what the chosen profile and moment need", () => {
   const draft = { ...newDraft(0.3), profile: "ramp" as const, moment: "at" as const, atMs: 40 };
   expect(injectCommand("damping", draft)).toEqual({
-    kind: "inject",
     fault: "damping",
     severity: 0.3,
     profile: { kind: "ramp", duration_ms: 5 },
     at_ms: 40,
   });
-  const blinking = { ...newDraft(0.3), profile: "intermittent" as const, moment: "when" as const };
+  const when = { signal: "plant.displacement", above: true, level: 2 };
+  const blinking = { ...newDraft(0.3), profile: "intermittent" as const, moment: "when" as const, when };
   expect(injectCommand("damping", blinking)).toMatchObject({
     profile: { kind: "intermittent", period_ms: 2, duty: 0.5 },
     when: "plant.displacement > 2",
@@ -36,17 +37,31 @@ it("says where and on which part, as far as that was chosen", () => {
 
 it("refuses a blank or a wrong number in words, where it is used", () => {
   const blank = { ...newDraft(0.05), durationMs: "", periodMs: 0, duty: "", atMs: "-" };
-  expect(refusals(blank)).toEqual({});
-  expect(refusals({ ...blank, profile: "ramp" })).toEqual({ durationMs: "Say over how many ms" });
-  expect(Object.keys(refusals({ ...blank, profile: "intermittent" }))).toEqual(["periodMs", "duty"]);
-  expect(refusals({ ...blank, moment: "at" })).toEqual({ atMs: "Say at how many ms" });
-  expect(refusals({ ...blank, severity: "", moment: "when", when: " " })).toEqual({
+  const refused = (draft: FaultDraft) => refusals(draft, scale, "1");
+  expect(refused(blank)).toEqual({});
+  expect(refused({ ...blank, profile: "ramp" })).toEqual({ durationMs: "Say over how many ms" });
+  expect(Object.keys(refused({ ...blank, profile: "intermittent" }))).toEqual(["periodMs", "duty"]);
+  expect(refused({ ...blank, moment: "at" })).toEqual({ atMs: "Say at how many ms" });
+  const when = { signal: "plant.displacement", above: true, level: "" };
+  expect(refused({ ...blank, severity: "", moment: "when", when })).toEqual({
     severity: "Say how much",
-    when: "Say on what condition",
+    when: "Say at what value",
   });
+  expect(refused({ ...blank, severity: 21 })).toEqual({ severity: "At most +2000\u00a0%" });
+  expect(refused({ ...blank, severity: -0.96 })).toEqual({ severity: "At least −95\u00a0%" });
 });
 
 it("changes the unit of a number and leaves what is none", () => {
   expect(scaled(7, 0.01)).toBe(0.07);
   expect(scaled("-", 100)).toBe("-");
+});
+
+it("shows on slider and box the number that is sent, whatever the step", () => {
+  const wrong: number[] = [];
+  for (let tenths = -950; tenths <= 20_000; tenths += 7) {
+    const entry = tenths / 10;
+    const sent = Number(scaled(entry, 0.01));
+    if (scaled(sent, 100) !== entry || String(sent).length > 7) wrong.push(entry);
+  }
+  expect(wrong).toEqual([]);
 });

@@ -1,5 +1,7 @@
 import type { BlockCard, Command, FaultProfile, Parameter } from "../../api/types";
 import { roundTo } from "../../ui/unit-scale";
+import { type Condition, conditionText } from "../condition/condition";
+import { type SeverityScale, severityText } from "./severity";
 
 /** A number, or what stands in a field that holds none. */
 export type Entry = number | string;
@@ -12,7 +14,7 @@ export interface FaultDraft {
   duty: Entry;
   moment: "now" | "at" | "when";
   atMs: Entry;
-  when: string;
+  when: Condition;
   /** What else the fault lets one choose, as far as it was chosen. */
   parameters: Record<string, unknown>;
 }
@@ -32,23 +34,29 @@ export function newDraft(severity: number): FaultDraft {
     duty: 0.5,
     moment: "now",
     atMs: 0,
-    when: "plant.displacement > 2",
+    when: { signal: "", above: true, level: 2 },
     parameters: {},
   };
 }
 
 /** What keeps the form from being sent, in words, by field; only fields that the choices use count. */
-export function refusals(draft: FaultDraft): Partial<Record<keyof FaultDraft, string>> {
+export function refusals(
+  draft: FaultDraft,
+  scale: SeverityScale,
+  unit: string,
+): Partial<Record<keyof FaultDraft, string>> {
   const { severity, profile, durationMs, periodMs, duty, moment, atMs, when } = draft;
   const found: Partial<Record<keyof FaultDraft, string>> = {};
   if (!isNumber(severity)) found.severity = "Say how much";
+  else if (severity < scale.minimum) found.severity = `At least ${severityText(scale.minimum, scale, unit)}`;
+  else if (severity > scale.maximum) found.severity = `At most ${severityText(scale.maximum, scale, unit)}`;
   if (profile === "ramp" && !(isNumber(durationMs) && durationMs > 0)) found.durationMs = "Say over how many ms";
   if (profile === "intermittent") {
     if (!(isNumber(periodMs) && periodMs > 0)) found.periodMs = "Say every how many ms";
     if (!(isNumber(duty) && duty > 0 && duty <= 1)) found.duty = "Say for how much of it";
   }
   if (moment === "at" && !(isNumber(atMs) && atMs >= 0)) found.atMs = "Say at how many ms";
-  if (moment === "when" && when.trim() === "") found.when = "Say on what condition";
+  if (moment === "when" && !isNumber(when.level)) found.when = "Say at what value";
   return found;
 }
 
@@ -66,9 +74,9 @@ export function injectCommand(fault: string, draft: FaultDraft): Command {
       : draft.profile === "intermittent"
         ? { kind: "intermittent", period_ms: Number(draft.periodMs), duty: Number(draft.duty) }
         : { kind: "step" };
-  const command: Command = { kind: "inject", fault, severity: Number(draft.severity), profile };
+  const command: Command = { fault, severity: Number(draft.severity), profile };
   if (Object.keys(draft.parameters).length > 0) command.parameters = draft.parameters;
   if (draft.moment === "at") return { ...command, at_ms: Number(draft.atMs) };
-  if (draft.moment === "when") return { ...command, when: draft.when };
+  if (draft.moment === "when") return { ...command, when: conditionText(draft.when) };
   return command;
 }

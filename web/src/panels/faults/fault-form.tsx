@@ -1,8 +1,9 @@
-import { Button, Group, NumberInput, SegmentedControl, Slider, Stack, TextInput } from "@mantine/core";
+import { Button, Group, NumberInput, SegmentedControl, Slider, Stack } from "@mantine/core";
 import type { BlockCard, Parameter } from "../../api/types";
 import { Formula } from "../../ui/formula";
 import { unitText } from "../../ui/unit-scale";
 import { ParameterRow } from "../card/parameter-row";
+import { ConditionFields } from "../condition/condition-fields";
 import { type Entry, type FaultDraft, ownParameters, refusals, scaled } from "./fault-draft";
 import styles from "./faults.module.css";
 import { draftSeverity, type SeverityScale, severityText } from "./severity";
@@ -20,10 +21,11 @@ interface FaultFormProps {
 /** How much, how it comes, and when. */
 export function FaultForm({ fault, parameter, scale, suggested, draft, onChange, onInject }: FaultFormProps) {
   const set = (part: Partial<FaultDraft>) => onChange({ ...draft, ...part });
-  const wrong = refusals(draft);
+  const wrong = refusals(draft, scale, parameter?.unit ?? "");
   const number = (key: "severity" | "durationMs" | "periodMs" | "duty" | "atMs", factor = 1) => ({
     value: scaled(draft[key], factor),
     error: wrong[key],
+    clampBehavior: "none" as const, // what is beyond the limits is refused in words
     onChange: (value: Entry) => set({ [key]: scaled(value, 1 / factor) }),
   });
   const own = ownParameters(fault);
@@ -42,17 +44,17 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             size="sm"
             min={scale.low * factor}
             max={scale.high * factor}
-            step={(scale.high - scale.low) * factor > 40 ? 1 : 0.1}
-            value={Number(draft.severity) * factor || 0}
+            step={scale.step}
+            value={Number(scaled(draft.severity, factor)) || 0}
             label={null}
             thumbLabel={`Severity of ${fault.title}`}
             marks={[scale.low, 0, suggested, scale.high]
               .filter((v, i, all) => all.indexOf(v) === i)
               .map((v) => ({
                 value: v * factor,
-                label: v === scale.low || v === scale.high ? severityText(v, scale, unit) : undefined,
+                label: v === scale.low || v === scale.high ? severityText(v, scale, parameter?.unit ?? "") : undefined,
               }))}
-            onChange={(value) => set({ severity: value / factor })}
+            onChange={(value) => set({ severity: scaled(value, 1 / factor) })}
             mb={18}
           />
           <NumberInput
@@ -60,8 +62,9 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             size="xs"
             aria-label={`Severity of ${fault.title}, exact`}
             suffix={` ${unit}`}
-            min={scale.minimum * factor}
-            max={scale.maximum * factor}
+            step={scale.step}
+            min={scaled(scale.minimum, factor) as number}
+            max={scaled(scale.maximum, factor) as number}
             {...number("severity", factor)}
           />
         </Group>
@@ -111,17 +114,18 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           <NumberInput size="xs" label="At device time" suffix=" ms" min={0} {...number("atMs")} />
         )}
         {draft.moment === "when" && (
-          <TextInput
-            size="xs"
-            label="When"
-            description="A signal, > or <, and a value"
-            value={draft.when}
-            error={wrong.when}
-            onChange={(e) => set({ when: e.currentTarget.value })}
-          />
+          <div className={styles.when}>
+            <ConditionFields
+              label="When"
+              condition={draft.when}
+              error={wrong.when}
+              onChange={(when) => set({ when })}
+            />
+          </div>
         )}
         <Button size="xs" onClick={onInject}>
-          {draft.moment === "now" ? "Inject" : "Let it wait for its moment"} {draftSeverity(draft, scale, unit)}
+          {draft.moment === "now" ? "Inject" : "Let it wait for its moment"}{" "}
+          {draftSeverity(draft, scale, parameter?.unit ?? "")}
         </Button>
       </Stack>
     </div>

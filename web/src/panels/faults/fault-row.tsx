@@ -22,12 +22,14 @@ interface FaultRowProps {
 export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
   const parameter = fault.parameters.find((p) => p.name === "severity");
   const suggested = fault.suggested || Number(parameter?.default) || 0.05;
-  const [draft, setDraft] = useState(() => newDraft(suggested));
+  const [changed, setDraft] = useState(() => newDraft(suggested));
+  const first = useBench((s) => s.bench?.signals[0]?.name) ?? "";
+  const draft = { ...changed, when: { ...changed.when, signal: changed.when.signal || first } };
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const scale = severityScale(parameter, suggested);
   const unit = parameter?.unit ?? "";
   const inject = () => {
-    if (Object.keys(refusals(draft)).length > 0) {
+    if (Object.keys(refusals(draft, scale, unit)).length > 0) {
       if (!open) onToggle(); // the form says what is missing
       return;
     }
@@ -53,7 +55,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
             <Button
               size="compact-sm"
               variant="default"
-              onClick={() => send({ kind: "heal", faults: [fault.name] }, `${fault.title} healed`)}
+              onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}
             >
               Heal
             </Button>

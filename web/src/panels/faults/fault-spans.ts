@@ -18,15 +18,15 @@ export function faultSpans(events: readonly LogEntry[], acting: readonly ActiveF
     open.delete(name);
   };
   for (const { kind, command, tick } of events) {
-    if (kind === "inject" && command) {
-      const name = String(command.fault);
+    if (kind === "inject" && command && "fault" in command) {
+      const { fault: name, severity } = command;
       close(name, tick);
-      const span = { name, severity: Number(command.severity), start: tick, end: undefined };
+      const span = { name, severity, start: tick, end: undefined };
       open.set(name, span);
       spans.push(span);
     }
-    if (kind === "heal" && command) {
-      const healed = Array.isArray(command.faults) ? command.faults.map(String) : [...open.keys()];
+    if (kind === "heal" && command && "heal" in command) {
+      const healed = command.heal === "all" ? [...open.keys()] : command.heal;
       for (const name of healed) close(name, tick);
     }
   }

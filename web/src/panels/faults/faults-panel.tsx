@@ -1,21 +1,26 @@
 import { Button } from "@mantine/core";
 import { useState } from "react";
+import { fits } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../app/actions";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment } from "../../ui/format";
+import { conditionWords } from "../condition/condition";
 import { FaultRow } from "./fault-row";
 import styles from "./faults.module.css";
+import { groupsOf } from "./groups";
 
-/** Every fault of the catalogue: what it changes, how much, how and when; several at once. */
+/** Every fault that this bench may have: what it changes, how much, how and when; several at once. */
 export function FaultsPanel() {
   const { blocks, failed, retry } = useCatalog();
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const active = useBench((s) => s.bench?.faults);
+  const axes = useBench((s) => s.bench?.axes) ?? [];
   const pending = useBench((s) => s.bench?.pending);
+  const signals = useBench((s) => s.bench?.signals);
   const [open, setOpen] = useState<string | undefined>(undefined);
-  const faults = blocks.filter((b) => b.family === "faults");
+  const faults = blocks.filter((b) => b.family === "faults" && fits(b, axes));
   if (faults.length === 0)
     return (
       <EmptyState
@@ -47,20 +52,29 @@ export function FaultsPanel() {
       {pending?.map((waiting) => (
         <p key={`${waiting.text} ${waiting.tick} ${waiting.when}`} className={styles.pending}>
           Waiting: {waiting.text}{" "}
-          {waiting.when ? `when ${waiting.when}` : waiting.tick !== null && `at ${formatMoment(waiting.tick * dtMs)}`}
+          {waiting.when
+            ? `when ${conditionWords(waiting.when, signals ?? [])}`
+            : waiting.tick !== null && `at ${formatMoment(waiting.tick * dtMs)}`}
         </p>
       ))}
-      <ul className={styles.list}>
-        {faults.map((fault) => (
-          <FaultRow
-            key={fault.name}
-            fault={fault}
-            active={acting.find((f) => f.name === fault.name)}
-            open={open === fault.name}
-            onToggle={() => setOpen(open === fault.name ? undefined : fault.name)}
-          />
+      <div className={styles.list}>
+        {groupsOf(faults).map(([group, members]) => (
+          <section key={group} aria-label={group}>
+            <h3 className={styles.group}>{group}</h3>
+            <ul>
+              {members.map((fault) => (
+                <FaultRow
+                  key={fault.name}
+                  fault={fault}
+                  active={acting.find((f) => f.name === fault.name)}
+                  open={open === fault.name}
+                  onToggle={() => setOpen(open === fault.name ? undefined : fault.name)}
+                />
+              ))}
+            </ul>
+          </section>
         ))}
-      </ul>
+      </div>
     </section>
   );
 }

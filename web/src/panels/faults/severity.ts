@@ -1,5 +1,5 @@
 import type { Parameter } from "../../api/types";
-import { formatCount, formatShort } from "../../ui/format";
+import { formatShort } from "../../ui/format";
 import type { FaultDraft } from "./fault-draft";
 
 export interface SeverityScale {
@@ -10,7 +10,12 @@ export interface SeverityScale {
   high: number;
   minimum: number;
   maximum: number;
+  /** What the slider and the box go up and down by. */
+  step: number;
 }
+
+/** Units of which there are whole numbers alone. */
+const WHOLE = ["pair"];
 
 /** How a fault's severity is shown: a share as percent, on a slider that spans what is usual rather than all that is allowed. */
 export function severityScale(parameter: Parameter | undefined, suggested: number): SeverityScale {
@@ -18,18 +23,16 @@ export function severityScale(parameter: Parameter | undefined, suggested: numbe
   const maximum = parameter?.maximum ?? 1;
   const percent = !parameter?.unit || parameter.unit === "1";
   const reach = Math.max(Math.abs(suggested) * 10, percent ? 0.5 : 0);
-  return {
-    percent,
-    minimum,
-    maximum,
-    low: Math.max(minimum, Math.min(0, minimum < 0 ? -reach : minimum)),
-    high: Math.min(maximum, reach),
-  };
+  const low = Math.max(minimum, Math.min(0, minimum < 0 ? -reach : minimum));
+  const high = Math.min(maximum, reach);
+  const isWhole = WHOLE.includes(parameter?.unit ?? "") || (high - low) * (percent ? 100 : 1) > 40;
+  return { percent, minimum, maximum, low, high, step: isWhole ? 1 : 0.1 };
 }
 
 export function severityText(value: number, scale: SeverityScale, unit: string): string {
   const shown = scale.percent ? value * 100 : value;
-  const text = /^[a-z]{4,}$/.test(unit) ? formatCount(shown, unit) : formatShort(shown, scale.percent ? "%" : unit, 3);
+  const noun = /^[a-z]{4,}$/.test(unit) && Math.abs(shown) !== 1 ? `${unit}s` : unit;
+  const text = formatShort(shown, scale.percent ? "%" : noun, 4);
   return value > 0 ? `+${text}` : text;
 }
 

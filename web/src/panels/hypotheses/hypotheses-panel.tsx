@@ -2,6 +2,7 @@ import { Button, NativeSelect } from "@mantine/core";
 import { IconPlus } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
+import { fits } from "../../api/fits";
 import { useAsked } from "../../api/use-asked";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../app/open-variant";
@@ -47,7 +48,9 @@ export function HypothesesPanel() {
       .catch(showError)
       .finally(() => setBusy(false));
   };
-  const kinds = blocks.filter((b) => b.family === "diagnose" && b.parameters.some((p) => p.name === "hypotheses"));
+  const kinds = blocks.filter(
+    (b) => b.family === "diagnose" && fits(b, []) && b.parameters.some((p) => p.name === "hypotheses"),
+  );
   return (
     <section className={styles.panel} aria-label="Hypotheses">
       <div className={styles.bar}>

@@ -4,7 +4,7 @@ import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatNumber, formatPercent, formatShort, formatSi } from "../../ui/format";
+import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { type Lab, type LabKnob, labsOf, memorySamples } from "./lab-knobs";
 import styles from "./labs.module.css";
@@ -66,7 +66,7 @@ export function LabsPanel() {
                 knob={knob}
                 original={began.current.values[knob.path]}
                 onChange={(value) => {
-                  turned.current = send({ kind: "set", values: { [knob.path]: value } }, `Set ${knob.label}`);
+                  turned.current = send({ set: { [knob.path]: value } }, `Set ${knob.label}`);
                 }}
               />
             ))}
@@ -94,7 +94,7 @@ function Turn({ knob, original, onChange }: { knob: LabKnob; original: number; o
       {...(memory === undefined
         ? {}
         : {
-            note: Number.isFinite(memory) ? `remembers ${formatShort(memory, "sample", 3)}s` : "remembers everything",
+            note: Number.isFinite(memory) ? `remembers ${formatCount(memory, "sample")}` : "remembers everything",
           })}
       onChange={onChange}
     />

@@ -29,9 +29,16 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
   const events = useBench((s) => s.events);
   const fontSize = large ? 15 : 12;
   const switches = useMemo(() => truthSwitches(currentEvents(events), id), [events, id]);
+  const unexplained = `${id}.unexplained`; // traces recorded earlier do not have it
+  const withUnexplained = useBench((s) => s.bench?.signals.some(({ name }) => name === unexplained) ?? false);
   const signals = useMemo(
-    () => [...names.map((name) => `${id}.probability.${name}`), `${id}.winner`, `${id}.truth`],
-    [id, names],
+    () => [
+      ...names.map((name) => `${id}.probability.${name}`),
+      `${id}.winner`,
+      `${id}.truth`,
+      ...(withUnexplained ? [unexplained] : []),
+    ],
+    [id, names, withUnexplained, unexplained],
   );
   const shown = useRef<LanesPicture | undefined>(undefined);
   const paint = useMemo<Parameters<typeof LaneCanvas>[0]["paint"]>(
@@ -45,12 +52,13 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
           scheme,
           fontSize,
           switches,
+          withUnexplained,
           hover,
           picked,
         };
         paintLanes(ctx, shown.current);
       },
-    [names, fontSize, scheme, switches, picked],
+    [names, fontSize, scheme, switches, withUnexplained, picked],
   );
   const edges = lanesLayout(1000, 400, names.length, fontSize);
 

@@ -1,7 +1,7 @@
 import { NativeSelect } from "@mantine/core";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
-import scopeStyles from "../scope/scope.module.css";
+import { LiveButton } from "../scope/live-button";
 import type { LaneTime } from "./use-lane-time";
 
 interface LaneToolsProps {
@@ -23,15 +23,7 @@ export function LaneTools({ time, onWindow, take }: LaneToolsProps) {
         onChange={(e) => onWindow(Number(e.currentTarget.value))}
       />
       <PictureMenu take={take} />
-      <button
-        type="button"
-        className={scopeStyles.live}
-        data-past={time.view.kind === "past"}
-        aria-pressed={time.view.kind === "live"}
-        onClick={time.goLive}
-      >
-        LIVE
-      </button>
+      <LiveButton past={time.view.kind === "past"} onLive={time.goLive} />
     </>
   );
 }

@@ -2,6 +2,7 @@ import { useView } from "../../app/view-store";
 import { useBench } from "../../stream/bench-store";
 import { formatCount, formatPercent, formatSi } from "../../ui/format";
 import type { TruthSwitch } from "./delays";
+import { FitsNone } from "./fits-none";
 import styles from "./lanes.module.css";
 
 /** The figures of a diagnoser that are read from the last row. */
@@ -10,7 +11,8 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const last = switches.at(-1);
   const winner = typeof score?.winner === "number" ? names[score.winner] : score?.winner;
-  const right = score !== undefined && score.winner === score.truth;
+  const stopped = useBench((s) => s.bench?.state === "tripped");
+  const right = score !== undefined && score.winner === score.truth && !score.unexplained;
   return (
     <dl className={styles.headline}>
       <div>
@@ -19,9 +21,14 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
             {id.replaceAll("_", " ")} says
           </button>
         </dt>
-        <dd className={styles.winner} data-right={right}>
-          {winner ?? "–"}
-        </dd>
+        {stopped ? (
+          <dd title={`The board has stopped. The last verdict was ${winner ?? "none"}.`}>stopped</dd>
+        ) : (
+          <dd className={styles.winner} data-right={right}>
+            {winner ?? "–"}
+            {score?.unexplained && <FitsNone least={score.least_nis} />}
+          </dd>
+        )}
       </div>
       <div>
         <dt>delay</dt>
@@ -41,7 +48,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
 
 function delayText(last: TruthSwitch | undefined, dtMs: number): string {
   if (!last) return "–";
-  if (!last.findable) return "nothing to find";
+  if (!last.findable) return "not among the hypotheses";
   if (last.delay === undefined) return "not found yet";
   return `${formatCount(last.delay, "sample")} · ${formatSi(last.delay * dtMs, "ms", 3)}`;
 }

@@ -19,7 +19,7 @@ export function lanesLayout(width: number, height: number, lanes: number, fontSi
   const winner = 4 + room + 4;
   return {
     left: fontSize * 6,
-    right: width - fontSize * 4.6,
+    right: width - fontSize * 5.6,
     lanes: Array.from({ length: lanes }, (_, i) => ({ top: 4 + i * each, height: each })),
     winner,
     truth: winner + band + 3,

@@ -7,6 +7,7 @@ import { contestants } from "./contestants";
 import { DiagnoserLanes } from "./diagnoser-lanes";
 import { LaneTools } from "./lane-tools";
 import styles from "./lanes.module.css";
+import { OfferDiagnoser } from "./offer-diagnoser";
 import { Race } from "./race";
 import { useLaneTime } from "./use-lane-time";
 
@@ -27,8 +28,8 @@ export function LanesPanel() {
   );
   if (all.length === 0)
     return (
-      <EmptyState title="No diagnoser on this bench">
-        Open a scenario of chapter 5 from New bench; its bank of Kalman filters fills these lanes.
+      <EmptyState title="No diagnoser on this bench" action={<OfferDiagnoser />}>
+        One that weighs hypotheses about the device fills these lanes, a lane for each.
       </EmptyState>
     );
   const one = all.length === 1 && all[0].truth ? all[0] : all.find((c) => c.id === wanted && c.truth);

@@ -10,6 +10,8 @@ import type { TruthSwitch } from "./delays";
 import type { LanesLayout } from "./lanes-layout";
 import type { runs } from "./runs";
 
+const FITS_NONE = "fits none";
+
 /** What every picture of lanes has: a span of time, the truth's changes in it, and where things lie. */
 export interface LanesGround {
   frame: PanelFrame;
@@ -52,6 +54,32 @@ export function paintBand(
     }
     ctx.fillStyle = solid && run.value >= 0 ? inkOn(colour(run.value)) : colours.text;
     ctx.fillText(label, at, top + height / 2 + 0.5);
+  }
+}
+
+/** Where no hypothesis fits: a bar under the verdict, which is only the least wrong one then. */
+export function paintUnexplained(
+  ctx: Pen,
+  stretches: ReturnType<typeof runs>,
+  columnX: (c: number) => number,
+  picture: LanesGround,
+): void {
+  const { layout, scheme, fontSize } = picture;
+  const colours = CANVAS[scheme];
+  ctx.font = fontFor(fontSize - 1, 1, 650);
+  ctx.textAlign = "right";
+  for (const run of stretches) {
+    if (run.value !== 1) continue;
+    const left = Math.max(columnX(run.from), layout.left);
+    const right = Math.min(columnX(run.to), layout.right);
+    ctx.fillStyle = colours.alarm;
+    ctx.fillRect(left, layout.winner + layout.band - 4, right - left, 4);
+    const needed = ctx.measureText(FITS_NONE).width;
+    if (right - left < 2.5 * needed) continue; // the verdict stands at the left
+    ctx.fillStyle = colours.panel;
+    ctx.fillRect(right - needed - 12, layout.winner, needed + 12, layout.band - 4);
+    ctx.fillStyle = colours.alarm;
+    ctx.fillText(FITS_NONE, right - 6, layout.winner + (layout.band - 4) / 2 + 0.5);
   }
 }
 

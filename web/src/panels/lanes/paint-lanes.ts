@@ -4,12 +4,14 @@ import { formatPercent } from "../../ui/format";
 import { CANVAS } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { columnAt } from "../scope/column-at";
-import { type LanesGround, paintBand, paintDelays, paintPicked, paintTime } from "./paint-bands";
+import { type LanesGround, paintBand, paintDelays, paintPicked, paintTime, paintUnexplained } from "./paint-bands";
 import { runs } from "./runs";
 
 export interface LanesPicture extends LanesGround {
   names: string[];
   hover: number | undefined;
+  /** Whether the signals end with what says that no hypothesis fits. */
+  withUnexplained: boolean;
   /** The sample that is being explained. */
   picked: number | undefined;
 }
@@ -65,6 +67,7 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
     fontSize,
     false,
   );
+  if (picture.withUnexplained) paintUnexplained(ctx, runs(column(names.length + 2, 1)), columnX, picture);
   const truth = runs(column(names.length + 1, 1));
   paintBand(ctx, truth, columnX, layout.truth, layout.band, colour, names, colours, fontSize, true);
   paintDelays(ctx, picture, x, column(names.length, 0));
@@ -83,7 +86,7 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
     ctx.textAlign = "right";
     ctx.fillText(name, layout.left - 10, y);
     ctx.font = fontFor(fontSize, 1, i === winnerNow ? 700 : 450);
-    ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 4.4, y);
+    ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 5.4, y);
   });
   ctx.font = fontFor(fontSize, 1, 450);
   ctx.fillStyle = colours.muted;

@@ -6,6 +6,7 @@ import { useBench } from "../../stream/bench-store";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import type { Contestant } from "./contestants";
 import type { TruthSwitch } from "./delays";
+import { FitsNone } from "./fits-none";
 import { LaneCanvas, type LanePainting } from "./lane-canvas";
 import { paintRow, type RacePicture, rowLayout } from "./paint-race";
 import { pickSample } from "./pick-sample";
@@ -86,8 +87,9 @@ function Verdict({ contestant: { id, names } }: { contestant: Contestant }) {
   const score = useBench((s) => s.scores[id]);
   if (!score) return null;
   return (
-    <strong className={styles.verdict} data-right={score.winner === score.truth}>
+    <strong className={styles.verdict} data-right={score.winner === score.truth && !score.unexplained}>
       {names[score.winner] ?? "–"}
+      {score.unexplained && <FitsNone least={score.least_nis} />}
     </strong>
   );
 }

@@ -1,5 +1,6 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
+import { hasAxes } from "../../api/fits";
 import { send } from "../../app/send";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
@@ -17,8 +18,11 @@ export function PhasePanel() {
   const plant = useBench((s) =>
     String((s.bench?.parameters.plant as { model?: string } | undefined)?.model ?? "linear"),
   );
-  const [x, setX] = useState("plant.displacement");
-  const [y, setY] = useState("plant.velocity");
+  const isFlat = useBench((s) => !hasAxes(s.bench));
+  const [across, setX] = useState<string | undefined>(undefined);
+  const [up, setY] = useState<string | undefined>(undefined);
+  const x = across ?? (isFlat ? "plant.displacement" : "plant.x");
+  const y = up ?? (isFlat ? "plant.velocity" : "plant.x_velocity");
   const [windowMs, setWindowMs] = useState(4);
   const [driveV, setDriveV] = useState(0);
   const picture = useRef<TakePicture>(null);
@@ -75,13 +79,15 @@ export function PhasePanel() {
       />
       <p className={styles.words}>
         {failed ??
-          (flat ? (
+          (!isFlat ? (
+            "The turn of a moving mass about its rest; nothing pulls it in."
+          ) : flat ? (
             <>
               No unstable region: the {plant} plant cannot move sideways. The planar one can.{" "}
               <Button
                 size="compact-xs"
                 variant="light"
-                onClick={() => send({ kind: "set", values: { "plant.model": "planar" } }, "Planar plant")}
+                onClick={() => send({ set: { "plant.model": "planar" } }, "Planar plant")}
               >
                 Use the planar plant
               </Button>

@@ -101,7 +101,7 @@ export function PhasePlot({ x, y, windowMs, map, fits, picture }: PhasePlotProps
         hovered: hoveredColumn(shown.current, points.current.x.length),
         map,
         fits,
-        colour: second.name === "plant.velocity" ? first.colour : second.colour,
+        colour: second.name.endsWith("velocity") ? first.colour : second.colour,
         scheme,
         fontSize: large ? 15 : 12,
       };

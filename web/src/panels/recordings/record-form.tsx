@@ -1,11 +1,11 @@
-import { Button, NativeSelect, NumberInput, TextInput } from "@mantine/core";
+import { Button, NumberInput, TextInput } from "@mantine/core";
 import { IconPlayerRecordFilled, IconPlayerStopFilled } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
 import { layoutNow } from "../../app/layouts";
 import { showError } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
-import { unitText } from "../../ui/unit-scale";
+import { ConditionFields } from "../condition/condition-fields";
 import styles from "./recordings.module.css";
 import { NEW_DRAFT, wantedOf } from "./wanted";
 
@@ -14,12 +14,11 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
   const id = useBench((s) => s.bench?.id) ?? "";
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 1;
   const title = useBench((s) => s.bench?.title) ?? "";
-  const signals = useBench((s) => s.bench?.signals) ?? [];
   const recording = useBench((s) => s.bench?.recording) ?? [];
   const armed = useBench((s) => s.bench?.armed) ?? [];
   const [draft, setDraft] = useState(NEW_DRAFT);
   const set = (part: Partial<typeof draft>) => setDraft({ ...draft, ...part });
-  const unit = unitText(signals.find((s) => s.name === draft.signal)?.unit ?? "");
+  const hasLevel = !draft.when.signal || typeof draft.when.level === "number";
   const underWay = [...recording, ...armed];
 
   const start = () =>
@@ -70,37 +69,15 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
         value={draft.lengthMs || ""}
         onChange={(n) => set({ lengthMs: Number(n) || 0 })}
       />
-      <NativeSelect
-        size="xs"
+      <ConditionFields
         label="Begins"
-        value={draft.signal}
-        data={[{ value: "", label: "at once" }, ...signals.map((s) => ({ value: s.name, label: `when ${s.name}` }))]}
-        onChange={(e) => set({ signal: e.currentTarget.value })}
+        none="at once"
+        condition={draft.when}
+        error={hasLevel ? undefined : "Say at what value"}
+        onChange={(when) => set({ when })}
       />
-      {draft.signal && (
-        <>
-          <NativeSelect
-            size="xs"
-            label="is"
-            value={draft.above ? ">" : "<"}
-            data={[
-              { value: ">", label: "above" },
-              { value: "<", label: "below" },
-            ]}
-            onChange={(e) => set({ above: e.currentTarget.value === ">" })}
-          />
-          <NumberInput
-            size="xs"
-            label="Level"
-            suffix={unit ? ` ${unit}` : ""}
-            w={92}
-            value={draft.level}
-            onChange={(n) => set({ level: Number(n) || 0 })}
-          />
-        </>
-      )}
-      <Button type="submit" size="xs" leftSection={<IconPlayerRecordFilled size={14} />}>
-        {draft.signal ? "Arm" : "Record"}
+      <Button type="submit" size="xs" disabled={!hasLevel} leftSection={<IconPlayerRecordFilled size={14} />}>
+        {draft.when.signal ? "Arm" : "Record"}
       </Button>
       {underWay.length > 0 && (
         <Button size="xs" color="alarm" leftSection={<IconPlayerStopFilled size={14} />} onClick={stop}>

@@ -12,7 +12,8 @@ it("asks in ticks, at once, until it is stopped", () => {
 });
 
 it("waits for a condition and ends by itself", () => {
-  const draft = { name: " a ", pastMs: 0, lengthMs: 0.004, signal: "plant.displacement", above: false, level: -3 };
+  const when = { signal: "plant.displacement", above: false, level: -3 };
+  const draft = { name: " a ", pastMs: 0, lengthMs: 0.004, when };
   expect(wantedOf(draft, 0.01, { grid: 1 })).toEqual({
     name: "a",
     past_ticks: 0,

@@ -1,4 +1,5 @@
 import type { Document, Wanted } from "../../api/types";
+import { type Condition, conditionText } from "../condition/condition";
 
 /** What the form asks to be recorded; times in ms of the device. */
 export interface RecordDraft {
@@ -6,13 +7,11 @@ export interface RecordDraft {
   pastMs: number;
   /** 0: until it is stopped. */
   lengthMs: number;
-  /** Signal of the condition; empty: at once. */
-  signal: string;
-  above: boolean;
-  level: number;
+  /** When it begins; without a signal at once. */
+  when: Condition;
 }
 
-export const NEW_DRAFT: RecordDraft = { name: "", pastMs: 1, lengthMs: 0, signal: "", above: true, level: 0 };
+export const NEW_DRAFT: RecordDraft = { name: "", pastMs: 1, lengthMs: 0, when: { signal: "", above: true, level: 0 } };
 
 /** The request of a draft, in ticks. */
 export function wantedOf(draft: RecordDraft, dtMs: number, layout: Document | undefined): Wanted {
@@ -21,7 +20,7 @@ export function wantedOf(draft: RecordDraft, dtMs: number, layout: Document | un
     name: draft.name.trim() || "recording",
     past_ticks: ticks(draft.pastMs),
     ticks: draft.lengthMs > 0 ? Math.max(1, ticks(draft.lengthMs)) : null,
-    when: draft.signal ? `${draft.signal} ${draft.above ? ">" : "<"} ${draft.level}` : null,
+    when: draft.when.signal ? conditionText(draft.when) : null,
     layout: layout ?? null,
   };
 }

@@ -1,12 +1,12 @@
-/** A box of the loop as drawn: which card it opens and which signal it shows. */
+import type { Wire } from "./box";
+
+/** A box of the loop: its place on the drawing. */
 export interface LoopBox {
   id: "reference" | "controller" | "drive" | "plant" | "sensor" | "diagnosis" | "model" | "identifier";
   title: string;
   x: number;
   y: number;
 }
-
-export const BOX = { width: 102, height: 66 };
 
 /**
  * The loop, drawn once round: reference, controller, drive above; device, sensor, diagnosis below; under them what
@@ -45,7 +45,7 @@ export function faultLines(titles: readonly string[]): string[] {
 }
 
 /** Signal paths between the boxes. */
-export const WIRES: { id: string; d: string; label: string; at: [number, number] }[] = [
+export const WIRES: readonly Wire[] = [
   { id: "r", d: "M103 35 H119", label: "r", at: [108, 29] },
   { id: "u", d: "M221 35 H237", label: "u", at: [225, 29] },
   { id: "v", d: "M288 68 V108", label: "V", at: [294, 92] },

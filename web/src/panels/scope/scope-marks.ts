@@ -3,6 +3,7 @@ import type { LogEntry } from "../../api/types";
 import { fontFor } from "../../ui/canvas-font";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { eventTone } from "../events/event-tone";
+import { flagWords } from "../events/flag-words";
 import type { FaultSpan } from "../faults/fault-spans";
 
 export interface Marks {
@@ -10,7 +11,7 @@ export interface Marks {
   faults: FaultSpan[];
 }
 
-/** Draw events as numbered lines and faults as a band along the top, over the traces of a scope. */
+/** Draw events as lines with flags and faults as a band along the top, over the traces of a scope. */
 export function drawMarks(
   u: uPlot,
   marks: Marks,
@@ -35,12 +36,12 @@ export function drawMarks(
     ctx.fillRect(from, bbox.top - 3 * ratio, to - from, 3 * ratio);
   }
   ctx.font = fontFor(fontSize - 1, ratio, 600);
+  ctx.textAlign = "left";
   ctx.textBaseline = "middle";
+  const flags = marks.events.filter((e) => e.tick >= span.start && e.tick <= span.end && eventTone(e) !== "quiet");
   let taken = Number.NEGATIVE_INFINITY;
-  for (const event of marks.events) {
-    if (event.tick < span.start || event.tick > span.end) continue;
+  flags.forEach((event, i) => {
     const tone = eventTone(event);
-    if (tone === "quiet") continue;
     const at = Math.round(x(event.tick)) + 0.5;
     ctx.strokeStyle = tone === "alarm" ? colours.alarm : tone === "found" ? colours.accent : colours.event;
     ctx.lineWidth = ratio;
@@ -49,11 +50,16 @@ export function drawMarks(
     ctx.moveTo(at, bbox.top);
     ctx.lineTo(at, bbox.top + bbox.height);
     ctx.stroke();
-    const label = String(event.seq);
-    if (at < taken) continue;
+    if (at < taken) return;
+    // words where they have room before the next flag, otherwise the number of the event
+    const next = flags.slice(i + 1).find(({ tick }) => tick > event.tick);
+    const room = (next ? x(next.tick) : bbox.left + bbox.width) - at;
+    const words = flagWords(event);
+    const label = ctx.measureText(words).width < room - 6 * ratio ? words : String(event.seq);
+    const width = ctx.measureText(label).width;
     ctx.fillStyle = ctx.strokeStyle;
-    ctx.fillText(label, at - ctx.measureText(label).width / 2, bbox.top - (fontSize / 2 + 5) * ratio);
-    taken = at + ctx.measureText(label).width + 4 * ratio;
-  }
+    ctx.fillText(label, label === words ? at - ratio : at - width / 2, bbox.top - (fontSize / 2 + 5) * ratio);
+    taken = at + width + 6 * ratio;
+  });
   ctx.restore();
 }

@@ -12,7 +12,7 @@ import { marksNow } from "./marks-now";
 import { MeasureStrip } from "./measure-strip";
 import { RearmContext } from "./rearm-context";
 import styles from "./scope.module.css";
-import type { ScopeConfig } from "./scope-config";
+import { onBench, type ScopeConfig } from "./scope-config";
 import { type CursorPair, type PlotArea, ScopeCursors } from "./scope-cursors";
 import { ScopeLegend } from "./scope-legend";
 import { ScopePlot } from "./scope-plot";
@@ -29,7 +29,10 @@ interface ScopePanelProps {
 }
 
 /** An oscilloscope: rolls, triggers, or stands still on a span of the past while the board runs on. */
-export function ScopePanel({ config, onChange }: ScopePanelProps) {
+export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
+  const signals = useBench((s) => s.bench?.signals);
+  const controller = useBench((s) => s.bench?.controller);
+  const config = useMemo(() => onBench(kept, signals ?? [], controller ?? ""), [kept, signals, controller]);
   const scheme = useScheme();
   const large = useView((s) => s.large);
   const dtMs = useBench((s) => s.bench?.dt_ms);

@@ -2,6 +2,7 @@ import { ActionIcon, NativeSelect } from "@mantine/core";
 import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
+import { LiveButton } from "./live-button";
 import styles from "./scope.module.css";
 import type { ScopeConfig } from "./scope-config";
 import { TriggerMenu } from "./trigger-menu";
@@ -45,7 +46,7 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
         <NativeSelect
           size="xs"
           aria-label="Time window"
-          w={78}
+          w={86}
           value={String(config.windowMs)}
           data={windowItems(TIME_WINDOWS_MS.scope, config.windowMs)}
           onChange={(event) => onChange({ ...config, windowMs: Number(event.currentTarget.value) })}
@@ -61,16 +62,7 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
           <IconRuler2 size={15} />
         </ActionIcon>
         {exporter}
-        <button
-          type="button"
-          className={styles.live}
-          data-past={past}
-          aria-pressed={!past}
-          onClick={onLive}
-          title={past ? "Return to the newest data" : "Drag or scroll the plot to look at the past; the board runs on"}
-        >
-          LIVE
-        </button>
+        <LiveButton past={past} onLive={onLive} />
       </div>
     </div>
   );

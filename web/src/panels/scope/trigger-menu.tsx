@@ -4,6 +4,7 @@ import { useBench } from "../../stream/bench-store";
 import type { Trigger } from "../../stream/wire";
 import { formatShort } from "../../ui/format";
 import { unitText } from "../../ui/unit-scale";
+import { signalGroups } from "../condition/condition";
 import { RearmContext } from "./rearm-context";
 import type { TriggerState } from "./scope-toolbar";
 
@@ -34,7 +35,7 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
             size="xs"
             label="Signal"
             value={trigger.signal}
-            data={signals.map((s) => s.name)}
+            data={signalGroups(signals)}
             onChange={(e) => set({ signal: e.currentTarget.value })}
           />
           <SegmentedControl
@@ -74,6 +75,7 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
             min={0}
             max={100}
             step={5}
+            allowDecimal={false}
             value={Math.round(trigger.position * 100)}
             onChange={(v) => typeof v === "number" && set({ position: v / 100 })}
           />

@@ -1,4 +1,4 @@
-import { formatCount, formatNumber } from "../../ui/format";
+import { formatCount, formatNumber, formatPart } from "../../ui/format";
 import styles from "./scoreboard.module.css";
 
 interface ConfusionProps {
@@ -12,7 +12,7 @@ interface ConfusionProps {
 export function Confusion({ id, names, counts }: ConfusionProps) {
   return (
     <table className={styles.confusion}>
-      <caption>{id.replaceAll("_", " ")}: share of samples, truth down, verdict across</caption>
+      <caption>{id.replaceAll("_", " ")}: % of samples, truth down, verdict across</caption>
       <thead>
         <tr>
           <td />
@@ -38,7 +38,7 @@ export function Confusion({ id, names, counts }: ConfusionProps) {
                     title={`${formatNumber(count, 0)} of ${formatCount(total, "sample")}`}
                     style={{ "--share": `${Math.round(share * 55)}%` } as React.CSSProperties}
                   >
-                    {total ? (count ? formatNumber(share * 100, 1) : "") : "·"}
+                    {total ? (count ? formatPart(100 * share, 100, "", 1) : "") : "·"}
                   </td>
                 );
               })}

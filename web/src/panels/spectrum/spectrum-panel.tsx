@@ -12,12 +12,14 @@ import { SpectrumPlot } from "./spectrum-plot";
 export function SpectrumPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const dtMs = useBench((s) => s.bench?.dt_ms);
-  const [signal, setSignal] = useState("sensor.displacement");
+  const [wanted, setSignal] = useState<string | undefined>(undefined);
   const [ticks, setTicks] = useState(4096);
   const [share, setShare] = useState(5);
   const picture = useRef<TakePicture>(null);
   if (!signals || !dtMs)
     return <EmptyState title="No bench yet">The tones of a signal appear as soon as a bench is connected.</EmptyState>;
+  const usual = signals.find((s) => s.name === "sensor.displacement" || s.name === "sensor.x.displacement");
+  const signal = wanted ?? usual?.name ?? signals[0].name;
   return (
     <section className={styles.panel} aria-label="Spectrum">
       <div className={styles.bar}>

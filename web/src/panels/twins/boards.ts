@@ -6,9 +6,25 @@ export interface Board {
   /** Before its signals: empty, or the twin's name and a colon. */
   prefix: string;
   name: string;
+  /** The controller that drives in the last slot. */
   controller: string;
+  /** The controller the board is there for. */
+  chosen: string;
   /** Slot in `TRACE_COLOURS`. */
   slot: number;
+}
+
+/** What boards are compared by. */
+export interface Compared {
+  title: string;
+  /** What should be, and in words. */
+  ideal: string;
+  against: string;
+  /** What a board makes of it. */
+  value(board: Board): string;
+  /** What moves besides, and what it costs. */
+  motions: { title: string; signal: string }[];
+  efforts: { title: string; signal: string }[];
 }
 
 /** Colours of the boards; slot 0 is what should be. */
@@ -16,54 +32,85 @@ const SLOTS = [1, 2, 4, 3];
 /** What a panel may subscribe to. */
 const MOST_SIGNALS = 32;
 
-type Twins = Record<string, { controller?: { kind?: string } }>;
+type Twin = { controller?: { kind?: string }; slots?: Record<string, string> };
+type Twins = Record<string, Twin>;
 
 /** The board and its twins, with what drives each. */
 export function boardsOf({ parameters, controller }: Pick<Bench, "parameters" | "controller">): Board[] {
   const twins = Object.entries((parameters.twins ?? {}) as Twins);
   return [
-    { prefix: "", name: "this bench", controller, slot: SLOTS[0] },
-    ...twins.map(([name, own], i) => ({
-      prefix: `${name}:`,
-      name: name.replaceAll("_", " "),
-      controller: own.controller?.kind ?? controller,
-      slot: SLOTS[i + 1],
-    })),
+    { prefix: "", name: "this bench", controller, chosen: controller, slot: SLOTS[0] },
+    ...twins.map(([name, own], i) => {
+      const last = own.controller?.kind ?? controller;
+      return {
+        prefix: `${name}:`,
+        name: name.replaceAll("_", " "),
+        controller: last,
+        chosen: own.controller ? last : (Object.values(own.slots ?? {})[0] ?? last),
+        slot: SLOTS[i + 1],
+      };
+    }),
   ];
 }
 
-/** A twin for each controller chosen, named after it. */
-export function twinsOf(controllers: readonly string[]): Twins {
+/** A twin for each controller chosen, named after it; one of an earlier slot drives there. */
+export function twinsOf(
+  controllers: readonly string[],
+  earlierSlot: (controller: string) => string | undefined,
+): Twins {
   const found: Twins = {};
   for (const kind of controllers) {
     let name = kind;
     for (let i = 2; name in found; i += 1) name = `${kind}_${i}`;
-    found[name] = { controller: { kind } };
+    const slot = earlierSlot(kind);
+    found[name] = slot ? { slots: { [slot]: kind } } : { controller: { kind } };
   }
   return found;
 }
 
-/** Strips that overlay the boards: tracking, effort, then whatever each adapts, board by board. */
-export function comparison(boards: readonly Board[], signals: readonly Signal[]): Strip[] {
+/** What boards with these axes are compared by: one displacement by it, gyroscopes by the rate they read. */
+export function comparedOn(axes: readonly string[]): Compared {
+  if (axes.length === 0)
+    return {
+      title: "displacement",
+      ideal: "model.displacement",
+      against: "the reference model",
+      value: ({ prefix }) => `${prefix}plant.displacement`,
+      motions: [],
+      efforts: [{ title: "effort", signal: "drive.voltage" }],
+    };
+  return {
+    title: "rate",
+    ideal: "rate.rate",
+    against: "the true rate",
+    value: ({ prefix, controller }) => `${prefix}${controller}.rate`,
+    motions: axes.map((axis) => ({ title: axis, signal: `plant.${axis}` })),
+    efforts: axes.map((axis) => ({ title: `force along ${axis}`, signal: `drive.${axis}.force` })),
+  };
+}
+
+/** Strips that overlay the boards: what is compared, motion, effort, then whatever each adapts, board by board. */
+export function comparison(boards: readonly Board[], compared: Compared, signals: readonly Signal[]): Strip[] {
   const known = new Map(signals.map((s) => [s.name, s]));
-  const [first, ...others] = boards;
-  const overlay = (title: string, name: string, ideal?: string): Strip[] => {
-    const signal = known.get(name);
-    if (!signal) return [];
+  const overlay = (title: string, nameOn: (board: Board) => string, ideal?: string): Strip[] => {
+    const [first, ...others] = boards.filter((board) => known.has(nameOn(board)));
+    if (!first) return [];
     return [
       {
         title,
-        unit: signal.unit,
-        signal: name,
+        unit: known.get(nameOn(first))?.unit ?? "",
+        signal: nameOn(first),
         slot: first.slot,
         ...(ideal ? { ideal } : {}),
-        rivals: others.map(({ prefix, slot }) => ({ signal: prefix + name, slot })).filter((r) => known.has(r.signal)),
+        rivals: others.map((board) => ({ signal: nameOn(board), slot: board.slot })),
       },
     ];
   };
   const strips = [
-    ...overlay("displacement", "plant.displacement", "model.displacement"),
-    ...overlay("effort", "drive.voltage"),
+    ...overlay(compared.title, compared.value, compared.ideal),
+    ...[...compared.motions, ...compared.efforts].flatMap(({ title, signal }) =>
+      overlay(title, ({ prefix }) => prefix + signal),
+    ),
   ];
   let room = MOST_SIGNALS - strips.reduce((sum, s) => sum + 1 + (s.ideal ? 1 : 0) + (s.rivals?.length ?? 0), 0);
   for (const { prefix, controller, name, slot } of boards) {

@@ -10,8 +10,8 @@ it("gives rms and peak of the error and rms of the voltage", () => {
   ];
   const data = Float32Array.from(rows.flatMap((row) => [...row, ...row]));
   const frame = { data, columns: 3 } as unknown as PanelFrame;
-  const found = trackingFigures(frame, 0, 1, 2);
+  const found = trackingFigures(frame, 0, 1, [2]);
   expect(found.rmsError).toBeCloseTo(Math.sqrt(2)); // errors 0 and 2
   expect(found.peakError).toBe(2);
-  expect(found.effort).toBeCloseTo(Math.sqrt(12.5)); // 3 and 4 V
+  expect(found.efforts[0]).toBeCloseTo(Math.sqrt(12.5)); // 3 and 4 V
 });

@@ -5,7 +5,7 @@ import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatSi } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";
-import type { Board } from "./boards";
+import type { Board, Compared } from "./boards";
 import { type TrackingFigures, trackingFigures } from "./tracking-figures";
 import styles from "./twins.module.css";
 
@@ -14,10 +14,11 @@ const MOST_TICKS = 2000;
 const USUAL_TICKS = 400;
 const EVERY_MS = 500;
 
-/** How well each board follows the model, and at what cost, over the last periods of the drive. */
-export function TwinFigures({ boards }: { boards: Board[] }) {
+/** How well each board does what it should, and at what cost, over the last periods of the drive. */
+export function TwinFigures({ boards, compared }: { boards: Board[]; compared: Compared }) {
   const scheme = useScheme();
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const signals = useBench((s) => s.bench?.signals);
   const period = useBench((s) => s.bench?.drive_period_ticks);
   const { block } = useCatalog();
   const [figures, setFigures] = useState<TrackingFigures[]>([]);
@@ -26,45 +27,68 @@ export function TwinFigures({ boards }: { boards: Board[] }) {
     () => ({
       mode: "roll" as const,
       signals: [
-        "model.displacement",
-        ...boards.flatMap(({ prefix }) => [`${prefix}plant.displacement`, `${prefix}drive.voltage`]),
+        compared.ideal,
+        ...boards.flatMap((board) => [
+          compared.value(board),
+          ...compared.efforts.map(({ signal }) => board.prefix + signal),
+        ]),
       ],
       window_ms: ticks * dtMs,
       width: ticks,
     }),
-    [boards, ticks, dtMs],
+    [boards, compared, ticks, dtMs],
   );
   useFeed(
     dtMs > 0 ? subscription : undefined,
     (frame) => {
-      setFigures(boards.map((_, i) => trackingFigures(frame, 1 + 2 * i, 0, 2 + 2 * i)));
+      const each = 1 + compared.efforts.length;
+      setFigures(
+        boards.map((_, i) => {
+          const at = 1 + each * i;
+          return trackingFigures(
+            frame,
+            at,
+            0,
+            compared.efforts.map((_, j) => at + 1 + j),
+          );
+        }),
+      );
     },
     EVERY_MS,
   );
+  const unitOf = (name: string) => signals?.find((s) => s.name === name)?.unit ?? "";
   const best = Math.min(...figures.map((f) => f.rmsError).filter(Number.isFinite));
   return (
     <div className={styles.scroll}>
       <table className={styles.table}>
-        <caption>Against the reference model, over the last {formatSi(ticks * dtMs, "ms")}</caption>
+        <caption>
+          Against {compared.against}, over the last {formatSi(ticks * dtMs, "ms")}
+        </caption>
         <thead>
           <tr>
             <th scope="col">Board</th>
             <th scope="col">rms error</th>
             <th scope="col">Peak error</th>
-            <th scope="col">rms effort</th>
+            {compared.efforts.map(({ title }) => (
+              <th key={title} scope="col">
+                rms {title}
+              </th>
+            ))}
           </tr>
         </thead>
         <tbody>
-          {boards.map(({ name, prefix, controller, slot }, i) => (
+          {boards.map(({ name, prefix, chosen, slot }, i) => (
             <tr key={prefix}>
               <th scope="row">
                 <i style={{ background: TRACE_COLOURS[scheme][slot] }} />
                 {name}
-                <small>{block("control", controller)?.title ?? controller.replaceAll("_", " ")}</small>
+                <small>{block("control", chosen)?.title ?? chosen.replaceAll("_", " ")}</small>
               </th>
-              <td data-best={figures[i]?.rmsError === best}>{show(figures[i]?.rmsError, "um")}</td>
-              <td>{show(figures[i]?.peakError, "um")}</td>
-              <td>{show(figures[i]?.effort, "V")}</td>
+              <td data-best={figures[i]?.rmsError === best}>{show(figures[i]?.rmsError, unitOf(compared.ideal))}</td>
+              <td>{show(figures[i]?.peakError, unitOf(compared.ideal))}</td>
+              {compared.efforts.map(({ title, signal }, j) => (
+                <td key={title}>{show(figures[i]?.efforts[j], unitOf(signal))}</td>
+              ))}
             </tr>
           ))}
         </tbody>

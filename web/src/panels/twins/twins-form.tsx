@@ -1,38 +1,48 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import { useState } from "react";
+import { useShallow } from "zustand/react/shallow";
+import { controllersOf } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../app/open-variant";
 import { showError } from "../../app/send";
 import { useBench } from "../../stream/bench-store";
+import { slotTitle } from "../controllers/slots";
 import { twinsOf } from "./boards";
 import styles from "./twins.module.css";
 
 const MOST = 3;
-const WORTH_SEEING = ["mrac", "stvsc", "pid", "indirect_mrac", "self_sliding"];
+const WORTH_SEEING = [
+  ...["mrac", "stvsc", "pid", "indirect_mrac", "self_sliding"],
+  ...["force_to_rebalance", "open_loop_rate", "drive_tracking"],
+];
 
 /** Choose what else should meet the same reference, noise and faults. */
 export function TwinsForm({ chosen }: { chosen: string[] }) {
   const controllers = useBench((s) => s.bench?.controllers) ?? [];
-  const own = useBench((s) => s.bench?.controller);
-  const { block } = useCatalog();
+  const slots = useBench(useShallow((s) => s.bench?.slots)) ?? {};
+  const { block, blocks } = useCatalog();
+  const drives = (name: string) => Object.values(slots).includes(name);
+  const slotOf = (name: string) => block("control", name)?.slot ?? "";
+  const last = Object.keys(slots).at(-1);
   const [kinds, setKinds] = useState(
-    chosen.length ? chosen : WORTH_SEEING.filter((name) => controllers.includes(name) && name !== own).slice(0, 2),
+    chosen.length ? chosen : WORTH_SEEING.filter((name) => controllers.includes(name) && !drives(name)).slice(0, 2),
   );
   const [busy, setBusy] = useState(false);
   const begin = (twins: string[]) => {
     setBusy(true);
     openVariant(
-      { twins: twinsOf(twins) },
+      { twins: twinsOf(twins, (name) => (slotOf(name) === last ? undefined : slotOf(name))) },
       twins.length ? "The bench begins again with its twins." : "The twins are gone.",
     )
       .catch(showError)
       .finally(() => setBusy(false));
   };
-  const options = controllers.map((name) => ({
-    value: name,
-    label: block("control", name)?.title ?? name.replaceAll("_", " "),
-  }));
+  const itemsOf = (slot: string) =>
+    controllersOf(slot, controllers, blocks).map(({ name, title }) => ({ value: name, label: title }));
+  const names = Object.keys(slots);
+  const options =
+    names.length > 1 ? names.map((slot) => ({ group: slotTitle(slot), items: itemsOf(slot) })) : names.flatMap(itemsOf);
   return (
     <div className={styles.form}>
       {kinds.map((kind, i) => (
@@ -65,7 +75,7 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
           leftSection={<IconPlus size={14} />}
           disabled={controllers.length === 0}
           onClick={() =>
-            setKinds([...kinds, controllers.find((name) => name !== own && !kinds.includes(name)) ?? controllers[0]])
+            setKinds([...kinds, controllers.find((name) => !drives(name) && !kinds.includes(name)) ?? controllers[0]])
           }
         >
           Twin

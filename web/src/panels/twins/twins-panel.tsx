@@ -10,7 +10,7 @@ import { IDEAL, printStrips } from "../adaptation/print-strips";
 import { LaneCanvas, type LanePainting } from "../lanes/lane-canvas";
 import { LaneTools } from "../lanes/lane-tools";
 import { useLaneTime } from "../lanes/use-lane-time";
-import { boardsOf, comparison } from "./boards";
+import { boardsOf, comparedOn, comparison } from "./boards";
 import { TwinFigures } from "./twin-figures";
 import styles from "./twins.module.css";
 import { TwinsForm } from "./twins-form";
@@ -23,6 +23,7 @@ export function TwinsPanel() {
   const parameters = useBench((s) => s.bench?.parameters);
   const controller = useBench((s) => s.bench?.controller);
   const signals = useBench((s) => s.bench?.signals);
+  const axes = useBench((s) => s.bench?.axes);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const scheme = useScheme();
   const fontSize = useView((s) => (s.large ? 15 : 12));
@@ -32,7 +33,11 @@ export function TwinsPanel() {
     () => (parameters && controller ? boardsOf({ parameters, controller }) : []),
     [parameters, controller],
   );
-  const strips = useMemo(() => (boards.length > 1 ? comparison(boards, signals ?? []) : []), [boards, signals]);
+  const compared = useMemo(() => comparedOn(axes ?? []), [axes]);
+  const strips = useMemo(
+    () => (boards.length > 1 ? comparison(boards, compared, signals ?? []) : []),
+    [boards, compared, signals],
+  );
   const names = useMemo(() => strips.flatMap(signalsOf), [strips]);
   const shown = useRef<LanePainting | undefined>(undefined);
   const paint = useMemo(() => {
@@ -43,12 +48,12 @@ export function TwinsPanel() {
     };
   }, [names, strips, scheme, fontSize]);
   if (!id || boards.length === 0) return <EmptyState title="No bench yet">Twins begin with a bench.</EmptyState>;
-  const form = <TwinsForm key={id} chosen={boards.slice(1).map((b) => b.controller)} />;
+  const form = <TwinsForm key={id} chosen={boards.slice(1).map((b) => b.chosen)} />;
   if (boards.length === 1)
     return (
       <EmptyState title="No twins on this bench" action={form}>
-        A twin is a second board that meets the same reference, noise and faults, tick by tick, under another
-        controller. Choose up to three; the bench begins again at tick 0 with them beside it.
+        A twin is a second board that meets the same input, noise and faults, tick by tick, under another controller.
+        Choose up to three; the bench begins again at tick 0 with them beside it.
       </EmptyState>
     );
   const legend = [...boards.map(({ name, slot }) => ({ name, colour: TRACE_COLOURS.light[slot] })), IDEAL];
@@ -59,7 +64,7 @@ export function TwinsPanel() {
         {form}
         <LaneTools time={time} onWindow={setWindowMs} take={take} />
       </div>
-      <TwinFigures boards={boards} />
+      <TwinFigures boards={boards} compared={compared} />
       <div className={styles.strips} style={{ height: strips.length * EACH_PX + AXIS_PX }}>
         <LaneCanvas
           label={`${boards.map((b) => b.name).join(", ")}: ${strips.map((s) => s.title).join(", ")} over time`}

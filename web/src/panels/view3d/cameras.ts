@@ -3,8 +3,8 @@ export const CAMERAS = [
   { name: "whole", label: "Whole", title: "The whole device" },
   { name: "top", label: "Top", title: "From above, as drawn" },
   { name: "side", label: "Side", title: "Along the wafer" },
-  { name: "fingers", label: "Fingers", title: "The far end of the right comb: its gaps are to scale" },
-  { name: "beams", label: "Beams", title: "The folded beams of one side and their truss" },
+  { name: "fingers", label: "Fingers", title: "The fingers of a comb" },
+  { name: "beams", label: "Beams", title: "The folded beams of one side" },
 ] as const;
 
 export type Camera = (typeof CAMERAS)[number]["name"];

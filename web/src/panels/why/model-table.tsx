@@ -14,14 +14,17 @@ interface ModelTableProps {
 export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
   const scheme = useScheme();
   const best = account.models.reduce((top, m, i, all) => (m.posterior > all[top].posterior ? i : top), 0);
+  const axes =
+    account.residuals.length > 1 &&
+    ` along ${account.residuals.map((name) => name.replace("residual_", "")).join(", ")}`;
   return (
     <div className={styles.scroll}>
       <table className={styles.table}>
         <thead>
           <tr>
             <th scope="col">Hypothesis</th>
-            <th scope="col">Residual</th>
-            <th scope="col">√ covariance</th>
+            <th scope="col">Residual{axes}</th>
+            <th scope="col">√ covariance{axes}</th>
             <th scope="col">ln f</th>
             <th scope="col">Prior</th>
             <th scope="col">Posterior</th>
@@ -36,8 +39,10 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
                   {model.name}
                 </button>
               </th>
-              <td>{formatSi(model.residual_um, "um", 3)}</td>
-              <td>{model.covariance_um2 === null ? "–" : formatSi(Math.sqrt(model.covariance_um2), "um", 3)}</td>
+              <td>{lengths(model.residual_um)}</td>
+              <td>
+                {model.covariance_um2 === null ? "–" : lengths(model.covariance_um2.map((row, j) => Math.sqrt(row[j])))}
+              </td>
               <td>{model.log_likelihood === null ? "–" : formatNumber(model.log_likelihood, 2)}</td>
               <td>{formatPercent(model.prior, 2)}</td>
               <td>
@@ -60,3 +65,8 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
     </div>
   );
 }
+
+/** Lengths below each other, one for each displacement measured. */
+const lengths = (values: number[]) =>
+  // biome-ignore lint/suspicious/noArrayIndexKey: a value is known by its displacement, which is its place
+  values.map((value, i) => <div key={i}>{formatSi(value, "um", 3)}</div>);

@@ -4,8 +4,8 @@ import { densityLatex, floorLatex, posteriorLatex, texNumber } from "./why-latex
 
 const model = (name: string, residual: number, prior: number, posterior: number) => ({
   name,
-  residual_um: residual,
-  covariance_um2: 0.01,
+  residual_um: [residual],
+  covariance_um2: [[0.01]],
   log_likelihood: -0.5 * (residual ** 2 / 0.01 + Math.log(2 * Math.PI * 0.01)),
   prior,
   posterior,
@@ -16,6 +16,8 @@ const account: Account = {
   tick: 7,
   time_ms: 0.07,
   floor: 0.01,
+  residuals: ["residual"],
+  weighed: "what was believed before",
   evidence: "",
   // exp(-r^2/2psi): 1 and exp(-2)
   models: [model("healthy", 0, 0.5, 0.8808), model("m+5", -0.2, 0.5, 0.1192)],
@@ -32,6 +34,20 @@ it("puts the numbers of the model into the density", () => {
   const tex = densityLatex(account.evidence, account.models[1]);
   expect(tex).toContain("\\frac{(-0.2000)^2}{0.01000}");
   expect(tex).toMatch(/=-0\.6164$/); // 1.38365 for a residual of 0, less 2
+});
+
+it("puts residuals along two axes into their joint density", () => {
+  const both = { ...account.models[0], residual_um: [0.1, -0.2], log_likelihood: -0.25 };
+  const tex = densityLatex("", {
+    ...both,
+    covariance_um2: [
+      [0.04, 0.01],
+      [0.01, 0.09],
+    ],
+  });
+  expect(tex).toContain("r=\\begin{pmatrix}0.1000\\\\-0.2000\\end{pmatrix}");
+  expect(tex).toContain("\\psi=\\begin{pmatrix}0.04000&0.01000\\\\0.01000&0.09000\\end{pmatrix}");
+  expect(tex).toMatch(/=-0\.2500$/);
 });
 
 it("shows the evidence of a diagnoser that has another than the normal density, as it says it", () => {

@@ -11,12 +11,27 @@ const bracketed = (value: number) => (value < 0 ? `(${texNumber(value)})` : texN
 
 /** The density of a model's residual: the normal one with its numbers put in, or what its diagnoser has instead. */
 export function densityLatex(evidence: string, model: ModelAccount): string | undefined {
-  const { residual_um: r, covariance_um2: psi, log_likelihood: log } = model;
-  if (log === null || psi === null) return undefined;
+  const { residual_um: residuals, covariance_um2: covariance, log_likelihood: log } = model;
+  if (log === null || covariance === null) return undefined;
   if (evidence) return `\\ln f=${evidence}=${texNumber(log)}`;
+  if (residuals.length > 1) return jointLatex(residuals, covariance, log);
+  const [r] = residuals;
+  const [[psi]] = covariance;
   return (
     "\\ln f=-\\tfrac12\\Bigl(\\frac{r^2}{\\psi}+\\ln 2\\pi\\psi\\Bigr)" +
     `=-\\tfrac12\\Bigl(\\frac{${bracketed(r)}^2}{${texNumber(psi)}}+\\ln(2\\pi\\cdot${texNumber(psi)})\\Bigr)` +
+    `=${texNumber(log)}`
+  );
+}
+
+/** The density of several residuals at once, with their numbers put in. */
+function jointLatex(residuals: number[], covariance: number[][], log: number): string {
+  const matrix = (rows: number[][]) =>
+    `\\begin{pmatrix}${rows.map((row) => row.map((value) => texNumber(value)).join("&")).join("\\\\")}\\end{pmatrix}`;
+  const r = matrix(residuals.map((value) => [value]));
+  return (
+    `r=${r},\\quad\\psi=${matrix(covariance)},\\quad` +
+    "\\ln f=-\\tfrac12\\bigl(r^T\\psi^{-1}r+\\ln\\det2\\pi\\psi\\bigr)" +
     `=${texNumber(log)}`
   );
 }

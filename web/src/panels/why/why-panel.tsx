@@ -128,11 +128,7 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
             <Formula latex={density} />
           </li>
           <li>
-            <span>
-              {account.kind === "imm"
-                ? "Weighed by what was believed before, mixed by switching"
-                : "Weighed by what was believed before"}
-            </span>
+            <span>Weighed by {account.weighed}</span>
             <Formula latex={posterior} />
           </li>
           {floor && (

@@ -1,0 +1,114 @@
+"""Force to rebalance: y is held at rest, and the force that does it is the rate."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from core.block import Block, BlockParams, Context, Equation, parameter
+from core.control.two_axis import RatePorts, Sense, components, fill_sense, share_kept, two_axis
+from core.elementary import cos, sin
+from core.ports import output, tap
+from core.record import Record
+
+USUAL_SHARE = 0.436
+"""Bandwidth of the loop over the damping rate of y, unless a gain is given; from 1 on the split of the modes rings."""
+
+
+class ForceToRebalance(Block):
+    r"""Holds y at rest with a force in step with the velocity of x, the rate, and one in step with x, the quadrature.
+
+    .. math:: F_y=u_c\cos\theta'+u_s\sin\theta',\quad\dot u_s+j\dot u_c=-gm_ye^{j\psi}(Y_s+jY_c)
+
+    .. math:: \hat\Omega=\frac{u_c}{2m_c\omega A},\quad\hat\Omega_q=\frac{u_s}{2m_c\omega A}
+
+    :math:`\psi` is the phase of :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, nominal. A held force is late by half a
+    sample, :math:`\omega h/2`, so without ``advance`` a part :math:`\Omega_q\sin(\omega h/2)` of the quadrature reads
+    as a rate; :math:`\theta'=\theta+\omega h/2` makes up for it. The loop is stable below the gain
+    :math:`g<|k_{yy}/m_y-\omega^2|\,d_{yy}/2m_y`, the damping of y against the split of the modes.
+    """
+
+    title = "Force to rebalance"
+    place = 16
+    axes = ("x", "y")
+    slot = "sense"
+    equations = (
+        Equation("force", r"F_y=u_c\cos\theta'+u_s\sin\theta',\quad\theta'=\theta+\omega h/2"),
+        Equation("rate", r"\hat\Omega=\frac{u_c}{2m_c\omega A},\quad\hat\Omega_q=\frac{u_s}{2m_c\omega A}"),
+        Equation("thermal floor", r"\sqrt2\,\frac{\sqrt{4k_BTd_{yy}}}{2m_c\omega A}"),
+    )
+
+    class Params(BlockParams):
+        """The loop and its phase."""
+
+        integral_gain_per_ms3: float | None = parameter(
+            None, "integral gain g; 0.436 of what the damping of y allows unless given", "1/ms^3", ge=0, le=1e6
+        )
+        advance: bool = parameter(True, "advance the force by half a sample, by which a held one is late")
+        phase_error_deg: float = parameter(0.0, "error of the phase of the force", "deg", ge=-180, le=180)
+        bandwidth_hz: float = parameter(50.0, "bandwidth of the low-pass behind the rate", "Hz", gt=0, le=1e5)
+
+    class Packed(Record):
+        """Sense axis, gain per sample with the phase of the sense axis, phase of the force, low-pass."""
+
+        sense: Sense
+        gain_cosine: float
+        gain_sine: float
+        lead: float
+        ahead: float
+        kept: float
+
+    class State(Record):
+        """Forces in step with the velocity of x and with x, uN; the two rates behind the low-pass."""
+
+        with_velocity: float
+        in_step: float
+        rate: float
+        quadrature: float
+
+    class Ports(RatePorts):
+        """Ports of the sense slot, the force along y and what is left of y."""
+
+        y: float = output("uN", "force along y this controller asks for")
+        quadrature: float = output("deg/s", "cross stiffness, read as a rate")
+        rest_in_step: float = tap("um", "what is left of y in step with x")
+        rest_with_velocity: float = tap("um", "what is left of y in step with the velocity of x")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the gain and the phases."""
+        device = two_axis(context)
+        p = cls.Packed.blank()
+        fill_sense(p.sense, device)
+        size, phase = abs(complex(p.sense.spring, p.sense.damper)), math.atan2(p.sense.damper, p.sense.spring)
+        gain = params.integral_gain_per_ms3
+        if gain is None:
+            gain = USUAL_SHARE * size / device.mass_y * device.damping_y / (2.0 * device.mass_y)
+        per_sample = gain * device.mass_y * context.dt_ms
+        p.gain_cosine, p.gain_sine = per_sample * math.cos(phase), per_sample * math.sin(phase)
+        p.lead = math.radians(params.phase_error_deg)
+        p.ahead = 0.5 * context.dt_ms if params.advance else 0.0
+        p.kept = share_kept(1e3 / (2.0 * math.pi * params.bandwidth_hz), context.dt_ms)
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: State, x: ForceToRebalance.Ports) -> None:
+        """Demodulate y, integrate while it drives, and put the force on."""
+        omega = 2e-3 * math.pi * x.frequency
+        in_step, with_velocity = components(x.y_measured, x.y_velocity, omega, x.sine, x.cosine)
+        if x.engaged != 0.0:
+            s.in_step -= p.gain_cosine * in_step - p.gain_sine * with_velocity
+            s.with_velocity -= p.gain_cosine * with_velocity + p.gain_sine * in_step
+        turn = p.lead + p.ahead * omega
+        turn_cosine, turn_sine = cos(turn), sin(turn)
+        sine = x.sine * turn_cosine + x.cosine * turn_sine
+        cosine = x.cosine * turn_cosine - x.sine * turn_sine
+        x.y = s.with_velocity * cosine + s.in_step * sine
+        if x.amplitude > 1e-6:
+            per_amplitude = p.sense.dps / x.amplitude
+            s.rate += (1.0 - p.kept) * (per_amplitude * s.with_velocity - s.rate)
+            s.quadrature += (1.0 - p.kept) * (per_amplitude * s.in_step - s.quadrature)
+        x.rate = s.rate
+        x.quadrature = s.quadrature
+        x.rest_in_step = in_step
+        x.rest_with_velocity = with_velocity

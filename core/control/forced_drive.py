@@ -1,0 +1,76 @@
+"""Forced drive: a sine force along x, whatever x does."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from core.block import Block, BlockParams, Context, Equation, parameter
+from core.control.two_axis import DrivePorts, two_axis
+from core.phase import sine_of
+from core.ports import output
+from core.record import Record
+from core.units import hz_of_rad_ms
+
+
+class ForcedDrive(Block):
+    r"""A sine force, :math:`F_x=F\sin(2\pi ft+\varphi)`; held by a converter, or analogue.
+
+    The carrier is what x would do at its resonance: its velocity is in step with the force.
+    """
+
+    title = "Forced drive"
+    place = 11
+    axes = ("x", "y")
+    slot = "drive"
+    equations = (Equation("force", r"F_x=F\sin(2\pi ft+\varphi)"),)
+
+    class Params(BlockParams):
+        """The force."""
+
+        force_un: float | None = parameter(
+            None, "amplitude; what the device needs for its amplitude at resonance unless given", "uN", ge=0, le=1e6
+        )
+        frequency_hz: float | None = parameter(
+            None, "frequency; that of the mode nearest to x unless given", "Hz", ge=0, le=1e6
+        )
+        phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
+
+    class Packed(Record):
+        """The force, its turns per ms, turns at the start, interval."""
+
+        force: float
+        cycles: float
+        start: float
+        dt_ms: float
+
+    class Ports(DrivePorts):
+        """Ports of the drive slot, and the force between samples."""
+
+        x_middle: float = output("uN", "force along x half a sample later", hidden=True)
+        x_end: float = output("uN", "force along x one sample later", hidden=True)
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the force."""
+        device = two_axis(context)
+        p = cls.Packed.blank()
+        hz = hz_of_rad_ms(device.drive_frequency) if params.frequency_hz is None else params.frequency_hz
+        needed = device.damping * device.drive_frequency * device.amplitude
+        p.force = needed if params.force_un is None else params.force_un
+        p.cycles, p.start, p.dt_ms = 1e-3 * hz, params.phase_deg / 360.0, context.dt_ms
+        return p
+
+    @staticmethod
+    def step(p: Packed, s: Record, x: ForcedDrive.Ports) -> None:
+        """Play the sine."""
+        turns = p.cycles * x.time_ms + p.start
+        x.x = p.force * sine_of(turns)
+        x.x_middle = p.force * sine_of(turns + 0.5 * p.cycles * p.dt_ms)
+        x.x_end = p.force * sine_of(turns + p.cycles * p.dt_ms)
+        x.sine = sine_of(turns - 0.25)
+        x.cosine = sine_of(turns)
+        omega = 2.0 * math.pi * p.cycles
+        w = x.x_velocity / omega if omega > 0.0 else 0.0
+        x.amplitude = math.sqrt(x.x_measured * x.x_measured + w * w)
+        x.frequency = 1e3 * p.cycles

@@ -1,0 +1,45 @@
+"""Measurement of an axis: what controllers and diagnosers are given of it, and what is wrong with it."""
+
+from __future__ import annotations
+
+from core.block import Block, BlockParams
+from core.elementary import floor
+from core.ports import BlockPorts, output, reads
+from core.record import Record
+
+
+class AxisMeasurement(Block):
+    """Passes on what the sensor in use says of one axis; a fault of the read-out acts on all axes alike.
+
+    Faults come in the order of the chain: what is added before the converter, the converter, the samples that get
+    lost behind it.
+    """
+
+    title = "Measurement of an axis"
+    per_axis = True
+
+    class Params(BlockParams):
+        """Nothing to choose but the sensor."""
+
+    class Ports(BlockPorts):
+        """The sensor in use, what is wrong with it, and what is measured."""
+
+        chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
+        chosen_velocity: float = reads("@measuring_velocity", "um/ms", "velocity of the sensor in use")
+        offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
+        quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
+        held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
+        displacement: float = output("um", "measured displacement along the axis")
+        velocity: float = output("um/ms", "measured velocity along the axis")
+
+    @staticmethod
+    def step(p: Record, s: Record, x: Ports) -> None:
+        """Pass on displacement and velocity, unless the sample was lost."""
+        if x.held == 0.0:
+            z = x.chosen
+            if x.offset != 0.0:
+                z += x.offset
+            if x.quantum != 0.0:
+                z = x.quantum * floor(z / x.quantum + 0.5)
+            x.displacement = z
+            x.velocity = x.chosen_velocity

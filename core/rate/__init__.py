@@ -1,0 +1,1 @@
+"""What turns the device: generators of angular rate."""

@@ -1,0 +1,1 @@
+"""Read-outs: what they conclude from the rate a controller estimates."""

@@ -1,0 +1,172 @@
+"""Gyroscopes on a live bench: parts follow the signals with the factors that the caption says."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+
+from server.view3d.colours import SILICON
+from server.view3d.gyroscope.body import ABOVE_UM
+from server.view3d.gyroscope.parts import APART_UM, TOP_UM
+from server.view3d.gyroscope.scene import FORCE_UM
+from server.view3d.layout import UM_PER_UNIT
+from server.view3d.viewers import build_scene, observer_of
+
+SINGLE: dict[str, Any] = {
+    "schema": 1,
+    "id": "one-gyroscope",
+    "title": "One gyroscope",
+    "sample_rate_khz": 100,
+    "seed": 1,
+    "device": {"id": "gyro-c"},
+    "plant": {"initial_x_um": 5.0},
+    "rate": {"kind": "constant", "deg_per_s": 100.0},
+    "controller": {"kind": "open_loop_rate"},
+}
+PAIR: dict[str, Any] = {
+    **SINGLE,
+    "id": "two-gyroscopes",
+    "device": {"id": "gyro-4-5"},
+    "plant": {"model": "gyroscope_pair"},
+    "rate": {"kind": "constant", "deg_per_s": -50.0},
+    "slots": {"drive": "drive_tracking"},
+    "controller": {"kind": "sense_axis_sync"},
+}
+
+
+def factors(caption: str) -> tuple[float, float]:
+    """Read the factors from a caption."""
+    found = re.search(r"x × (\S+), y × (\S+),", caption.replace("\u2009", ""))
+    assert found is not None, caption
+    return float(found[1]), float(found[2])
+
+
+@contextmanager
+def drawn(live: Any, scenario: dict[str, Any], ticks: int) -> Iterator[tuple[Any, dict[str, Any], Any, Any]]:
+    """Return bench, session, scene and observer of a bench after some ticks."""
+    bench = live.bench(scenario, paused=True)
+    live.command(bench["id"], "step", ticks=ticks)
+    session = live.service.benches.get(bench["id"])
+    scene = build_scene(session)
+    try:
+        yield bench, session, scene, observer_of(session)
+    finally:
+        scene.close()
+
+
+def middle(handle: Any) -> Any:
+    """Return the middle of a mesh, um."""
+    return (handle.vertices.max(0) + handle.vertices.min(0)) / 2 * UM_PER_UNIT
+
+
+def test_the_mass_is_where_the_signals_say_by_the_factors_of_the_caption(live: Any) -> None:
+    with drawn(live, SINGLE, 5000) as (bench, session, scene, observer):
+        for ticks in (1, 7, 11):
+            live.command(bench["id"], "step", ticks=ticks)
+            pose = observer.pose()
+            scene.show(pose)
+            x, y = (session.board.value(f"plant.{axis}") for axis in "xy")
+            fx, fy = factors(pose.caption)
+            assert fx == 5.0 < fy
+            assert pose.places == (pytest.approx((x * fx, y * fy), rel=1e-5),)
+            (plate, _), _, (dot, _) = scene._bodies[0]._moving
+            np.testing.assert_allclose(middle(plate)[:2], (x * fx, y * fy), atol=1e-3)
+            np.testing.assert_allclose(middle(dot), (x * fx, y * fy, TOP_UM + ABOVE_UM), atol=1e-3)
+            orbit = scene._bodies[0]._orbit.points
+            np.testing.assert_allclose(orbit[-1, 1] * UM_PER_UNIT, (x * fx, y * fy, TOP_UM + ABOVE_UM), atol=1e-3)
+            assert 0.9 * 5.0 * fx < np.abs(orbit[..., 0]).max() * UM_PER_UNIT < 1.05 * 5.0 * fx
+        assert session.drive_period_ticks == pytest.approx(1e5 / 3925.29, rel=1e-3)
+        assert (scene._rate.text, pose.turn) == ("rate +100\u00a0deg/s", 0.5)
+        assert not scene._force.visible and "not to scale" in scene._caption.text
+
+
+def test_a_fast_motion_is_strobed_evenly(live: Any) -> None:
+    bench = live.bench(SINGLE, time_scale=1.0)
+    session = live.service.benches.get(bench["id"])
+    observer, poses = observer_of(session), []
+    end = time.monotonic() + 10
+    while time.monotonic() < end and len(poses) < 40:
+        pose = observer.pose()
+        if pose.caption.endswith("strobe"):
+            poses.append(pose.places[0][0])
+        time.sleep(1.25 / 40)
+    # one period in 1.25 s: both ends of the swing, and no jumps between neighbours
+    reach = max(np.abs(poses))
+    assert len(poses) == 40 and max(poses) > 0.9 * reach and min(poses) < -0.9 * reach
+    assert np.sort(np.abs(np.diff(poses)))[36] < 0.6 * reach
+
+
+def test_two_stand_side_by_side_and_the_force_that_follows_is_an_arrow(live: Any) -> None:
+    with drawn(live, PAIR, 9000) as (bench, session, scene, observer):
+        seen = set()
+        for _ in range(6):
+            live.command(bench["id"], "step", ticks=5)
+            pose = observer.pose()
+            scene.show(pose)
+            fx, fy = factors(pose.caption)
+            signals = [session.board.value(f"plant.{axis}") for axis in ("x", "y", "partner_x", "partner_y")]
+            np.testing.assert_allclose(np.ravel(pose.places), np.multiply(signals, (fx, fy, fx, fy)), rtol=1e-5)
+            force = session.board.value("drive.y.force")
+            assert np.sign(pose.force) == np.sign(force) and abs(pose.force) <= 1.0
+            shaft = scene._force.vertices[:, 1] * UM_PER_UNIT
+            assert np.ptp(shaft) == pytest.approx(FORCE_UM * abs(pose.force), rel=1e-4)
+            assert shaft[3] == pytest.approx(FORCE_UM * pose.force, rel=1e-4)
+            seen.add(np.sign(force))
+        assert seen == {1.0, -1.0} and scene._force.visible and "µN" in scene._force_words.text
+        assert [body.centre for body in scene._bodies] == [(-APART_UM, 0.0), (APART_UM, 0.0)]
+        assert pose.turn == -0.5 and scene._rate.text.startswith("rate \u221250")
+        live.command(bench["id"], "switch", controller="open_loop_rate")
+        live.command(bench["id"], "step", ticks=5)
+        scene.show(observer.pose())
+        assert observer.pose().force is None and not scene._force.visible and not scene._force_words.visible
+
+
+def test_a_frame_is_a_handful_of_messages_and_none_when_nothing_moves(live: Any) -> None:
+    for scenario, most in ((SINGLE, 12), (PAIR, 24)):
+        with drawn(live, scenario, 9000) as (bench, _, scene, observer):
+            scene.show(observer.pose())
+            sent: list[Any] = []
+            server = scene._server._websock_server
+            queue = server.queue_message
+            server.queue_message = lambda message, queue=queue, sent=sent: (sent.append(message), queue(message))
+            scene.show(observer.pose())
+            assert not sent
+            for _ in range(5):
+                live.command(bench["id"], "step", ticks=7)
+                sent.clear()
+                scene.show(observer.pose())
+                assert 5 <= len(sent) <= most
+                values = sum(np.size(value) for message in sent for value in vars(message).get("updates", {}).values())
+                assert values < 4000 * len(scene._bodies)
+
+
+def test_faults_reach_the_parts_of_the_first(live: Any) -> None:
+    with drawn(live, PAIR, 100) as (bench, _, scene, observer):
+        first, partner = scene._bodies
+        scene.show(observer.pose())
+        assert not scene._added and not first._gas.visible
+        for fault in ("added_mass", "stiffness", "damping", "sensor_bias"):
+            live.command(bench["id"], "inject", fault=fault, severity=0.2)
+        live.command(bench["id"], "step", ticks=2)
+        scene.show(observer.pose())
+        assert {node.name for node in scene._added} >= {"/first/mass/added-mass", "/labels/3"}
+        assert first._gas.visible and not partner._gas.visible
+        for axis in "xy":
+            assert tuple(first._flexures[axis][0].color) != SILICON == tuple(partner._flexures[axis][0].color)
+        live.command(bench["id"], "heal", faults="all")
+        live.command(bench["id"], "step", ticks=2)
+        scene.show(observer.pose())
+        assert not scene._added and not first._gas.visible and tuple(first._flexures["x"][0].color) == SILICON
+
+
+def test_the_page_has_the_cameras_of_a_gyroscope(live: Any) -> None:
+    pages = [live.http.get(live.bench(scenario, paused=True)["view3d"]).text for scenario in (SINGLE, PAIR)]
+    boxes = [re.search(r'"whole": \{"box": \[\[(\S+), (\S+)\]', page) for page in pages]
+    widths = [float(box[2]) - float(box[1]) for box in boxes if box is not None]
+    assert widths[1] - widths[0] == pytest.approx(2 * APART_UM / UM_PER_UNIT)

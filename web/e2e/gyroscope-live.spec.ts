@@ -1,0 +1,121 @@
+import type { Locator, Page } from "@playwright/test";
+import { expect, test } from "./lab";
+
+const TRUE_DEG_S = 100;
+const BENCH = {
+  title: "Gyroscope",
+  plant: { model: "gyroscope" },
+  rate: { kind: "constant", deg_per_s: TRUE_DEG_S },
+  controller: { kind: "force_to_rebalance" },
+};
+
+/** The faults a bank knows, and the hypothesis it must come to. */
+const KNOWN = [
+  ["Quadrature", "quadrature+500"],
+  ["Loss of drive", "drive-50"],
+  ["Stiffness of the sensing axis", "sense+1"],
+  ["Leak of the package", "damping-x2"],
+];
+
+const DRIVE = ["Drive tracking", "Forced drive", "Drive loop (amplitude and phase)"];
+const SENSE = [
+  "Force to rebalance",
+  "Sense-axis synchronisation",
+  "Many-input adaptive control",
+  "Whole-angle read-out",
+];
+
+const legend = (page: Page, signal: string) => page.getByRole("region", { name: new RegExp(`^Scope: ${signal}`) });
+
+/** The number a scope shows beside a signal. */
+const reading = async (scope: Locator, name: string): Promise<number> =>
+  Number(new RegExp(`${name}\\s+(−?[\\d.]+)`).exec(await scope.innerText())?.[1].replace("−", "-"));
+
+test("four faults of a gyroscope are injected, found and healed from the page", async ({ page, openDocument }) => {
+  await openDocument({ ...BENCH, device: { id: "gyro-a" }, diagnosers: { bank: { kind: "axes_bank" } } });
+  await page.getByRole("tab", { name: "Faults" }).click();
+  await page.getByRole("tab", { name: "Diagnosis" }).click();
+  const faults = page.locator("section[aria-label='Faults']");
+  const says = page.getByRole("region", { name: "Diagnosis by bank" }).locator("dd").first();
+  for (const [title, hypothesis] of KNOWN) {
+    await expect(says).toHaveText("healthy");
+    await faults.getByRole("button", { name: new RegExp(`^Inject .*: ${title}$`) }).click();
+    await expect(faults.getByText("1 fault acts")).toBeVisible();
+    await expect(says).toHaveText(hypothesis);
+    await faults.getByRole("listitem").filter({ hasText: title }).getByRole("button", { name: "Heal" }).click();
+    await expect(faults.getByText("The device is healthy")).toBeVisible();
+  }
+
+  // why, in numbers: two residuals for each hypothesis, weighed together
+  await page.getByRole("region", { name: "Diagnosis by bank" }).locator("canvas").click({ force: true });
+  const why = page.getByRole("region", { name: "Why this sample" });
+  await expect(why.getByRole("columnheader", { name: "Residual along x, y" })).toBeVisible();
+  await expect(why.getByRole("row", { name: /^healthy.*m.*m.*%/ })).toBeVisible();
+  await expect(why.getByText("the winner raised by the least evidence")).toBeVisible();
+
+  // the device the adaptive law is tuned for; it drives both axes
+  await page.getByRole("tab", { name: "Controllers" }).click();
+  const controllers = page.locator("section[aria-label='Controllers']");
+  await controllers.getByRole("radio", { name: "Adaptive control with rate estimate" }).click();
+  await expect(controllers.getByText("Waits: Adaptive control with rate estimate")).toBeVisible();
+  await page.getByRole("tab", { name: "Angular rate" }).click();
+  const estimate = () => reading(legend(page, "rate.rate"), "adaptive rate rate");
+  await expect.poll(async () => Math.abs((await estimate()) - TRUE_DEG_S)).toBeLessThan(50);
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+});
+
+test("a loop makes something of a fault, and controllers take over from the page and drive", async ({
+  page,
+  openDocument,
+  server,
+}) => {
+  const id = await openDocument({ ...BENCH, device: { id: "gyro-c" } });
+  await server.ask("POST", `/benches/${id}/commands`, { kind: "time_scale", value: 0.5 });
+  const rate = () => reading(legend(page, "rate.rate"), "force to rebalance rate");
+  await expect.poll(rate).toBeCloseTo(TRUE_DEG_S, -1);
+
+  // half the comb that rebalances is shorted: the loop asks for twice the force and reads twice the rate
+  await page.getByRole("tab", { name: "Faults" }).click();
+  const faults = page.locator("section[aria-label='Faults']");
+  const shorted = faults.getByRole("listitem").filter({ hasText: "Shorted finger pairs" });
+  await shorted.getByRole("button", { name: "Shorted finger pairs", exact: true }).click();
+  await shorted.getByRole("textbox", { name: "Severity of Shorted finger pairs, exact" }).fill("50");
+  await shorted.getByRole("button", { name: /^Inject \+50 pairs$/ }).click();
+  await expect.poll(rate).toBeCloseTo(2 * TRUE_DEG_S, -1);
+  await faults.getByRole("button", { name: "Heal all" }).click();
+  await expect.poll(rate).toBeCloseTo(TRUE_DEG_S, -1);
+
+  // a spring between the axes is read as quadrature, beside what the device has, and not as a rate
+  await page.getByRole("tab", { name: "Quadrature" }).click();
+  const quadrature = () =>
+    reading(legend(page, "(@active|force_to_rebalance).quadrature"), "force to rebalance quadrature");
+  await expect.poll(quadrature).toBeGreaterThan(0);
+  const before = await quadrature();
+  await faults.getByRole("button", { name: /^Inject \+500 deg\/s: Quadrature$/ }).click();
+  await expect.poll(quadrature).toBeCloseTo(before + 500, -1);
+  await expect.poll(rate).toBeCloseTo(TRUE_DEG_S, -1);
+  await faults.getByRole("button", { name: "Heal all" }).click();
+  await expect(faults.getByText("The device is healthy")).toBeVisible();
+
+  await page.getByRole("tab", { name: "Forces" }).click();
+  await page.getByRole("tab", { name: "Controllers" }).click();
+  const panel = page.locator("section[aria-label='Controllers']");
+  const force = (axis: string) => () => reading(legend(page, "drive.x.force"), `drive ${axis} force`);
+  const choose = async (title: string) => {
+    const choice = panel.getByRole("radio", { name: title });
+    await choice.click();
+    await expect(choice).toBeChecked();
+  };
+  for (const title of DRIVE) {
+    await choose(title);
+    await expect.poll(force("x")).not.toBe(0);
+  }
+  for (const title of SENSE) {
+    await choose("Open-loop read-out");
+    await expect.poll(force("y")).toBe(0);
+    await choose(title);
+    await expect.poll(force("y")).not.toBe(0);
+  }
+  await expect(panel.getByText("Waits: Whole-angle read-out")).toBeVisible();
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+});

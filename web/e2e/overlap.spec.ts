@@ -1,0 +1,86 @@
+import type { Page } from "@playwright/test";
+import { expect, test } from "./lab";
+
+const SIZES = [
+  { width: 1366, height: 768 },
+  { width: 1920, height: 1080 },
+  { width: 820, height: 1180 },
+  { width: 390, height: 844 },
+];
+const LAYOUTS = ["lecture", "lab", "research"] as const;
+const PAGES = ["Gallery", "Runs", "Design", "Theory"];
+
+/** What is cut, lies over something else, or makes the page wider than its window. */
+const faults = (page: Page): Promise<string[]> =>
+  page.evaluate(() => {
+    const found: string[] = [];
+    const name = (e: Element) =>
+      `${e.tagName.toLowerCase()} "${(e.getAttribute("aria-label") ?? e.textContent ?? "").trim().slice(0, 40)}"`;
+    const wide = document.documentElement.scrollWidth - window.innerWidth;
+    if (wide > 0) found.push(`the page is ${wide} px wider than its window`);
+    const scrolls = (e: Element) => /auto|scroll/.test(getComputedStyle(e).overflowX + getComputedStyle(e).overflowY);
+    /** The part of an element that its scrolling and hiding ancestors leave. */
+    const visible = (e: Element) => {
+      let { left, top, right, bottom } = e.getBoundingClientRect();
+      for (let up = e.parentElement; up; up = up.parentElement) {
+        if (getComputedStyle(up).overflow === "visible") continue;
+        const box = up.getBoundingClientRect();
+        left = Math.max(left, box.left);
+        top = Math.max(top, box.top);
+        right = Math.min(right, box.right);
+        bottom = Math.min(bottom, box.bottom);
+      }
+      return { left, top, right, bottom };
+    };
+    for (const e of Array.from(document.querySelectorAll("button, a, input, select, [role=tab]"))) {
+      if (!e.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true }) || e.closest("[aria-hidden=true]"))
+        continue;
+      const box = e.getBoundingClientRect();
+      const seen = visible(e);
+      // half scrolled away is no fault, only what is meant to be whole
+      if (seen.right - seen.left < box.width - 1 || seen.bottom - seen.top < box.height - 1 || box.width < 2) {
+        const cut = [...ancestors(e)].find((up) => getComputedStyle(up).overflowX === "hidden" && !scrolls(up));
+        const lost = cut && box.right > cut.getBoundingClientRect().right + 1 && !e.matches("[role=tab]");
+        if (lost && box.width >= 2 && ![...ancestors(e)].some(scrolls)) found.push(`${name(e)} is cut`);
+        continue;
+      }
+      const middle = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
+      if (middle && !e.contains(middle) && !middle.contains(e) && !middle.closest("label")?.contains(e))
+        found.push(`${name(middle)} lies over ${name(e)}`);
+    }
+    for (const e of Array.from(
+      document.querySelectorAll("button, button span, h1, h2, h3, label, dt, dd, th, td, p, figcaption, strong"),
+    )) {
+      if (!e.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true })) continue;
+      const style = getComputedStyle(e);
+      const size = Number.parseFloat(style.fontSize);
+      const says = Array.from(e.childNodes).some((n) => n.nodeType === Node.TEXT_NODE && n.textContent?.trim());
+      if (says && size < 10.99 && !e.closest(".katex")) found.push(`${name(e)} is ${size} px high`);
+      if (style.overflowX === "hidden" && style.textOverflow !== "ellipsis" && e.scrollWidth > e.clientWidth + 1)
+        found.push(`${name(e)} is cut`);
+    }
+    return [...new Set(found)];
+
+    function* ancestors(e: Element) {
+      for (let up = e.parentElement; up; up = up.parentElement) yield up;
+    }
+  });
+
+for (const { width, height } of SIZES)
+  test(`nothing overlaps or is cut at ${width} x ${height}`, async ({ page, openBench }) => {
+    await page.setViewportSize({ width, height });
+    await page.emulateMedia({ colorScheme: width > 1000 ? "light" : "dark" });
+    // what comes or goes may lie over something for a moment
+    const clean = (where: string) => expect.poll(() => faults(page), { message: where }).toEqual([]);
+    for (const layout of LAYOUTS) {
+      await openBench(layout);
+      await expect(page.locator("canvas").first()).toBeVisible();
+      await clean(layout);
+    }
+    for (const name of PAGES) {
+      await page.getByRole("button", { name, exact: true }).click();
+      await expect(page.getByRole("button", { name, exact: true })).toHaveAttribute("aria-current", "page");
+      await page.waitForLoadState("networkidle");
+      await clean(name);
+    }
+  });

@@ -1,0 +1,75 @@
+import type { DockviewApi } from "dockview-react";
+import { scopeConfig } from "../panels/scope/scope-config";
+import { addTo, type Layouts, size } from "./built-in-layouts";
+
+const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 500 });
+const MOTION = scopeConfig(["plant.x", "plant.y"], { windowMs: 2 });
+const FORCES = scopeConfig(["drive.x.force", "drive.y.force"], { windowMs: 2 });
+const QUADRATURE = scopeConfig(["@active.quadrature"], { windowMs: 500 });
+
+/** The loops are drawn no narrower than this. */
+const LOOPS_PX = 284;
+
+/** Below the rate: what moves and what pushes, and beside it the path in its plane. */
+function addBelow(api: DockviewApi): void {
+  addTo(api, "forces", "scope", { below: "rate" }, FORCES, "Forces");
+  addTo(api, "locus", "locus", { right: "forces" });
+  addTo(api, "phase", "phase", { within: "locus", inactive: true });
+  addTo(api, "motion", "scope", { within: "forces", inactive: true }, MOTION, "Motion");
+  addTo(api, "quadrature", "scope", { within: "forces", inactive: true }, QUADRATURE, "Quadrature");
+  addTo(api, "allan", "allan", { within: "rate", inactive: true });
+  addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
+  addTo(api, "twins", "twins", { within: "forces", inactive: true });
+  addTo(api, "spectrum", "spectrum", { within: "forces", inactive: true });
+  addTo(api, "recordings", "recordings", { within: "forces", inactive: true });
+}
+
+/** The same layouts for a device with axes, which has a rate; what a bank says of it stands behind. */
+export const BUILT_IN_AXES: Layouts = {
+  lecture(api, width, height) {
+    addTo(api, "rate", "scope", {}, RATE, "Angular rate");
+    addTo(api, "controllers", "controllers", { right: "rate" });
+    addTo(api, "faults", "faults", { within: "controllers", inactive: true });
+    addTo(api, "allan", "allan", { within: "rate", inactive: true });
+    addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
+    addTo(api, "locus", "locus", { below: "rate" });
+    addTo(api, "view3d", "view3d", { right: "locus" });
+    size(api, width, height, { controllers: { w: 0.36 }, locus: { w: 0.32, h: 0.56 } });
+  },
+  lab(api, width, height) {
+    addTo(api, "rate", "scope", {}, RATE, "Angular rate");
+    addTo(api, "schematic", "schematic", { left: "rate" });
+    addTo(api, "controllers", "controllers", { below: "schematic" });
+    addTo(api, "faults", "faults", { within: "controllers", inactive: true });
+    addTo(api, "environment", "environment", { within: "controllers", inactive: true });
+    addTo(api, "card", "card", { within: "controllers", inactive: true });
+    addTo(api, "why", "why", { within: "controllers", inactive: true });
+    addBelow(api);
+    addTo(api, "events", "events", { within: "forces", inactive: true });
+    const loops = Math.max(0.28, LOOPS_PX / width);
+    size(api, width, height, {
+      schematic: { w: loops, h: 0.4 },
+      rate: { h: 0.44 },
+      forces: { w: 0.58 * (1 - loops) },
+    });
+  },
+  research(api, width, height) {
+    addTo(api, "rate", "scope", {}, RATE, "Angular rate");
+    addTo(api, "schematic", "schematic", { left: "rate" });
+    addTo(api, "view3d", "view3d", { right: "rate" });
+    addTo(api, "card", "card", { below: "view3d" });
+    addTo(api, "why", "why", { within: "card", inactive: true });
+    addTo(api, "scores", "scores", { within: "card", inactive: true });
+    addTo(api, "events", "events", { within: "card", inactive: true });
+    addTo(api, "controllers", "controllers", { below: "schematic" });
+    addTo(api, "faults", "faults", { within: "controllers", inactive: true });
+    addTo(api, "environment", "environment", { within: "controllers", inactive: true });
+    addBelow(api);
+    size(api, width, height, {
+      schematic: { w: Math.max(0.25, LOOPS_PX / width), h: 0.36 },
+      view3d: { w: 0.25, h: 0.4 },
+      rate: { h: 0.46 },
+      forces: { w: 0.27 },
+    });
+  },
+};

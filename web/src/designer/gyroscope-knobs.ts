@@ -1,0 +1,87 @@
+import { roundTo } from "../ui/unit-scale";
+import { DRAWING, type Knob, type KnobGroup } from "./knobs";
+
+/** A cross term reaches so much of the least of what it couples; what it must stay below is 1. */
+const CROSS_SHARE = 0.2;
+const MOST_DEG = 10;
+
+/** What can be turned about a gyroscope: its masses and swing, its stiffness and damping with what couples the axes. */
+export function gyroscopeKnobs(value: (path: string) => number | undefined): KnobGroup[] {
+  const at = (name: string) => value(`gyroscope.${name}`);
+  const around = (name: string, label: string, unit: string): Knob[] => {
+    const middle = at(name);
+    return middle
+      ? [{ path: `gyroscope.${name}`, label, unit, low: middle / 4, high: middle * 4, step: 0, log: true }]
+      : [];
+  };
+  const about = (name: string, label: string, unit: string, reach: number): Knob[] =>
+    at(name) === undefined
+      ? []
+      : [{ path: `gyroscope.${name}`, label, unit, low: -reach, high: reach, step: roundTo(reach / 200, 1) }];
+  const cross = (x: string, y: string) => roundTo(CROSS_SHARE * Math.min(at(x) ?? 1, at(y) ?? 1), 1);
+  return [
+    {
+      title: "Masses and swing",
+      knobs: [
+        ...around("mass_x_kg", "Mass along x", "kg"),
+        ...around("mass_y_kg", "Mass along y", "kg"),
+        ...around("coriolis_mass_kg", "Mass the rate acts on", "kg"),
+        ...around("drive_amplitude_um", "Amplitude of x", "um"),
+      ],
+    },
+    {
+      title: "Stiffness",
+      knobs: [
+        ...around("stiffness_x_n_m", "Along x", "N/m"),
+        ...around("stiffness_y_n_m", "Along y", "N/m"),
+        ...about("stiffness_xy_n_m", "Cross stiffness", "N/m", cross("stiffness_x_n_m", "stiffness_y_n_m")),
+        ...about("alpha_deg", "Angle of its axes", "deg", MOST_DEG),
+      ],
+    },
+    {
+      title: "Damping",
+      knobs: [
+        ...around("damping_x_ns_m", "Along x", "N s/m"),
+        ...around("damping_y_ns_m", "Along y", "N s/m"),
+        ...about("damping_xy_ns_m", "Cross damping", "N s/m", cross("damping_x_ns_m", "damping_y_ns_m")),
+        ...about("gamma_deg", "Angle of its axes", "deg", MOST_DEG),
+      ],
+    },
+  ];
+}
+
+const drawn = (name: string, label: string, unit: string, low: number, high: number, step: number): Knob => ({
+  path: `drawn_gyroscope.${name}`,
+  label,
+  unit,
+  low,
+  high,
+  step,
+});
+
+/** What can be turned about a gyroscope from a drawing: the drawing, what y has of its own, and what no drawing tells. */
+export const DRAWN_GYROSCOPE: KnobGroup[] = [
+  {
+    title: "Sense frame, along y",
+    knobs: [
+      drawn("sense_beam_length_um", "Beam length along y", "um", 100, 800, 1),
+      drawn("sense_beam_width_um", "Beam width along y, drawn", "um", 1, 6, 0.05),
+      drawn("sense_fingers", "Fingers per side along y", "", 4, 160, 1),
+    ],
+  },
+  ...DRAWING.map(({ title, knobs }) => ({
+    title,
+    knobs: knobs
+      .filter(({ path }) => path !== "bias_v")
+      .map((knob) => ({ ...knob, label: knob.label.replace(/^(Beam \w+|Fingers per side)/, "$1 along x") })),
+  })),
+  {
+    title: "Swing, package and making",
+    knobs: [
+      drawn("drive_amplitude_um", "Amplitude of x", "um", 0.5, 15, 0.1),
+      { ...drawn("package_pa", "Pressure in the package", "Pa", 0.1, 1e5, 0), log: true },
+      drawn("alpha_deg", "Angle of the axes of stiffness", "deg", -2, 2, 0.01),
+      drawn("gamma_deg", "Angle of the axes of damping", "deg", -2, 2, 0.01),
+    ],
+  },
+];

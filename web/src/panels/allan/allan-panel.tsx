@@ -1,0 +1,115 @@
+import { Button } from "@mantine/core";
+import { useCallback } from "react";
+import { api } from "../../api/api";
+import { useAnswer } from "../../api/use-answer";
+import { openVariant } from "../../app/open-variant";
+import { send, showError } from "../../app/send";
+import { useScheme } from "../../app/use-scheme";
+import { drawnSvg } from "../../picture/drawn-svg";
+import type { Picture } from "../../picture/picture";
+import { PictureMenu } from "../../picture/picture-menu";
+import { pictureName } from "../../picture/picture-name";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatIn } from "../../ui/format";
+import { usePanelVisible } from "../../ui/panel-visible";
+import { useSize } from "../../ui/use-size";
+import styles from "./allan.module.css";
+import { AllanPlot, LINES, lineOf } from "./allan-plot";
+import { FigureTable } from "./figure-table";
+
+const EVERY_MS = 1000;
+const LEGEND = [
+  ["measured", "Measured, with its standard error"],
+  ["fitted", "Fitted, and its terms"],
+  ["true", "The noise of the rate itself"],
+] as const;
+
+/** The noise of the rate that the driving controller estimates, as an Allan plot, while the bench runs. */
+export function AllanPanel() {
+  const id = useBench((s) => s.bench?.id);
+  const readouts = useBench((s) => s.bench?.parameters.readouts) as Record<string, { kind?: string }> | undefined;
+  const visible = usePanelVisible();
+  const name = Object.entries(readouts ?? {}).find(([, { kind }]) => kind === "allan")?.[0];
+  if (!id)
+    return <EmptyState title="No bench yet">The noise of the rate appears with the bench of a gyroscope.</EmptyState>;
+  if (!name)
+    return (
+      <EmptyState
+        title="No read-out on this bench"
+        action={
+          <Button
+            size="xs"
+            onClick={() => openVariant({ "readouts.allan.kind": "allan" }, "Bench with a read-out").catch(showError)}
+          >
+            Begin again with one
+          </Button>
+        }
+      >
+        An Allan deviation gathers the rate from the first tick on, so the bench begins again from tick 0; the one
+        before stays.
+      </EmptyState>
+    );
+  return visible ? <Readout key={`${id} ${name}`} bench={id} name={name} /> : null;
+}
+
+function Readout({ bench, name }: { bench: string; name: string }) {
+  const ask = useCallback(() => api.readout(bench, name), [bench, name]);
+  const { value: readout, error } = useAnswer(ask, () => EVERY_MS);
+  const scheme = useScheme();
+  const limited = useBench((s) => s.bench?.time_scale !== null && !s.bench?.replay_of);
+  const { element, size } = useSize<HTMLDivElement>();
+  const take = (): Picture | undefined =>
+    readout && {
+      ...pictureName("Allan deviation"),
+      height: 480,
+      legend: LEGEND.map(([key, words]) => ({
+        name: words,
+        colour: lineOf(key, "light"),
+        dashes: LINES[key].dash.split(" ").filter(Boolean).map(Number),
+      })),
+      paint: (pen, box) => pen.add(drawnSvg(<AllanPlot readout={readout} {...box} scheme="light" />)),
+    };
+  return (
+    <section className={styles.panel} aria-label="Allan deviation">
+      <div className={styles.bar}>
+        <span>
+          {readout
+            ? `Record of ${formatIn(readout.record_s, "s", readout.record_s < 100 ? 2 : 0)}`
+            : (error?.body.message ?? "Asking")}
+        </span>
+        {limited && (
+          <Button
+            size="compact-xs"
+            variant="light"
+            title="Noise is told by long records; this bench can run faster than it does"
+            onClick={() => void send({ kind: "time_scale", value: null }, "As fast as possible")}
+          >
+            Gather as fast as possible
+          </Button>
+        )}
+        <PictureMenu take={take} />
+      </div>
+      <div className={styles.body}>
+        <div className={styles.chart}>
+          <div ref={element} className={styles.stage}>
+            {readout && size.width > 120 && size.height > 100 && (
+              <AllanPlot readout={readout} {...size} scheme={scheme} />
+            )}
+          </div>
+          <ul className={styles.legend}>
+            {LEGEND.map(([key, words]) => (
+              <li key={key}>
+                <svg width="24" height="8" aria-hidden="true">
+                  <path d="M0 4H24" stroke={lineOf(key, scheme)} strokeWidth="2.2" strokeDasharray={LINES[key].dash} />
+                </svg>
+                {words}
+              </li>
+            ))}
+          </ul>
+        </div>
+        {readout && <FigureTable figures={readout.figures} />}
+      </div>
+    </section>
+  );
+}

@@ -1,0 +1,49 @@
+import type { RateReadout } from "../../api/types";
+import { formatShort, formatSi } from "../../ui/format";
+import styles from "./allan.module.css";
+import { driftGrade, walkGrade } from "./grade";
+
+/** Fitted noises beside the true ones, with their grade, or why the record does not tell them yet. */
+export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {
+  return (
+    <table className={styles.table}>
+      <thead>
+        <tr>
+          <th scope="col">Noise</th>
+          <th scope="col">Fitted</th>
+          <th scope="col">Of the rate itself</th>
+        </tr>
+      </thead>
+      <tbody>
+        {figures.map((figure) => (
+          <tr key={figure.letter}>
+            <th scope="row">
+              {figure.name.charAt(0).toUpperCase() + figure.name.slice(1)} <i>{figure.letter}</i>
+            </th>
+            <td>
+              {figure.value === null ? (
+                <small>{sentence(figure.reason)}</small>
+              ) : (
+                <>
+                  <b>{formatSi(figure.value, figure.unit, 3)}</b>
+                  <small>
+                    ± {formatSi(figure.error ?? 0, figure.unit, 2)}
+                    {gradeOf(figure.letter, figure.value)}
+                  </small>
+                </>
+              )}
+            </td>
+            <td>{formatShort(figure.true, figure.unit, 3)}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function gradeOf(letter: string, value: number): string {
+  if (letter === "N") return `, ${walkGrade(value)}`;
+  return letter === "B" ? `, ${driftGrade(value)}` : "";
+}
+
+const sentence = (reason: string) => `${reason.charAt(0).toUpperCase()}${reason.slice(1)}.`;

@@ -1,0 +1,32 @@
+import type { LogEntry } from "../../api/types";
+import { cardOf } from "../../api/use-catalog";
+import { severityScale, severityText } from "../faults/severity";
+
+/** What an event says on its flag: a few words. */
+export function flagWords({ kind, command, new: value }: LogEntry): string {
+  if (kind === "recognised") return `found ${value}`;
+  if (kind === "truth_changed") return `truth: ${value}`;
+  if (kind in WORDS || !command) return WORDS[kind] ?? kind.replaceAll("_", " ");
+  if ("fault" in command) return faultWords(command.fault, command.severity);
+  if ("switch" in command) return titleOf("control", command.switch);
+  if ("set" in command) return `${Object.keys(command.set).map(leaf).join(", ")} changed`;
+  return kind.replaceAll("_", " ");
+}
+
+const WORDS: Partial<Record<string, string>> = {
+  heal: "healed",
+  tripped: "stopped",
+  reset_trip: "trip reset",
+  scheduled: "waits",
+};
+
+function faultWords(name: string, severity: number): string {
+  const card = cardOf("faults", name);
+  const parameter = card?.parameters.find((p) => p.name === "severity");
+  const scale = severityScale(parameter, card?.suggested ?? 0);
+  return `${titleOf("faults", name)} ${severityText(severity, scale, parameter?.unit ?? "")}`;
+}
+
+const titleOf = (family: string, name: string) => cardOf(family, name)?.title ?? name.replaceAll("_", " ");
+
+const leaf = (path: string) => path.slice(path.lastIndexOf(".") + 1).replaceAll("_", " ");

@@ -1,0 +1,43 @@
+import { Button, NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import { fits } from "../../api/fits";
+import { useCatalog } from "../../api/use-catalog";
+import { openVariant } from "../../app/open-variant";
+import { showError } from "../../app/send";
+import { useBench } from "../../stream/bench-store";
+
+const USUAL = "mmae";
+
+/** Begin the bench again with a bank of hypotheses that suits its plant. */
+export function OfferDiagnoser() {
+  const axes = useBench((s) => s.bench?.axes) ?? [];
+  const replay = useBench((s) => s.bench?.replay_of);
+  const { blocks } = useCatalog();
+  const [wanted, setWanted] = useState(USUAL);
+  const [busy, setBusy] = useState(false);
+  const banks = blocks.filter(
+    (b) => b.family === "diagnose" && fits(b, axes) && b.parameters.some((p) => p.name === "hypotheses"),
+  );
+  const bank = banks.find((b) => b.name === wanted) ?? banks[0];
+  if (!bank || replay) return null; // the past cannot be changed
+  const begin = () => {
+    setBusy(true);
+    openVariant({ [`diagnosers.${bank.name}`]: { kind: bank.name } }, `The bench begins again with ${bank.title}.`)
+      .catch(showError)
+      .finally(() => setBusy(false));
+  };
+  return (
+    <>
+      <NativeSelect
+        size="xs"
+        aria-label="Diagnoser to add"
+        value={bank.name}
+        data={banks.map((b) => ({ value: b.name, label: b.title }))}
+        onChange={(e) => setWanted(e.currentTarget.value)}
+      />
+      <Button size="xs" loading={busy} onClick={begin}>
+        Begin again with it
+      </Button>
+    </>
+  );
+}

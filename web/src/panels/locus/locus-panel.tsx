@@ -1,0 +1,47 @@
+import { NativeSelect, SegmentedControl } from "@mantine/core";
+import { useMemo, useRef, useState } from "react";
+import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
+import styles from "../phase/phase.module.css";
+import { LocusPlot, type Mass } from "./locus-plot";
+
+const MASS: Mass = { name: "Mass", x: "plant.x", y: "plant.y" };
+const PARTNER: Mass = { name: "Partner", x: "plant.partner_x", y: "plant.partner_y" };
+
+/** The path of the mass in the plane it moves in, with the tilt of its long axis; that of a partner beside it. */
+export function LocusPanel() {
+  const axes = useBench((s) => s.bench?.axes);
+  const [windowMs, setWindowMs] = useState(2);
+  const [stretched, setStretched] = useState(false);
+  const picture = useRef<TakePicture>(null);
+  const masses = useMemo(() => (axes?.includes("partner_x") ? [MASS, PARTNER] : [MASS]), [axes]);
+  if (!axes) return <EmptyState title="No bench yet">The path of the mass appears with the bench.</EmptyState>;
+  return (
+    <section className={styles.panel} aria-label="Locus">
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          w={84}
+          aria-label="Length of the path"
+          value={String(windowMs)}
+          data={windowItems(TIME_WINDOWS_MS.phase, windowMs)}
+          onChange={(e) => setWindowMs(Number(e.currentTarget.value))}
+        />
+        <SegmentedControl
+          size="xs"
+          aria-label="Scale of y"
+          value={stretched ? "own" : "same"}
+          data={[
+            { value: "same", label: "x and y alike" },
+            { value: "own", label: "y stretched" },
+          ]}
+          onChange={(value) => setStretched(value === "own")}
+        />
+        <PictureMenu take={() => picture.current?.()} />
+      </div>
+      <LocusPlot masses={masses} windowMs={windowMs} stretched={stretched} picture={picture} />
+    </section>
+  );
+}

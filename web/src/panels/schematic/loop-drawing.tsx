@@ -1,0 +1,114 @@
+import { showPanel } from "../../app/layouts";
+import { useView } from "../../app/view-store";
+import { BOX, type DrawnBox, type Wire } from "./box";
+import { faultLines } from "./loop";
+import styles from "./schematic.module.css";
+import { useLiveValues } from "./use-live-values";
+
+interface LoopDrawingProps {
+  label: string;
+  boxes: readonly DrawnBox[];
+  wires: readonly Wire[];
+  /** Signals whose newest values stand in the boxes, by box. */
+  shown: Record<string, string>;
+  /** The words of a value, where a number with its unit is not what is wanted. */
+  say?: (box: string, value: number) => string | undefined;
+  /** Names of the faults that act, arrows from there to what they act on, and where the names stand. */
+  faults: { titles: readonly string[]; arrows: readonly string[]; at: [number, number] | undefined };
+}
+
+/** A loop with what flows in it now; a box opens its card. */
+export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDrawingProps) {
+  const card = useView((s) => s.card);
+  const live = useLiveValues(shown, say);
+  const open = (id: string | undefined) => {
+    if (!id) return;
+    useView.setState({ card: id });
+    showPanel("card");
+  };
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: boxes of a drawing
+    <svg viewBox="0 0 348 266" className={styles.drawing} role="group" aria-label={label}>
+      <defs>
+        <marker
+          id="arrow"
+          viewBox="0 0 8 8"
+          refX="7"
+          refY="4"
+          markerWidth="7"
+          markerHeight="7"
+          orient="auto-start-reverse"
+        >
+          <path d="M0 0.5 L8 4 L0 7.5 Z" className={styles.head} />
+        </marker>
+      </defs>
+      {wires.map((wire) => (
+        <g key={wire.id}>
+          <path d={wire.d} className={styles.wire} markerEnd="url(#arrow)" />
+          <text x={wire.at[0]} y={wire.at[1]} className={styles.wireName}>
+            {wire.label}
+          </text>
+        </g>
+      ))}
+      {faults.titles.length > 0 && faults.at && (
+        <g className={styles.fault}>
+          <title>{faults.titles.join(", ")}</title>
+          {faults.arrows.map((d) => (
+            <path key={d} d={d} markerEnd="url(#arrow)" />
+          ))}
+          {faultLines(faults.titles).map((line, i) => (
+            <text key={line} x={faults.at?.[0]} y={(faults.at?.[1] ?? 0) + 16 * i}>
+              {line}
+            </text>
+          ))}
+        </g>
+      )}
+      {boxes.map((box) => (
+        // biome-ignore lint/a11y/useSemanticElements: SVG has no button
+        <g
+          key={box.id}
+          role="button"
+          tabIndex={0}
+          className={styles.box}
+          data-chosen={box.card !== undefined && box.card === card}
+          data-faulty={box.faulty}
+          data-waits={box.waits}
+          transform={`translate(${box.x} ${box.y})`}
+          onClick={() => open(box.card)}
+          onKeyDown={(event) => {
+            if (event.key !== "Enter" && event.key !== " ") return;
+            event.preventDefault();
+            event.stopPropagation();
+            open(box.card);
+          }}
+        >
+          <title>{`${box.title} ${box.kind}: show its equations and parameters`}</title>
+          <rect width={BOX.width} height={BOX.height} rx="5" />
+          <text x="8" y="16" className={styles.role}>
+            {box.title}
+          </text>{" "}
+          <text x="8" y="33" className={styles.kind}>
+            {shorten(box.kind)}
+          </text>
+        </g>
+      ))}
+      {boxes.map((box) => (
+        <text
+          key={box.id}
+          x={box.x + BOX.width - 8}
+          y={box.y + 56}
+          textAnchor="end"
+          className={styles.value}
+          ref={box.id in shown ? live(box.id) : undefined}
+        >
+          {box.says ?? ""}
+        </text>
+      ))}
+    </svg>
+  );
+}
+
+const shorten = (title: string) => {
+  const text = title.replace(/\s*\(.*\)$/, "");
+  return text.length > 14 ? `${text.slice(0, 13).trimEnd()}…` : text;
+};

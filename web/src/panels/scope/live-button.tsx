@@ -1,0 +1,20 @@
+import { useBench } from "../../stream/bench-store";
+import styles from "./scope.module.css";
+
+/** Says whether a picture follows the board, and leads back to now from the past. */
+export function LiveButton({ past, onLive }: { past: boolean; onLive(): void }) {
+  const running = useBench((s) => s.bench?.state === "running" && s.connection.phase !== "closed");
+  return (
+    <button
+      type="button"
+      className={styles.live}
+      data-past={past}
+      data-running={running}
+      aria-pressed={!past}
+      onClick={onLive}
+      title={past ? "Return to the newest data" : "Drag or scroll the plot to look at the past; the board runs on"}
+    >
+      {past ? "PAST → LIVE" : running ? "LIVE" : "LIVE, PAUSED"}
+    </button>
+  );
+}

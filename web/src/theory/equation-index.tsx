@@ -1,0 +1,79 @@
+import { Switch, TextInput } from "@mantine/core";
+import { IconSearch } from "@tabler/icons-react";
+import { memo, useDeferredValue, useMemo, useState } from "react";
+import { useCatalog } from "../api/use-catalog";
+import { EquationDetail } from "../panels/card/equation-detail";
+import { formatCount } from "../ui/format";
+import { Formula } from "../ui/formula";
+import styles from "./equation-index.module.css";
+import { type Entry, entriesOf, found } from "./equations";
+
+/** Every equation that runs here, and what was printed where the two differ. */
+export function EquationIndex() {
+  const { blocks } = useCatalog();
+  const [asked, setAsked] = useState("");
+  const [errataOnly, setErrataOnly] = useState(false);
+  const entries = useMemo(() => entriesOf(blocks), [blocks]);
+  const families = useMemo(() => found(entries, asked, errataOnly), [entries, asked, errataOnly]);
+  const shown = useDeferredValue(families, []); // hundreds are typeset: the page answers meanwhile
+  const listed = families.flatMap((family) => family.entries);
+  const errata = listed.filter(({ equation }) => equation.printed).length;
+  return (
+    <section className={styles.index} aria-label="Equations">
+      <header className={styles.head}>
+        <div>
+          <h2>Equations</h2>
+          <p role="status">
+            {errataOnly
+              ? `${formatCount(listed.length, "equation")} printed otherwise`
+              : `${formatCount(listed.length, "equation")}, ${errata} of them printed otherwise`}
+          </p>
+        </div>
+        <TextInput
+          size="xs"
+          aria-label="Search equations"
+          placeholder="Name, section or word: 5.2.4, gain, MRAC"
+          leftSection={<IconSearch size={15} />}
+          value={asked}
+          onChange={(e) => setAsked(e.currentTarget.value)}
+        />
+        <Switch
+          size="sm"
+          label="Errata only"
+          checked={errataOnly}
+          onChange={(e) => setErrataOnly(e.currentTarget.checked)}
+        />
+      </header>
+      {shown.map((family) => (
+        <section key={family.name} aria-label={family.name}>
+          <h3 className={styles.family}>{family.name}</h3>
+          <ul className={styles.list}>
+            {family.entries.map((entry) => (
+              <Row key={entry.blocks.join() + entry.equation.label + entry.equation.latex} entry={entry} />
+            ))}
+          </ul>
+        </section>
+      ))}
+      {blocks.length > 0 && listed.length === 0 && <p className={styles.none}>No equation has all these words.</p>}
+    </section>
+  );
+}
+
+const Row = memo(function Row({ entry: { blocks, equation } }: { entry: Entry }) {
+  return (
+    <li className={styles.row}>
+      <div className={styles.name}>
+        <b>{blocks.join(", ")}</b>
+        <span>{equation.label.replaceAll("_", " ")}</span>
+        {equation.source && <small>{equation.source}</small>}
+      </div>
+      {equation.printed ? (
+        <div className={styles.erratum}>
+          <EquationDetail equation={equation} />
+        </div>
+      ) : (
+        <Formula latex={equation.latex} />
+      )}
+    </li>
+  );
+});
