@@ -145,7 +145,9 @@ class Recordings:
     def _close(self, recording_id: str, values: dict[str, Any]) -> None:
         """Close a row; the events move into it from the file beside the trace."""
         path = self.path(recording_id)
-        values = {"finished": datetime.now(UTC), "events": events_of(path), **values}
+        if events := events_of(path):  # without the file they are in the row already, or there were none
+            values = {"events": events, **values}
+        values = {"finished": datetime.now(UTC), **values}
         values["bytes"] = path.stat().st_size if path.exists() else 0
         statement = update(RecordingRow).where(RecordingRow.id == recording_id).values(**values)
         try:
@@ -209,8 +211,12 @@ class Recordings:
             if state in OPEN or self.path(recording_id).with_suffix(PART).exists():
                 ticks = await asyncio.to_thread(self._rescue, recording_id)
                 log.warning("recovered %d ticks of recording %s", ticks, recording_id)
-        for path in self._folder.glob("*"):  # a crash between making a file and its row leaves an empty one
-            if path.suffix in (PART, EVENTS, ".part") and path.name.split(".")[0] not in known:
+        for path in self._folder.glob("*"):
+            recording_id = path.name.split(".")[0]
+            # A crash between making a file and its row leaves the file; one just after closing a row, its events.
+            is_orphan = path.suffix in (PART, EVENTS, ".part") and recording_id not in known
+            is_in_row = path.suffix == EVENTS and recording_id not in self._unclosed
+            if is_orphan or is_in_row:
                 path.unlink(missing_ok=True)
 
     def _rescue(self, recording_id: str) -> int:
