@@ -1,6 +1,6 @@
 import { useCallback, useEffect, useRef, useState } from "react";
-import { usePageVisible } from "../ui/use-page-visible";
 import { ApiError } from "./api-error";
+import { usePageVisible } from "./use-page-visible";
 
 export interface Answer<T> {
   value: T | undefined;

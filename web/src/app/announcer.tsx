@@ -1,8 +1,8 @@
 import { notifications } from "@mantine/notifications";
 import { useEffect } from "react";
-import { eventTone } from "../panels/events/event-tone";
+import { alarm, announce, useAnnouncements } from "../bench/announce";
+import { eventTone } from "../bench/event-tone";
 import { useBench } from "../stream/bench-store";
-import { alarm, announce, useAnnouncements } from "./announce";
 
 /** The page's live regions: faults, trips and a lost connection as alarms, findings politely. */
 export function Announcer() {

@@ -2,6 +2,8 @@ import { Button } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/api-error";
+import { benchInAddress, showBench } from "../bench/open-bench";
+import { pageInAddress, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
 import { EmptyState } from "../ui/empty-state";
@@ -11,14 +13,12 @@ import { openFirstBench } from "./first-bench";
 import { Header } from "./header/header";
 import { KeySheet } from "./key-sheet";
 import { NewBench } from "./new-bench";
-import { benchInAddress, showBench } from "./open-bench";
 import { PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
-import { pageInAddress, useView } from "./view-store";
 
 interface Failure {
   title: string;

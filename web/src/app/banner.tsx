@@ -1,13 +1,13 @@
 import { Button, CloseButton } from "@mantine/core";
 import type { ReactNode } from "react";
 import { useEffect, useState } from "react";
+import { actions } from "../bench/actions";
+import { showError } from "../bench/send";
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
-import { actions } from "./actions";
 import styles from "./banner.module.css";
 import { openAnyBench, startAgain } from "./first-bench";
-import { showError } from "./send";
 import { tryThis } from "./try-this";
 import { useLasting } from "./use-lasting";
 

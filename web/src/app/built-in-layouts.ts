@@ -1,7 +1,6 @@
 import type { AddPanelOptions, DockviewApi } from "dockview-react";
-import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
-import { PANELS } from "./panels";
-import type { LayoutName } from "./view-store";
+import type { LayoutName } from "../bench/view-store";
+import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 
 const MOTION = scopeConfig(["model.displacement", "plant.displacement", "sensor.displacement"]);
 const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
@@ -35,7 +34,7 @@ export function addTo(
   const options = {
     id,
     component: kind,
-    title: title ?? PANELS[kind].title,
+    ...(title ? { title } : {}),
     params: scope ? { scope } : {},
     inactive: where.inactive ?? false,
     ...(direction && referencePanel ? { position: { direction, referencePanel } } : {}),

@@ -1,5 +1,5 @@
 import { api } from "../api/api";
-import { benchInAddress, lastBench, openBench } from "./open-bench";
+import { benchInAddress, lastBench, openBench } from "../bench/open-bench";
 
 /** Worth seeing at first sight: the first of these that the library has. */
 const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];

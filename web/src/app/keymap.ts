@@ -1,8 +1,9 @@
-import { actions } from "./actions";
-import { focusNextGroup, setLayout } from "./layouts";
+import { actions } from "../bench/actions";
+import { focusNextGroup } from "../bench/dock";
+import type { PageName } from "../bench/view-store";
+import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
 import { themeSwitch } from "./theme-switch";
-import type { PageName } from "./view-store";
 
 export interface KeyBinding {
   /** `KeyboardEvent.key`, as typed. */

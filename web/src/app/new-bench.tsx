@@ -3,13 +3,13 @@ import { IconRulerMeasure } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { Device, ScenarioSummary } from "../api/types";
+import { openBench } from "../bench/open-bench";
+import { showError } from "../bench/send";
+import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
 import { EmptyState } from "../ui/empty-state";
 import styles from "./dialogs.module.css";
-import { openBench } from "./open-bench";
-import { showError } from "./send";
 import { SideSheet } from "./side-sheet";
-import { setPage, useView } from "./view-store";
 
 /** Start a bench from the library, on its own device or another; a study has no bench. */
 export function NewBench() {

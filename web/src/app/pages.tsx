@@ -6,11 +6,11 @@ import {
   IconRulerMeasure,
 } from "@tabler/icons-react";
 import type { ComponentType, ReactNode } from "react";
+import type { PageName } from "../bench/view-store";
 import { Designer } from "../designer/designer";
 import { GalleryPage } from "../gallery/gallery-page";
 import { RunsPage } from "../runs/runs-page";
 import { Theory } from "../theory/theory";
-import type { PageName } from "./view-store";
 import { Workspace } from "./workspace";
 
 export interface PageKind {

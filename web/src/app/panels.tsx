@@ -17,13 +17,13 @@ import { LocusPanel } from "../panels/locus/locus-panel";
 import { PhasePanel } from "../panels/phase/phase-panel";
 import { RecordingsPanel } from "../panels/recordings/recordings-panel";
 import { SchematicPanel } from "../panels/schematic/schematic-panel";
-import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
 import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
 import { TwinsPanel } from "../panels/twins/twins-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
 import { WhyPanel } from "../panels/why/why-panel";
+import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 
 export interface PanelProps {
   params: { scope?: ScopeConfig };

@@ -3,19 +3,19 @@ import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react
 import { useEffect, useRef, useState } from "react";
 import { hasAxes } from "../api/fits";
 import type { Bench } from "../api/types";
-import { type ScopeConfig, scopeConfig } from "../panels/scope/scope-config";
+import { usePageVisible } from "../api/use-page-visible";
+import { actions } from "../bench/actions";
+import { useView } from "../bench/view-store";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { useBench } from "../stream/bench-store";
+import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible } from "../ui/panel-visible";
-import { usePageVisible } from "../ui/use-page-visible";
-import { actions } from "./actions";
 import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";
 import { PanelBody } from "./panel-body";
 import { PANELS, suits } from "./panels";
 import styles from "./phone.module.css";
-import { useView } from "./view-store";
 
 const MOTION = scopeConfig(["model.displacement", "plant.displacement"]);
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });

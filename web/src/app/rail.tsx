@@ -1,7 +1,7 @@
-import { actions } from "./actions";
+import { actions } from "../bench/actions";
+import { type PageName, useView } from "../bench/view-store";
 import { PAGES } from "./pages";
 import styles from "./rail.module.css";
-import { type PageName, useView } from "./view-store";
 
 /** The pages, along the left; at the foot of a phone. */
 export function Rail() {

@@ -4,24 +4,15 @@ import { useCallback, useState } from "react";
 import { api } from "../api/api";
 import type { Bench } from "../api/types";
 import { useAnswer } from "../api/use-answer";
+import { restoreLayout } from "../bench/dock";
+import { openBench } from "../bench/open-bench";
+import { benchBefore } from "../bench/open-replay";
+import { send, showError } from "../bench/send";
+import { REPLAY_SPEEDS, speedItems } from "../bench/time-scale";
 import { useBench } from "../stream/bench-store";
 import { formatMoment } from "../ui/format";
 import { openAnyBench } from "./first-bench";
-import { restoreLayout } from "./layouts";
-import { openBench } from "./open-bench";
 import styles from "./replay-bar.module.css";
-import { send, showError } from "./send";
-import { REPLAY_SPEEDS, speedItems } from "./time-scale";
-
-/** The bench a replay was begun from, to go back to. */
-let cameFrom: string | undefined;
-
-/** Play a recording in this page. */
-export async function openReplay(recording: string): Promise<void> {
-  const from = useBench.getState().bench;
-  if (from && !from.replay_of) cameFrom = from.id;
-  openBench((await api.replay(recording)).id);
-}
 
 /** While the page plays a recording: where it is, how fast, which span again and again, and the way back. */
 export function ReplayBar() {
@@ -55,7 +46,7 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
   };
   const leave = async () => {
     try {
-      const id = cameFrom;
+      const id = benchBefore();
       if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
       else await openAnyBench();
       await api.removeBench(bench.id);

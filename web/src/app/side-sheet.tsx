@@ -1,6 +1,6 @@
 import { Drawer } from "@mantine/core";
 import type { ReactNode } from "react";
-import { useView } from "./view-store";
+import { useView } from "../bench/view-store";
 
 interface SideSheetProps {
   name: "keys" | "bench";

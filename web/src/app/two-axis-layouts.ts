@@ -1,5 +1,5 @@
 import type { DockviewApi } from "dockview-react";
-import { scopeConfig } from "../panels/scope/scope-config";
+import { scopeConfig } from "../stream/scope-config";
 import { addTo, type Layouts, size } from "./built-in-layouts";
 
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 500 });

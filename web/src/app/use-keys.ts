@@ -1,8 +1,8 @@
 import { useMantineColorScheme } from "@mantine/core";
 import { useEffect } from "react";
+import { useScheme } from "../ui/use-scheme";
 import { KEYMAP } from "./keymap";
 import { themeSwitch } from "./theme-switch";
-import { useScheme } from "./use-scheme";
 
 const TYPING =
   "input, textarea, select, [contenteditable], [role=slider], [role=menu], [role=listbox], [role=radiogroup]";

@@ -10,12 +10,13 @@ import {
 } from "dockview-react";
 import { type FunctionComponent, useEffect, useState } from "react";
 import { hasAxes } from "../api/fits";
+import { usePageVisible } from "../api/use-page-visible";
 import { useBench } from "../stream/bench-store";
 import { PanelVisible } from "../ui/panel-visible";
-import { usePageVisible } from "../ui/use-page-visible";
 import "./dock.css";
-import { DOCK_GAP } from "./dock-gap";
-import { addPanel, addScope, attachDock, layOutFor } from "./layouts";
+import { addPanel, addScope } from "../bench/dock";
+import { DOCK_GAP } from "../bench/dock-gap";
+import { attachDock, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind, suits } from "./panels";
 import { SCOPE_PRESETS } from "./scope-presets";

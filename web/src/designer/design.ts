@@ -11,8 +11,6 @@ export interface DesignState {
   drawn: { seed: number; geometry: Record<string, number> } | undefined;
 }
 
-export const AIR: Record<string, number> = { temperature_k: 300, pressure_pa: 101325, humidity_pct: 40 };
-
 export const newDesign = (id: string): DesignState => ({ id, changes: {}, environment: {}, drawn: undefined });
 
 /** Whether a device of the catalogue is a gyroscope made from a drawing. */

@@ -1,19 +1,11 @@
 import { NativeSelect } from "@mantine/core";
 import type { Device, DeviceCatalogue } from "../api/types";
 import { Knob } from "../ui/knob";
-import {
-  AIR,
-  catalogued,
-  changed,
-  type DesignState,
-  isDrawnGyroscope,
-  isGyroscope,
-  newDesign,
-  valueIn,
-} from "./design";
+import { AIR, AROUND_A_PACKAGE, ENVIRONMENT, type Knob as KnobOf } from "../ui/surroundings";
+import { catalogued, changed, type DesignState, isDrawnGyroscope, isGyroscope, newDesign, valueIn } from "./design";
 import styles from "./designer.module.css";
 import { DRAWN_GYROSCOPE, gyroscopeKnobs } from "./gyroscope-knobs";
-import { AROUND_A_PACKAGE, DRAWING, ENVIRONMENT, given, type Knob as KnobOf } from "./knobs";
+import { DRAWING, given } from "./knobs";
 
 interface DesignerControlsProps {
   catalogue: DeviceCatalogue;

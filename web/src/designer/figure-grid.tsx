@@ -1,6 +1,6 @@
 import { Popover, UnstyledButton } from "@mantine/core";
 import type { Evaluation } from "../api/types";
-import { EquationDetail } from "../panels/card/equation-detail";
+import { EquationDetail } from "../ui/equation-detail";
 import { formatChange, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import styles from "./designer.module.css";

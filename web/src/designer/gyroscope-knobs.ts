@@ -1,5 +1,6 @@
+import type { Knob, KnobGroup } from "../ui/surroundings";
 import { roundTo } from "../ui/unit-scale";
-import { DRAWING, type Knob, type KnobGroup } from "./knobs";
+import { DRAWING } from "./knobs";
 
 /** A cross term reaches so much of the least of what it couples; what it must stay below is 1. */
 const CROSS_SHARE = 0.2;

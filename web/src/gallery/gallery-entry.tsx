@@ -3,9 +3,9 @@ import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons
 import { useState } from "react";
 import { api } from "../api/api";
 import type { GalleryCard } from "../api/types";
-import { openBench } from "../app/open-bench";
-import { showError } from "../app/send";
-import { setPage } from "../app/view-store";
+import { openBench } from "../bench/open-bench";
+import { showError } from "../bench/send";
+import { setPage } from "../bench/view-store";
 import { Verdict } from "../ui/verdict";
 import { ExpectationTable } from "./expectation-table";
 import styles from "./gallery.module.css";

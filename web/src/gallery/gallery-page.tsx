@@ -3,7 +3,7 @@ import { IconPlayerTrackNext } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/use-answer";
-import { showError } from "../app/send";
+import { showError } from "../bench/send";
 import { EmptyState } from "../ui/empty-state";
 import { Stale } from "../ui/stale";
 import { chapterName, chaptersOf, chosen, EVERYTHING, VERDICTS } from "./chapters";

@@ -1,4 +1,4 @@
-import { marksNow } from "../panels/scope/marks-now";
+import { marksNow } from "../bench/marks";
 import type { PanelFrame } from "../stream/panel-frame";
 import type { EventAxis } from "./event-marks";
 

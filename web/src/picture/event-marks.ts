@@ -1,12 +1,11 @@
 import type { LogEntry } from "../api/types";
-import { eventTone } from "../panels/events/event-tone";
-import type { Marks } from "../panels/scope/scope-marks";
+import { eventTone } from "../bench/event-tone";
+import type { Marks } from "../bench/marks";
 import { fontFor } from "../ui/canvas-font";
 import { formatMoment } from "../ui/format";
 import { CANVAS } from "../ui/palette";
 import { timeUnit } from "../ui/time-axis";
-import type { Pen } from "./pen";
-import type { Box } from "./picture";
+import type { Box, Pen } from "./pen";
 
 export interface Field {
   left: number;

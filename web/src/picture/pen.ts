@@ -30,3 +30,9 @@ export interface Pen {
   fillText(text: string, x: number, y: number, maxWidth?: number): void;
   measureText(text: string): { width: number };
 }
+
+/** The size of what is painted, px. */
+export interface Box {
+  width: number;
+  height: number;
+}

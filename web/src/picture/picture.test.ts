@@ -1,6 +1,6 @@
 // @vitest-environment jsdom
 import { expect, it, vi } from "vitest";
-import type { Marks } from "../panels/scope/scope-marks";
+import type { Marks } from "../bench/marks";
 import type { EventAxis } from "./event-marks";
 import { PICTURE_WIDTH, type Picture, pictureSvg } from "./picture";
 

@@ -2,12 +2,8 @@ import { fontFor } from "../ui/canvas-font";
 import { CANVAS } from "../ui/palette";
 import { type EventAxis, eventsWithin, listEvents, markEvents, timeTitle } from "./event-marks";
 import { type LegendEntry, paintLegend } from "./legend";
+import type { Box } from "./pen";
 import { SvgPen } from "./svg-pen";
-
-export interface Box {
-  width: number;
-  height: number;
-}
 
 /** What a panel shows, to be kept as a file: its own painter, in light colours, and what stands around it. */
 export interface Picture {

@@ -1,9 +1,9 @@
 import { NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import type { PointTally } from "../api/types";
-import { Confusion } from "../panels/scoreboard/confusion";
+import { LineChart } from "../picture/line-chart";
+import { Confusion } from "../ui/confusion";
 import { formatCount, formatShare } from "../ui/format";
-import { LineChart } from "../ui/line-chart";
 import { delayLine, pointName } from "./points";
 import styles from "./runs.module.css";
 

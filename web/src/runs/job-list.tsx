@@ -2,7 +2,7 @@ import { ActionIcon, Progress } from "@mantine/core";
 import { IconPlayerStopFilled } from "@tabler/icons-react";
 import { api } from "../api/api";
 import type { Run, SweepRun } from "../api/types";
-import { showError } from "../app/send";
+import { showError } from "../bench/send";
 import { formatCount, formatNumber } from "../ui/format";
 import styles from "./runs.module.css";
 import type { Chosen } from "./use-chosen";

@@ -1,6 +1,6 @@
 import type { DiagnosisTally, PointTally } from "../api/types";
+import type { ChartLine } from "../picture/line-field";
 import { formatShort } from "../ui/format";
-import type { ChartLine } from "../ui/line-field";
 import { metricName } from "../ui/metric-name";
 
 /** Figures shown before anybody chooses. */

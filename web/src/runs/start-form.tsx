@@ -4,7 +4,7 @@ import { useEffect, useMemo, useState } from "react";
 import { api } from "../api/api";
 import { ApiError } from "../api/api-error";
 import type { ApiErrorBody, ScenarioSummary } from "../api/types";
-import { showError } from "../app/send";
+import { showError } from "../bench/send";
 import { formatCount } from "../ui/format";
 import { campaignOf, type Draft, EMPTY_RANGE, newDraft, pathsOf, pointCount, runOf } from "./draft";
 import styles from "./runs.module.css";

@@ -2,7 +2,7 @@ import { Switch, TextInput } from "@mantine/core";
 import { IconSearch } from "@tabler/icons-react";
 import { memo, useDeferredValue, useMemo, useState } from "react";
 import { useCatalog } from "../api/use-catalog";
-import { EquationDetail } from "../panels/card/equation-detail";
+import { EquationDetail } from "../ui/equation-detail";
 import { formatCount } from "../ui/format";
 import { Formula } from "../ui/formula";
 import styles from "./equation-index.module.css";

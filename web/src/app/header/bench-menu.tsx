@@ -3,11 +3,11 @@ import { IconChevronDown, IconPlus, IconTrash } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Bench } from "../../api/types";
+import { actions } from "../../bench/actions";
+import { openBench } from "../../bench/open-bench";
+import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { formatShort } from "../../ui/format";
-import { actions } from "../actions";
-import { openBench } from "../open-bench";
-import { showError } from "../send";
 import styles from "./header.module.css";
 import { useSlowPage } from "./use-slow-page";
 

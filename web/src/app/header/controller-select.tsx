@@ -4,10 +4,10 @@ import { useRef } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
+import { actions } from "../../bench/actions";
 import { ControllerWords } from "../../panels/controllers/controller-words";
 import { slotTitle } from "../../panels/controllers/slots";
 import { useBench } from "../../stream/bench-store";
-import { actions } from "../actions";
 
 /**
  * Which controller drives the device, in each slot; the others run in their shadow, so a change is bumpless.

@@ -1,6 +1,6 @@
 import { Menu } from "@mantine/core";
+import { type LayoutName, useView } from "../../bench/view-store";
 import { setLayout } from "../layouts";
-import { type LayoutName, useView } from "../view-store";
 import styles from "./header.module.css";
 
 const LAYOUTS: [LayoutName, string][] = [

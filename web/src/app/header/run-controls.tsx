@@ -7,8 +7,8 @@ import {
   IconRotate,
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
-import { actions } from "../actions";
 import styles from "./header.module.css";
 
 /** Run, pause, step a tick, step a period, reset. */

@@ -1,7 +1,6 @@
 import { ActionIcon, Button, Group, Popover, Slider, Stack, Text, Tooltip } from "@mantine/core";
 import { useState } from "react";
-import { useBench } from "../../stream/bench-store";
-import { send } from "../send";
+import { send } from "../../bench/send";
 import {
   againstRealTime,
   formatTimeScale,
@@ -11,7 +10,8 @@ import {
   sliderToTimeScale,
   stepTimeScale,
   timeScaleToSlider,
-} from "../time-scale";
+} from "../../bench/time-scale";
+import { useBench } from "../../stream/bench-store";
 import styles from "./header.module.css";
 
 const set = (value: number | null) => send({ kind: "time_scale", value }, `Time scale ${formatTimeScale(value)}`);

@@ -13,10 +13,10 @@ import {
   IconSun,
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
-import { actions } from "../actions";
+import { useScheme } from "../../ui/use-scheme";
 import { themeSwitch } from "../theme-switch";
-import { useScheme } from "../use-scheme";
 import styles from "./header.module.css";
 import { LayoutItems } from "./layout-items";
 

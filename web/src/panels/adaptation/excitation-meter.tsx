@@ -1,7 +1,7 @@
 import { Button } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
-import { openVariant } from "../../app/open-variant";
-import { showError } from "../../app/send";
+import { openVariant } from "../../bench/open-variant";
+import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatShort, formatSi } from "../../ui/format";

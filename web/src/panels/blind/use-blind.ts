@@ -1,6 +1,6 @@
 import { create } from "zustand";
-import { send } from "../../app/send";
-import { useView } from "../../app/view-store";
+import { send } from "../../bench/send";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { dropVeil, liftVeil, stream } from "../../stream/stream";
 import { veil } from "../../stream/veil";

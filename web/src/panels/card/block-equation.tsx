@@ -1,8 +1,8 @@
 import { Popover, UnstyledButton } from "@mantine/core";
 import type { Equation } from "../../api/types";
+import { EquationDetail } from "../../ui/equation-detail";
 import { Formula } from "../../ui/formula";
 import styles from "./card.module.css";
-import { EquationDetail } from "./equation-detail";
 
 /** An equation with its number; where the printed one is wrong, a mark opens what was printed and why not. */
 export function BlockEquation({ equation }: { equation: Equation }) {

@@ -1,6 +1,6 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useCatalog } from "../../api/use-catalog";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { Prose } from "../../ui/prose";

@@ -2,7 +2,7 @@ import { Button } from "@mantine/core";
 import { IconWaveSine } from "@tabler/icons-react";
 import { useMemo } from "react";
 import type { Signal } from "../../api/types";
-import { addScope } from "../../app/layouts";
+import { addScope } from "../../bench/dock";
 import { useBench } from "../../stream/bench-store";
 import { useLiveValues } from "../schematic/use-live-values";
 import styles from "./card.module.css";

@@ -1,7 +1,7 @@
 import { Button, Checkbox, Group } from "@mantine/core";
 import { useState } from "react";
 import type { Document, Parameter } from "../../api/types";
-import { send } from "../../app/send";
+import { send } from "../../bench/send";
 import styles from "./card.module.css";
 import { type Instance, parameterValue } from "./instances";
 import { ParameterRow } from "./parameter-row";

@@ -2,7 +2,7 @@ import { NativeSelect } from "@mantine/core";
 import { fits } from "../../api/fits";
 import type { Parameter } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
-import { send } from "../../app/send";
+import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import type { Instance } from "../card/instances";
 import { ParameterList } from "../card/parameter-list";

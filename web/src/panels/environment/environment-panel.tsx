@@ -1,10 +1,9 @@
 import { hasAxes } from "../../api/fits";
-import { send } from "../../app/send";
-import { AIR } from "../../designer/design";
-import { AROUND_A_PACKAGE, ENVIRONMENT } from "../../designer/knobs";
+import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { Knob } from "../../ui/knob";
+import { AIR, AROUND_A_PACKAGE, ENVIRONMENT } from "../../ui/surroundings";
 import styles from "./environment.module.css";
 import { PlantChoice } from "./plant-choice";
 import { SensorChoice } from "./sensor-choice";

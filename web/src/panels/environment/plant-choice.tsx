@@ -3,7 +3,7 @@ import { useEffect, useState } from "react";
 import { api } from "../../api/api";
 import type { MeasuredPlant } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
-import { send } from "../../app/send";
+import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { formatSi } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";

@@ -3,7 +3,7 @@ import { useRef, useState } from "react";
 import { fits } from "../../api/fits";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
-import { send } from "../../app/send";
+import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { Prose } from "../../ui/prose";
 import { Weaknesses } from "../../ui/weaknesses";

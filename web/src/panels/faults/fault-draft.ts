@@ -1,7 +1,7 @@
 import type { BlockCard, Command, FaultProfile, Parameter } from "../../api/types";
+import { type SeverityScale, severityText } from "../../bench/severity";
 import { roundTo } from "../../ui/unit-scale";
 import { type Condition, conditionText } from "../condition/condition";
-import { type SeverityScale, severityText } from "./severity";
 
 /** A number, or what stands in a field that holds none. */
 export type Entry = number | string;
@@ -80,3 +80,10 @@ export function injectCommand(fault: string, draft: FaultDraft): Command {
   if (draft.moment === "when") return { ...command, when: conditionText(draft.when) };
   return command;
 }
+
+/** The severity a draft asks for; a dash while its field holds no number. */
+export const draftSeverity = (
+  { severity }: Pick<FaultDraft, "severity">,
+  scale: SeverityScale,
+  unit: string,
+): string => (typeof severity === "number" ? severityText(severity, scale, unit) : "–");

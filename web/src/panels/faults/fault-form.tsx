@@ -1,12 +1,12 @@
 import { Button, Group, NumberInput, SegmentedControl, Slider, Stack } from "@mantine/core";
 import type { BlockCard, Parameter } from "../../api/types";
+import { type SeverityScale, severityText } from "../../bench/severity";
 import { Formula } from "../../ui/formula";
 import { unitText } from "../../ui/unit-scale";
 import { ParameterRow } from "../card/parameter-row";
 import { ConditionFields } from "../condition/condition-fields";
-import { type Entry, type FaultDraft, ownParameters, refusals, scaled } from "./fault-draft";
+import { draftSeverity, type Entry, type FaultDraft, ownParameters, refusals, scaled } from "./fault-draft";
 import styles from "./faults.module.css";
-import { draftSeverity, type SeverityScale, severityText } from "./severity";
 
 interface FaultFormProps {
   fault: BlockCard;

@@ -2,14 +2,14 @@ import { Button } from "@mantine/core";
 import { IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
 import type { ActiveFault, BlockCard } from "../../api/types";
-import { send } from "../../app/send";
+import { send } from "../../bench/send";
+import { severityScale, severityText } from "../../bench/severity";
 import { useBench } from "../../stream/bench-store";
 import { formatMoment, formatShort } from "../../ui/format";
 import { parameterTitle } from "../card/parameter-title";
-import { injectCommand, newDraft, ownParameters, refusals } from "./fault-draft";
+import { draftSeverity, injectCommand, newDraft, ownParameters, refusals } from "./fault-draft";
 import { FaultForm } from "./fault-form";
 import styles from "./faults.module.css";
-import { draftSeverity, severityScale, severityText } from "./severity";
 
 interface FaultRowProps {
   fault: BlockCard;

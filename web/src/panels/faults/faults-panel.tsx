@@ -2,7 +2,7 @@ import { Button } from "@mantine/core";
 import { useState } from "react";
 import { fits } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
-import { actions } from "../../app/actions";
+import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment } from "../../ui/format";

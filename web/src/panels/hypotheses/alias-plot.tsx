@@ -1,6 +1,6 @@
 import type { AliasReport } from "../../api/types";
-import { useScheme } from "../../app/use-scheme";
 import { PictureMenu } from "../../picture/picture-menu";
+import { useScheme } from "../../ui/use-scheme";
 import { useSize } from "../../ui/use-size";
 import { AliasSweep } from "./alias-sweep";
 import styles from "./hypotheses.module.css";

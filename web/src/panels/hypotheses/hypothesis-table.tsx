@@ -1,9 +1,9 @@
 import { ActionIcon } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
-import { useScheme } from "../../app/use-scheme";
 import { NumberField } from "../../ui/number-field";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { roundTo } from "../../ui/unit-scale";
+import { useScheme } from "../../ui/use-scheme";
 import { FACTORS, type Hypothesis, LEAST, withFactor } from "./draft";
 import styles from "./hypotheses.module.css";
 

@@ -2,7 +2,7 @@ import { Button } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Identification } from "../../api/types";
-import { showError } from "../../app/send";
+import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { NumberField } from "../../ui/number-field";

@@ -1,9 +1,9 @@
 import { useMemo } from "react";
 import type { Identification } from "../../api/types";
-import { useScheme } from "../../app/use-scheme";
-import { decibels } from "../../ui/bode/bode-data";
-import { BodePlot } from "../../ui/bode/bode-plot";
+import { decibels } from "../../picture/bode/bode-data";
+import { BodePlot } from "../../picture/bode/bode-plot";
 import { TRACE_COLOURS } from "../../ui/palette";
+import { useScheme } from "../../ui/use-scheme";
 
 /** The measured tones over the response that was fitted and the one that is believed. */
 export function SweepBode({ result }: { result: Identification }) {

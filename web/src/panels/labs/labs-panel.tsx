@@ -1,7 +1,7 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
-import { send } from "../../app/send";
+import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";

@@ -1,8 +1,8 @@
 import { useMemo, useRef } from "react";
-import { useScheme } from "../../app/use-scheme";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/current-events";
+import { useScheme } from "../../ui/use-scheme";
 import { truthSwitches } from "./delays";
 import { LaneCanvas } from "./lane-canvas";
 import { LaneTools } from "./lane-tools";

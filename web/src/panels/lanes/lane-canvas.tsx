@@ -1,12 +1,12 @@
 import { useEffect, useMemo, useRef } from "react";
 import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
+import { scopeConfig } from "../../stream/scope-config";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { hover } from "../../ui/hover";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { useCanvas } from "../../ui/use-canvas";
-import { scopeConfig } from "../scope/scope-config";
 import { listenForGestures } from "../scope/scope-gestures";
 import { scopeSubscription } from "../scope/time-window";
 import styles from "./lanes.module.css";

@@ -1,4 +1,4 @@
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { formatCount, formatPercent, formatSi } from "../../ui/format";
 import type { TruthSwitch } from "./delays";

@@ -2,8 +2,8 @@ import { Button, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { fits } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
-import { openVariant } from "../../app/open-variant";
-import { showError } from "../../app/send";
+import { openVariant } from "../../bench/open-variant";
+import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 
 const USUAL = "mmae";

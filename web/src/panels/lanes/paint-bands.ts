@@ -1,9 +1,9 @@
+import { fillHatched } from "../../picture/hatch";
 import type { Pen } from "../../picture/pen";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
 import { inkOn } from "../../ui/contrast";
 import { formatCount, formatNumber, formatSi } from "../../ui/format";
-import { fillHatched } from "../../ui/hatch";
 import { CANVAS, type Scheme } from "../../ui/palette";
 import { timeLabels, timeSplits, timeUnit } from "../../ui/time-axis";
 import type { TruthSwitch } from "./delays";

@@ -1,5 +1,6 @@
 import { axisOf } from "../../picture/axis-of";
-import type { Box, Picture } from "../../picture/picture";
+import type { Box } from "../../picture/pen";
+import type { Picture } from "../../picture/picture";
 import { pictureName } from "../../picture/picture-name";
 import { lanesLayout } from "./lanes-layout";
 import { type LanesPicture, paintLanes } from "./paint-lanes";

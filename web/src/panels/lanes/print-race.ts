@@ -1,6 +1,6 @@
 import { axisOf } from "../../picture/axis-of";
-import type { Pen } from "../../picture/pen";
-import type { Box, Picture } from "../../picture/picture";
+import type { Box, Pen } from "../../picture/pen";
+import type { Picture } from "../../picture/picture";
 import { pictureName } from "../../picture/picture-name";
 import { fontFor } from "../../ui/canvas-font";
 import { CANVAS } from "../../ui/palette";

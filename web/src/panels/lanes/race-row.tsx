@@ -1,9 +1,9 @@
 import { useMemo } from "react";
 import { useCatalog } from "../../api/use-catalog";
-import { useScheme } from "../../app/use-scheme";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
+import { useScheme } from "../../ui/use-scheme";
 import type { Contestant } from "./contestants";
 import type { TruthSwitch } from "./delays";
 import { FitsNone } from "./fits-none";

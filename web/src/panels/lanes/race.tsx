@@ -1,10 +1,10 @@
 import { type Ref, useCallback, useImperativeHandle, useMemo, useRef } from "react";
-import { useScheme } from "../../app/use-scheme";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/current-events";
 import { timeUnit } from "../../ui/time-axis";
+import { useScheme } from "../../ui/use-scheme";
 import type { Contestant } from "./contestants";
 import { type TruthSwitch, truthSwitches } from "./delays";
 import { LaneCanvas, type LanePainting } from "./lane-canvas";

@@ -1,6 +1,5 @@
 import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
-import { useScheme } from "../../app/use-scheme";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles } from "../../stream/panel-frame";
@@ -10,6 +9,7 @@ import type { Subscription } from "../../stream/wire";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
 import { useCanvas } from "../../ui/use-canvas";
+import { useScheme } from "../../ui/use-scheme";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
 import { type LocusAxes, locusAxes, type Points } from "./locus-axes";

@@ -1,7 +1,7 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
 import { hasAxes } from "../../api/fits";
-import { send } from "../../app/send";
+import { send } from "../../bench/send";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";

@@ -1,7 +1,6 @@
 import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
 import type { UnstableRegion } from "../../api/types";
-import { useScheme } from "../../app/use-scheme";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles } from "../../stream/panel-frame";
@@ -12,6 +11,7 @@ import { hover } from "../../ui/hover";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
 import { useCanvas } from "../../ui/use-canvas";
+import { useScheme } from "../../ui/use-scheme";
 import { useTraces } from "../scope/use-traces";
 import { type PhasePicture, paintPhase } from "./paint-phase";
 import styles from "./phase.module.css";

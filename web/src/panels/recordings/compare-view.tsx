@@ -2,7 +2,7 @@ import { Button, CloseButton, NativeSelect, NumberInput, SegmentedControl } from
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Comparison, Recording } from "../../api/types";
-import { showError } from "../../app/send";
+import { showError } from "../../bench/send";
 import { formatCount, formatNumber, formatShort, formatSi } from "../../ui/format";
 import styles from "./recordings.module.css";
 

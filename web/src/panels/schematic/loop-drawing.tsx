@@ -1,5 +1,5 @@
-import { showPanel } from "../../app/layouts";
-import { useView } from "../../app/view-store";
+import { showPanel } from "../../bench/dock";
+import { useView } from "../../bench/view-store";
 import { BOX, type DrawnBox, type Wire } from "./box";
 import { faultLines } from "./loop";
 import styles from "./schematic.module.css";

@@ -1,6 +1,6 @@
 import type { EventAxis, Field } from "../../picture/event-marks";
-import type { Pen } from "../../picture/pen";
-import type { Box, Picture } from "../../picture/picture";
+import type { Box, Pen } from "../../picture/pen";
+import type { Picture } from "../../picture/picture";
 import { fontFor } from "../../ui/canvas-font";
 import { labelsOn } from "../../ui/format";
 import { CANVAS, DASHES, onWhite } from "../../ui/palette";

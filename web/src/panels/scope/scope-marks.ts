@@ -1,15 +1,9 @@
 import uPlot from "uplot";
-import type { LogEntry } from "../../api/types";
+import { eventTone } from "../../bench/event-tone";
+import { flagWords } from "../../bench/flag-words";
+import type { Marks } from "../../bench/marks";
 import { fontFor } from "../../ui/canvas-font";
 import { CANVAS, type Scheme } from "../../ui/palette";
-import { eventTone } from "../events/event-tone";
-import { flagWords } from "../events/flag-words";
-import type { FaultSpan } from "../faults/fault-spans";
-
-export interface Marks {
-  events: LogEntry[];
-  faults: FaultSpan[];
-}
 
 /** Draw events as lines with flags and faults as a band along the top, over the traces of a scope. */
 export function drawMarks(

@@ -1,6 +1,6 @@
+import type { Marks } from "../../bench/marks";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { Envelope } from "./envelope-path";
-import type { Marks } from "./scope-marks";
 import type { PlotTrace } from "./scope-options";
 
 /** All that a scope shows at a moment, to be drawn elsewhere. */

@@ -1,4 +1,5 @@
 import uPlot from "uplot";
+import type { Marks } from "../../bench/marks";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
 import { hover } from "../../ui/hover";
@@ -11,7 +12,7 @@ import { columnTimes } from "./column-times";
 import { drawUnits } from "./draw-units";
 import type { Envelope } from "./envelope-path";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
-import { drawMarks, type Marks } from "./scope-marks";
+import { drawMarks } from "./scope-marks";
 import { type ScopeModel, scopeOptions } from "./scope-options";
 import type { ScopePicture } from "./scope-picture";
 

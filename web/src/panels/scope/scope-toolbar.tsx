@@ -1,13 +1,11 @@
 import { ActionIcon, NativeSelect } from "@mantine/core";
 import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import type { ScopeConfig } from "../../stream/scope-config";
 import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
 import { LiveButton } from "./live-button";
 import styles from "./scope.module.css";
-import type { ScopeConfig } from "./scope-config";
-import { TriggerMenu } from "./trigger-menu";
-
-export type TriggerState = "none" | "waiting" | "triggered";
+import { TriggerMenu, type TriggerState } from "./trigger-menu";
 
 interface ScopeToolbarProps {
   config: ScopeConfig;

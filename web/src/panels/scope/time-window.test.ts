@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { scopeConfig } from "./scope-config";
+import { scopeConfig } from "../../stream/scope-config";
 import { scopeSubscription, zoomSpan } from "./time-window";
 
 const config = scopeConfig(["a"], { windowMs: 4 });

@@ -1,5 +1,5 @@
+import type { ScopeConfig } from "../../stream/scope-config";
 import type { Subscription } from "../../stream/wire";
-import type { ScopeConfig } from "./scope-config";
 
 /** What a scope looks at: the newest data, or a span of the past that stays. */
 export type TimeWindow = { kind: "live" } | { kind: "past"; start: number; end: number };

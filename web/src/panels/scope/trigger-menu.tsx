@@ -6,7 +6,8 @@ import { formatShort } from "../../ui/format";
 import { unitText } from "../../ui/unit-scale";
 import { signalGroups } from "../condition/condition";
 import { RearmContext } from "./rearm-context";
-import type { TriggerState } from "./scope-toolbar";
+
+export type TriggerState = "none" | "waiting" | "triggered";
 
 interface TriggerMenuProps {
   trigger: Trigger;

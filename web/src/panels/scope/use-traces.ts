@@ -1,7 +1,7 @@
 import { useMemo } from "react";
-import { useScheme } from "../../app/use-scheme";
 import { useBench } from "../../stream/bench-store";
 import { traceColour, traceStyle } from "../../ui/trace-style";
+import { useScheme } from "../../ui/use-scheme";
 import type { PlotTrace } from "./scope-options";
 
 /** The traces of some signals, as far as the bench has them, in the colours they have everywhere. */

@@ -1,7 +1,7 @@
 import { useBench } from "../../stream/bench-store";
+import { Confusion } from "../../ui/confusion";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
-import { Confusion } from "./confusion";
 import styles from "./scoreboard.module.css";
 
 /** Each diagnoser against the truth the bench knows. */

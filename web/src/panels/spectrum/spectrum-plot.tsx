@@ -1,6 +1,5 @@
 import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
-import { useScheme } from "../../app/use-scheme";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import type { TakePicture } from "../../picture/picture-menu";
 import { middles } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
@@ -9,6 +8,7 @@ import type { Subscription } from "../../stream/wire";
 import { formatSi } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { useCanvas } from "../../ui/use-canvas";
+import { useScheme } from "../../ui/use-scheme";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
 import { spectrum, strongest } from "./fourier";

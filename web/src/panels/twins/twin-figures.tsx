@@ -1,10 +1,10 @@
 import { useMemo, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
-import { useScheme } from "../../app/use-scheme";
 import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatSi } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";
+import { useScheme } from "../../ui/use-scheme";
 import type { Board, Compared } from "./boards";
 import { type TrackingFigures, trackingFigures } from "./tracking-figures";
 import styles from "./twins.module.css";

@@ -1,9 +1,9 @@
 import { useMemo, useRef, useState } from "react";
-import { useScheme } from "../../app/use-scheme";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { TRACE_COLOURS } from "../../ui/palette";
+import { useScheme } from "../../ui/use-scheme";
 import { signalsOf } from "../adaptation/adaptation-strips";
 import { AXIS_PX, gutter, paintStrips, RIGHT_PX } from "../adaptation/paint-strips";
 import { IDEAL, printStrips } from "../adaptation/print-strips";

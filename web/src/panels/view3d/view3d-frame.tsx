@@ -1,9 +1,9 @@
 import { useEffect, useRef, useState } from "react";
-import { useScheme } from "../../app/use-scheme";
 import { useBench } from "../../stream/bench-store";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { softwareGl } from "../../ui/software-gl";
 import { useOnScreen } from "../../ui/use-on-screen";
+import { useScheme } from "../../ui/use-scheme";
 import { CAMERAS, type Camera } from "./cameras";
 import styles from "./view3d.module.css";
 

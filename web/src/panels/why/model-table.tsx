@@ -1,7 +1,7 @@
 import type { Account } from "../../api/types";
-import { useScheme } from "../../app/use-scheme";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
+import { useScheme } from "../../ui/use-scheme";
 import styles from "./why.module.css";
 
 interface ModelTableProps {

@@ -4,7 +4,7 @@ import { useState } from "react";
 import { api } from "../../api/api";
 import type { Account, ApiErrorBody } from "../../api/types";
 import { useAsked } from "../../api/use-asked";
-import { useView } from "../../app/view-store";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
 import { EmptyState } from "../../ui/empty-state";

@@ -1,5 +1,5 @@
-import { formatCount, formatNumber, formatPart } from "../../ui/format";
-import styles from "./scoreboard.module.css";
+import styles from "./confusion.module.css";
+import { formatCount, formatNumber, formatPart } from "./format";
 
 interface ConfusionProps {
   id: string;

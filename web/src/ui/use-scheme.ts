@@ -1,5 +1,5 @@
 import { useComputedColorScheme } from "@mantine/core";
-import type { Scheme } from "../ui/palette";
+import type { Scheme } from "./palette";
 
 /** The colour scheme in force. */
 export const useScheme = (): Scheme => useComputedColorScheme("dark", { getInitialValueInEffect: false });

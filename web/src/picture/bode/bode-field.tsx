@@ -1,5 +1,5 @@
 import { useMemo } from "react";
-import { decadeTicks, linearTicks } from "../ticks";
+import { decadeTicks, linearTicks } from "../../ui/ticks";
 import { type BodeBand, type BodeCurve, type BodePoints, dbRange, nearest } from "./bode-data";
 import { BodePart } from "./bode-part";
 

@@ -1,8 +1,8 @@
-import { formatShort, tickLabels } from "./format";
+import { formatShort, tickLabels } from "../ui/format";
+import { DASHES, type Scheme, TRACE_COLOURS } from "../ui/palette";
+import { linearTicks } from "../ui/ticks";
+import { roundTo } from "../ui/unit-scale";
 import styles from "./line-chart.module.css";
-import { DASHES, type Scheme, TRACE_COLOURS } from "./palette";
-import { linearTicks } from "./ticks";
-import { roundTo } from "./unit-scale";
 
 export interface ChartLine {
   name: string;

@@ -1,4 +1,4 @@
-import type { Pen } from "../picture/pen";
+import type { Pen } from "./pen";
 
 const STEP = 8;
 

@@ -1,4 +1,4 @@
-import type { LogEntry } from "../../api/types";
+import type { LogEntry } from "../api/types";
 
 /** How loudly an event speaks: faults and trips are alarms, what a diagnoser found is news, run control is quiet. */
 export type EventTone = "alarm" | "found" | "change" | "quiet";

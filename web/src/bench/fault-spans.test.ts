@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
-import type { LogEntry } from "../../api/types";
-import { logEntry } from "../../stream/log-entry.fixture";
+import type { LogEntry } from "../api/types";
+import { logEntry } from "../stream/log-entry.fixture";
 import { faultSpans } from "./fault-spans";
 
 let seq = 0;

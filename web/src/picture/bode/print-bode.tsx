@@ -1,8 +1,8 @@
-import { drawnSvg } from "../../picture/drawn-svg";
-import type { LegendEntry } from "../../picture/legend";
-import type { Picture } from "../../picture/picture";
-import { fileStem } from "../../picture/picture-name";
-import { CANVAS, onWhite } from "../palette";
+import { CANVAS, onWhite } from "../../ui/palette";
+import { drawnSvg } from "../drawn-svg";
+import type { LegendEntry } from "../legend";
+import type { Picture } from "../picture";
+import { fileStem } from "../picture-name";
 import { BodeField, type BodeFieldProps } from "./bode-field";
 
 /** A Bode diagram as a picture. */

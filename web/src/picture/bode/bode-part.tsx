@@ -1,5 +1,5 @@
-import { formatShort } from "../format";
-import { roundTo } from "../unit-scale";
+import { formatShort } from "../../ui/format";
+import { roundTo } from "../../ui/unit-scale";
 import styles from "./bode.module.css";
 
 interface BodePartProps {

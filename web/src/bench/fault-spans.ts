@@ -1,4 +1,4 @@
-import type { ActiveFault, LogEntry } from "../../api/types";
+import type { ActiveFault, LogEntry } from "../api/types";
 
 export interface FaultSpan {
   name: string;

@@ -1,7 +1,7 @@
 import { useState } from "react";
-import { PictureMenu } from "../../picture/picture-menu";
-import { formatIn, formatSi } from "../format";
-import { useSize } from "../use-size";
+import { formatIn, formatSi } from "../../ui/format";
+import { useSize } from "../../ui/use-size";
+import { PictureMenu } from "../picture-menu";
 import styles from "./bode.module.css";
 import { BodeField, type BodeFieldProps } from "./bode-field";
 import { printBode } from "./print-bode";

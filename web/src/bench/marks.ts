@@ -1,7 +1,12 @@
-import { useBench } from "../../stream/bench-store";
-import { currentEvents } from "../../stream/current-events";
-import { faultSpans } from "../faults/fault-spans";
-import type { Marks } from "./scope-marks";
+import type { LogEntry } from "../api/types";
+import { useBench } from "../stream/bench-store";
+import { currentEvents } from "../stream/current-events";
+import { type FaultSpan, faultSpans } from "./fault-spans";
+
+export interface Marks {
+  events: LogEntry[];
+  faults: FaultSpan[];
+}
 
 let known: { events: unknown; faults: unknown; marks: Marks } | undefined;
 

@@ -1,6 +1,6 @@
-import type { LogEntry } from "../../api/types";
-import { cardOf } from "../../api/use-catalog";
-import { severityScale, severityText } from "../faults/severity";
+import type { LogEntry } from "../api/types";
+import { cardOf } from "../api/use-catalog";
+import { severityScale, severityText } from "./severity";
 
 /** What an event says on its flag: a few words. */
 export function flagWords({ kind, command, new: value }: LogEntry): string {

@@ -1,8 +1,8 @@
 import { expect, it, vi } from "vitest";
-import type { LogEntry } from "../../api/types";
+import type { LogEntry } from "../api/types";
 import { flagWords } from "./flag-words";
 
-vi.mock("../../api/use-catalog", () => ({
+vi.mock("../api/use-catalog", () => ({
   cardOf: (_: string, name: string) =>
     ({
       added_mass: { title: "Added mass", suggested: 0.05, parameters: [{ name: "severity", unit: "1" }] },

@@ -1,6 +1,5 @@
-import type { Parameter } from "../../api/types";
-import { formatShort } from "../../ui/format";
-import type { FaultDraft } from "./fault-draft";
+import type { Parameter } from "../api/types";
+import { formatShort } from "../ui/format";
 
 export interface SeverityScale {
   /** The severity parameter is a share, shown in percent. */
@@ -35,10 +34,3 @@ export function severityText(value: number, scale: SeverityScale, unit: string):
   const text = formatShort(shown, scale.percent ? "%" : noun, 4);
   return value > 0 ? `+${text}` : text;
 }
-
-/** The severity a draft asks for; a dash while its field holds no number. */
-export const draftSeverity = (
-  { severity }: Pick<FaultDraft, "severity">,
-  scale: SeverityScale,
-  unit: string,
-): string => (typeof severity === "number" ? severityText(severity, scale, unit) : "–");

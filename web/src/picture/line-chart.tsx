@@ -1,13 +1,13 @@
 import { useState } from "react";
-import { useScheme } from "../app/use-scheme";
-import { drawnSvg } from "../picture/drawn-svg";
-import type { Box } from "../picture/picture";
-import { PictureMenu } from "../picture/picture-menu";
-import { fileStem } from "../picture/picture-name";
-import type { SvgPen } from "../picture/svg-pen";
+import { useScheme } from "../ui/use-scheme";
+import { useSize } from "../ui/use-size";
+import { drawnSvg } from "./drawn-svg";
 import styles from "./line-chart.module.css";
 import { LineField, type LineFieldProps, lineColour, lineDashes } from "./line-field";
-import { useSize } from "./use-size";
+import type { Box } from "./pen";
+import { PictureMenu } from "./picture-menu";
+import { fileStem } from "./picture-name";
+import type { SvgPen } from "./svg-pen";
 
 interface LineChartProps extends Pick<LineFieldProps, "xLabel" | "yLabel" | "lines" | "xRange" | "yRange"> {
   title: string;

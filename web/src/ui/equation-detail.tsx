@@ -1,7 +1,7 @@
-import type { Equation } from "../../api/types";
-import { Formula } from "../../ui/formula";
-import { Prose } from "../../ui/prose";
-import styles from "./card.module.css";
+import type { Equation } from "../api/types";
+import styles from "./equation-detail.module.css";
+import { Formula } from "./formula";
+import { Prose } from "./prose";
 
 /** An erratum: what was printed, what works, and why. */
 export function EquationDetail({ equation }: { equation: Equation }) {

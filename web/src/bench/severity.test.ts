@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import type { Parameter } from "../../api/types";
+import type { Parameter } from "../api/types";
 import { severityScale, severityText } from "./severity";
 
 const scale = { percent: false, low: 0, high: 1, minimum: 0, maximum: 1, step: 0.1 };

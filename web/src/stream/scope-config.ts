@@ -1,4 +1,4 @@
-import type { Trigger } from "../../stream/wire";
+import type { Trigger } from "./wire";
 
 /** What a scope shows; kept with the layout. */
 export interface ScopeConfig {

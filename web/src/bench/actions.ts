@@ -4,7 +4,7 @@ import { slotMates } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/jump";
 import { saveFile } from "../ui/save-file";
-import { layoutNow } from "./layouts";
+import { layoutNow } from "./dock";
 import { openBench } from "./open-bench";
 import { send, showError } from "./send";
 import { stepTimeScale } from "./time-scale";

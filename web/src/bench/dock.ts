@@ -1,0 +1,65 @@
+import type { DockviewApi, SerializedDockview } from "dockview-react";
+import type { Document } from "../api/types";
+import { scopeConfig } from "../stream/scope-config";
+import { withGaps } from "./dock-gap";
+import { useView } from "./view-store";
+
+let current: DockviewApi | undefined;
+
+/** The dock, once the page has one; a phone has none. */
+export const dockNow = (): DockviewApi | undefined => current;
+
+/** Take a dock as the page's; panels may be opened in it from here on. */
+export function holdDock(api: DockviewApi): void {
+  current = api;
+}
+
+/** How the panels stand now, to be kept with a recording. */
+export const layoutNow = () => current?.toJSON() as Document | undefined;
+
+/** Put the panels as they stood; returns whether this version knows them all. */
+export function restoreLayout(layout: Document | SerializedDockview): boolean {
+  try {
+    current?.fromJSON(withGaps(layout as unknown as SerializedDockview));
+    requestAnimationFrame(revealActiveTabs);
+    return true;
+  } catch (error) {
+    console.warn("the stored layout does not fit this version", error);
+    return false;
+  }
+}
+
+/** Open another panel of a kind beside the active one. */
+export function addPanel(kind: string): void {
+  current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {} });
+}
+
+/** Open a scope on some signals beside the active panel. */
+export function addScope(title: string, signals: string[]): void {
+  current?.addPanel({ id: `scope-${Date.now()}`, component: "scope", title, params: { scope: scopeConfig(signals) } });
+}
+
+/** Move the keyboard to the next group of panels. */
+export function focusNextGroup(): void {
+  const groups = current?.groups ?? [];
+  const at = groups.findIndex((g) => g.element.contains(document.activeElement));
+  const next = groups[(at + 1) % groups.length];
+  next?.activePanel?.api.setActive();
+  next?.element.querySelector<HTMLElement>("[role=tab][aria-selected=true], [role=tab], button")?.focus();
+}
+
+/** Bring the panel of a kind to the front, opening one if there is none; without a dock it takes the place for one. */
+export function showPanel(kind: string): void {
+  useView.setState({ extra: kind });
+  const panel = current?.panels.find((p) => p.view.contentComponent === kind);
+  if (panel) panel.api.setActive();
+  else addPanel(kind);
+}
+
+/** The tabs of a narrow group scroll; the one whose panel is shown must be among those seen. */
+function revealActiveTabs(): void {
+  for (const group of current?.groups ?? [])
+    group.element
+      .querySelector("[role=tab][aria-selected=true]")
+      ?.scrollIntoView({ block: "nearest", inline: "center" });
+}
