@@ -65,6 +65,10 @@ class Queue:
         entry.number = self._asked
         insort(self._entries, entry, key=_moment)
 
+    def remove(self, entry: Pending) -> None:
+        """Let a command wait no more."""
+        self._entries.remove(entry)
+
     def take_due(self, tick: int) -> list[Pending]:
         """Take out what is due at a tick; a condition that is to be watched from then on stays, watched."""
         count = bisect_right(self._entries, (float(tick), math.inf), key=_moment)

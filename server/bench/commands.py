@@ -56,6 +56,18 @@ class Reset(RunCommand):
     values: dict[str, Any] = Field({}, description="Dotted paths of the scenario; any field, live or not")
 
 
+class Undo(RunCommand):
+    """Take the last change of the bench back, from now on: a fault, a value, a controller, a reset."""
+
+    kind: Literal["undo"] = "undo"
+
+
+class Redo(RunCommand):
+    """Make the change again that was taken back last."""
+
+    kind: Literal["redo"] = "redo"
+
+
 class TimeScale(RunCommand):
     """Change how fast device time runs."""
 
@@ -86,6 +98,8 @@ RUN_KINDS: dict[str, type[RunCommand]] = {
     "step": Step,
     "step_period": StepPeriod,
     "reset": Reset,
+    "undo": Undo,
+    "redo": Redo,
     "time_scale": TimeScale,
     "seek": Seek,
     "loop": Loop,
@@ -119,7 +133,21 @@ def parse(document: Any) -> Any:
 
 
 Command = Annotated[
-    Start | Pause | Step | StepPeriod | Reset | TimeScale | Seek | Loop | Inject | Heal | Set | Switch | ResetTrip,
+    Start
+    | Pause
+    | Step
+    | StepPeriod
+    | Reset
+    | Undo
+    | Redo
+    | TimeScale
+    | Seek
+    | Loop
+    | Inject
+    | Heal
+    | Set
+    | Switch
+    | ResetTrip,
     BeforeValidator(parse),
 ]
 """For models and routes: `parse` reads it, the union describes it."""

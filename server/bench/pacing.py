@@ -32,7 +32,7 @@ class Pacer:
     """
 
     def __init__(self, dt_s: float, scale: float | None) -> None:
-        self._dt_s = dt_s
+        self.dt_s = dt_s
         self._scale = scale
         self._wall = 0.0
         self._tick = 0
@@ -74,7 +74,7 @@ class Pacer:
         """
         if self._scale is None:
             return None
-        rate = self._scale / self._dt_s
+        rate = self._scale / self.dt_s
         target = self._tick + int((now - self._wall) * rate)
         excess = target - tick - max(1, int(CATCH_UP_S * rate))
         if excess > 0:
@@ -105,7 +105,7 @@ class Pacer:
         (wall_0, tick_0, due_0), (wall_1, tick_1, due_1) = self._seen[0], self._seen[-1]
         if self._scale is None:
             elapsed = wall_1 - wall_0
-            return (tick_1 - tick_0) * self._dt_s / elapsed if elapsed > 0 else 0.0
+            return (tick_1 - tick_0) * self.dt_s / elapsed if elapsed > 0 else 0.0
         # The ticks due are the measure, not the clock: at 1 us/s a second holds less than one tick.
         return self._scale * (tick_1 - tick_0) / (due_1 - due_0) if due_1 > due_0 else self._scale
 

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 from core.board.words import describe
 from core.faults.fault import FaultParams
 from scenarios.schema import Scenario
+from server.bench.changes import Changes
 from server.bench.commands import MAX_PENDING
 from server.bench.live_bench import LiveBench
 from server.bench.pacing import Pacer
@@ -25,6 +26,7 @@ class ShownBench(LiveBench, Protocol):
     status: BenchStatus
     pacer: Pacer
     recordings: Recordings
+    changes: Changes
     replay_of: str
     recorded_scale: float | None
 
@@ -78,6 +80,8 @@ def status_of(bench: ShownBench) -> BenchStatus:
             )
             for entry in islice(board.pending, MAX_PENDING)
         ],
+        undo=bench.changes.last_done,
+        redo=bench.changes.last_undone,
         trip=board.trip,
         scores=board.scores(),
         last_event=bench.events.last,

@@ -17,8 +17,10 @@ from core.board.document import Document
 from core.errors import InputError
 from core.format import format_short
 from scenarios.schema import Scenario
-from server.bench.commands import MAX_PENDING, Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
+from server.bench.changes import Changes
+from server.bench.commands import MAX_PENDING, Loop, Pause, Redo, Seek, Start, Step, StepPeriod, TimeScale, Undo
 from server.bench.events import Event, EventLog
+from server.bench.moment import Moment
 from server.bench.pacing import Pacer
 from server.bench.portrait import status_of
 from server.bench.recorder import Recorder
@@ -30,11 +32,9 @@ from server.bench.timeline import Timeline
 from server.errors import not_found
 from server.metrics import Metrics
 
-RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
+RunsBench = Undo | Redo | Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
 RUN = get_args(RunsBench)
 STATUS_S = 0.2
-FORK_TICKS = 20_000
-"""Ticks of the past that a fork brings along."""
 
 
 class Session(Timeline):
@@ -70,11 +70,11 @@ class Session(Timeline):
         metrics: Metrics,
         clock: Callable[[], float],
     ) -> None:
-        super().__init__(board, history_ticks, clock)
+        super().__init__(scenario, board, history_ticks, clock)
         self.id = secrets.token_hex(6)
-        self.scenario = scenario
         self.created = datetime.now(UTC)
         self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
+        self.changes = Changes(self, clock)
         self.snapshots = Snapshots(self)
         self.recordings = Recordings(self)
         self._metrics = metrics
@@ -164,11 +164,8 @@ class Session(Timeline):
         else:
             if len(self.board.pending) >= MAX_PENDING:
                 raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
-            entry = self.board.apply(command, actor)
-            assert isinstance(entry, Event)
-            event = entry
-            if self.board.trip is not None:
-                self._running = False
+            event = self.changes.apply(command, actor)
+            self._running = self._running and self.board.trip is None
         self.refresh_status()
         return event
 
@@ -180,35 +177,43 @@ class Session(Timeline):
     def reset(self, scenario: Scenario, board: Board, actor: str) -> Event:
         """Begin again with a new board of the same signals."""
         if [signal.name for signal in board.signals] != list(self._index):
-            raise InputError(
-                "these values give the bench other signals", "values", "make a new bench for them", "conflict"
-            )
-        if board.dt_ms != self.board.dt_ms:
-            self.pacer = Pacer(board.dt_ms * 1e-3, self.pacer.scale)
-        self.scenario, self.board = scenario, board
+            text = "these values give the bench other signals"
+            raise InputError(text, "values", "make a new bench for them", "conflict")
+        before = self.moment(with_past=True)
+        self._begin_again(scenario, board)
         self._ends_at = scenario.samples
-        self.history = self._empty_history()
-        event = self._jumped(actor, "reset", "reset to tick 0")
+        self._jumped("the bench was reset")
+        event = self.note(actor, "reset", "reset to tick 0")
         self._share_log()
+        self.changes.jumped(event, before)
+        self.refresh_status()
         return event
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
         """Go back to a snapshot."""
-        kept = self.snapshots.get(snapshot_id)
-        self.board = Board.restore(kept.checkpoint)
+        kept, before = self.snapshots.get(snapshot_id), self.moment(with_past=True)
+        self.go_to(kept.moment)
+        event = self.note(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
+        self.changes.jumped(event, before)
+        self.refresh_status()
+        return event
+
+    def go_to(self, moment: Moment) -> None:
+        """Be what the bench was."""
+        self._be_again(moment)
         self._share_log()
-        self._rewind_history()
         samples = self.scenario.samples
         self._ends_at = samples if samples is not None and self.board.tick < samples else None
-        return self._jumped(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
+        self._jumped("the bench was restored")
 
     def fork(self, snapshot_id: str | None) -> Session:
         """Return a second bench that goes on from this moment or from a snapshot."""
-        checkpoint = self.snapshots.get(snapshot_id).checkpoint if snapshot_id else self.board.checkpoint()
-        board = Board.restore(checkpoint)
-        twin = Session(self.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
+        moment = self.snapshots.get(snapshot_id).moment if snapshot_id else self.moment()
+        board = Board.restore(moment.checkpoint)
+        twin = Session(moment.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
         twin._ends_at = self._ends_at if self._ends_at is not None and board.tick < self._ends_at else None
-        twin._copy_past(self, FORK_TICKS)
+        if self._branches.share(moment.branch, board.tick) and (past := self._past(board.tick)) is not None:
+            twin.history.append(past)
         twin.note("api", "forked", f"forked from bench {self.id}")
         twin.refresh_status()
         return twin
@@ -224,6 +229,8 @@ class Session(Timeline):
     def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
         """Carry out a command that runs the bench."""
         document = command.model_dump()
+        if isinstance(command, Undo | Redo):
+            return self.changes.back(actor) if isinstance(command, Undo) else self.changes.again(actor)
         if isinstance(command, Seek | Loop):
             raise InputError("only a recording that is played can do that", "kind", code="conflict")
         if isinstance(command, TimeScale):
@@ -238,11 +245,8 @@ class Session(Timeline):
             self.steps.end()
             return self.note(actor, "pause", "paused", document)
         if self.board.trip is not None:
-            raise InputError(
-                f"the board has tripped: {self.board.trip.reason}",
-                hint="reset the trip first",
-                code="tripped",
-            )
+            text = f"the board has tripped: {self.board.trip.reason}"
+            raise InputError(text, hint="reset the trip first", code="tripped")
         if isinstance(command, Start):
             self.steps.end()
             self._running = True
@@ -280,16 +284,15 @@ class Session(Timeline):
         self.note("scenario", "finished", "scenario finished; start again to go on")
         self.refresh_status()
 
-    def _jumped(self, actor: str, kind: str, text: str) -> Event:
-        """Note that time has jumped: recordings end, the clock is anchored anew."""
+    def _jumped(self, why: str) -> None:
+        """Follow a jump in time: recordings end, the clock is anchored anew."""
         self.steps.end()
-        self.recordings.close(f"the bench was {kind}")
+        self.recordings.close(why)
+        if self.board.dt_ms * 1e-3 != self.pacer.dt_s:
+            self.pacer = Pacer(self.board.dt_ms * 1e-3, self.pacer.scale)
         if self.board.trip is not None:
             self._running = False
         self.pacer.anchor(self.board.tick, self._clock())
-        event = self.note(actor, kind, text)
-        self.refresh_status()
-        return event
 
     def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:
         """Add an event of the bench itself, of now unless a tick is given."""

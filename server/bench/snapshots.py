@@ -6,8 +6,8 @@ import secrets
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from core.board.board import Checkpoint
-from server.bench.live_bench import LiveBench
+from server.bench.changes import ChangingBench
+from server.bench.moment import Moment
 from server.bench.status import Snapshot
 from server.errors import ApiError, not_found
 
@@ -17,7 +17,7 @@ class Kept:
     """A snapshot and the moment it holds."""
 
     snapshot: Snapshot
-    checkpoint: Checkpoint
+    moment: Moment
 
 
 class Snapshots:
@@ -25,11 +25,11 @@ class Snapshots:
 
     Parameters
     ----------
-    bench : LiveBench
+    bench : ChangingBench
         The bench.
     """
 
-    def __init__(self, bench: LiveBench) -> None:
+    def __init__(self, bench: ChangingBench) -> None:
         self._bench = bench
         self._kept: dict[str, Kept] = {}
 
@@ -41,9 +41,9 @@ class Snapshots:
         """Keep this moment."""
         if len(self._kept) >= most:
             raise ApiError(409, "too_many_snapshots", f"{most} snapshots are kept, the limit (max_snapshots)")
-        board = self._bench.board
-        snapshot = Snapshot(id=secrets.token_hex(6), tick=board.tick, name=name, created=datetime.now(UTC))
-        self._kept[snapshot.id] = Kept(snapshot, board.checkpoint())
+        tick = self._bench.board.tick
+        snapshot = Snapshot(id=secrets.token_hex(6), tick=tick, name=name, created=datetime.now(UTC))
+        self._kept[snapshot.id] = Kept(snapshot, self._bench.moment())
         self._bench.note(actor, "snapshot_taken", f"kept this moment as {name or snapshot.id}")
         return snapshot
 

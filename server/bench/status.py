@@ -42,6 +42,13 @@ class Snapshot(BaseModel):
     created: datetime
 
 
+class Undoable(BaseModel):
+    """A change that can be taken back or made again."""
+
+    seq: int = Field(description="Number of its event")
+    text: str = Field(description="The change in words")
+
+
 class BenchStatus(BaseModel):
     """The changing part of a bench."""
 
@@ -57,6 +64,8 @@ class BenchStatus(BaseModel):
     slots: dict[str, str] = Field(description="The controller that drives in each slot, in their order")
     faults: list[ActiveFault]
     pending: list[Pending] = Field(description="Commands that wait for their moment")
+    undo: Undoable | None = Field(None, description="The change that undo takes back")
+    redo: Undoable | None = Field(None, description="The change that redo makes again")
     trip: Trip | None
     scores: dict[str, Scores] = Field(description="Of each diagnoser, against the truth the bench knows")
     last_event: int

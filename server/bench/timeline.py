@@ -5,13 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
+from core.board.board import Board
 from core.board.history import History
 from core.board.rows import Rows
 from core.device.geometry import Geometry
 from core.device.two_axis import TwoAxis
 from core.signals import Signal
+from scenarios.schema import Scenario
+from server.bench.moment import Branches, Moment
 from server.bench.tick_source import TickSource
 
+PAST_TICKS = 20_000
+"""Ticks of the past that a fork brings along, or a jump that is undone."""
 SLICE_S = 0.005
 """Longest slice, by what a tick of the one before took; other benches and commands wait for it."""
 
@@ -21,6 +26,8 @@ class Timeline:
 
     Parameters
     ----------
+    scenario : Scenario
+        What the board was built from.
     board : TickSource
         A board, or a recording that is played.
     history_ticks : int
@@ -29,11 +36,12 @@ class Timeline:
         The engine's clock.
     """
 
-    def __init__(self, board: TickSource, history_ticks: int, clock: Callable[[], float]) -> None:
-        self.board = board
+    def __init__(self, scenario: Scenario, board: TickSource, history_ticks: int, clock: Callable[[], float]) -> None:
+        self.scenario, self.board = scenario, board
         self._history_ticks, self._clock = history_ticks, clock
         self._slice_ticks = board.chunk
         self.history = self._empty_history()
+        self._branches = Branches()
         self._index = {signal.name: signal.index for signal in board.signals}
 
     @property
@@ -97,10 +105,33 @@ class Timeline:
         else:
             self.history = self._empty_history()
 
-    def _copy_past(self, other: Timeline, ticks: int) -> None:
-        """Take over the last ticks before this moment from the history of another timeline."""
+    def moment(self, with_past: bool = False) -> Moment:
+        """Return what the bench is now, for a jump that empties the history with the past before it."""
+        past = self._past(self.board.tick) if with_past else None
+        return Moment(self.scenario, self.board.checkpoint(), self._branches.current, past)
+
+    def _past(self, tick: int) -> Rows | None:
+        """Return the last ticks before a tick, as far as the history has them."""
+        first = max(self.history.first_tick, tick - PAST_TICKS)
+        if not first < tick <= self.history.end_tick:
+            return None
+        past = self.history.read(list(range(len(self._index))), first, tick).T
+        return Rows.of(first, past, self.board.signals.outputs)
+
+    def _be_again(self, moment: Moment) -> None:
+        """Be what the bench was; of the past the history keeps what is that moment's own."""
+        self.scenario, self.board = moment.scenario, Board.restore(moment.checkpoint)
         tick = self.board.tick
-        first = max(other.history.first_tick, tick - ticks)
-        if first < tick <= other.history.end_tick:
-            past = other.history.read(list(range(len(self._index))), first, tick).T
-            self.history.append(Rows.of(first, past, self.board.signals.outputs))
+        if self._branches.share(moment.branch, tick):
+            self._rewind_history()
+        else:
+            self.history = self._empty_history()
+        if moment.past is not None and self.history.end_tick != tick:
+            self.history.append(moment.past)
+        self._branches.begin(moment.branch, tick)
+
+    def _begin_again(self, scenario: Scenario, board: Board) -> None:
+        """Be another bench of the same signals, at tick 0."""
+        self.scenario, self.board = scenario, board
+        self.history = self._empty_history()
+        self._branches.begin()

@@ -1353,6 +1353,10 @@ export interface components {
              * @description Commands that wait for their moment
              */
             pending: components["schemas"]["Pending"][];
+            /** @description The change that undo takes back */
+            undo?: components["schemas"]["Undoable"] | null;
+            /** @description The change that redo makes again */
+            redo?: components["schemas"]["Undoable"] | null;
             trip: components["schemas"]["Trip"] | null;
             /**
              * Scores
@@ -3025,6 +3029,18 @@ export interface components {
             recordings: components["schemas"]["Recording"][];
         };
         /**
+         * Redo
+         * @description Make the change again that was taken back last.
+         */
+        Redo: {
+            /**
+             * Kind
+             * @default redo
+             * @constant
+             */
+            kind?: "redo";
+        };
+        /**
          * Replay
          * @description The speed of a replay.
          */
@@ -3653,6 +3669,34 @@ export interface components {
             value: number | null;
         };
         /**
+         * Undo
+         * @description Take the last change of the bench back, from now on: a fault, a value, a controller, a reset.
+         */
+        Undo: {
+            /**
+             * Kind
+             * @default undo
+             * @constant
+             */
+            kind?: "undo";
+        };
+        /**
+         * Undoable
+         * @description A change that can be taken back or made again.
+         */
+        Undoable: {
+            /**
+             * Seq
+             * @description Number of its event
+             */
+            seq: number;
+            /**
+             * Text
+             * @description The change in words
+             */
+            text: string;
+        };
+        /**
          * UnstableRegionMap
          * @description The region where a bench as it is now pulls in; empty if its plant cannot.
          */
@@ -3741,7 +3785,7 @@ export interface components {
             /** Id */
             id: string;
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
         };
         /**
          * Rearm
@@ -4051,6 +4095,16 @@ export interface components {
              * @description Commands that wait for their moment
              */
             pending: components["schemas"]["Pending"][];
+            /**
+             * @description The change that undo takes back
+             * @default null
+             */
+            undo?: components["schemas"]["Undoable"] | null;
+            /**
+             * @description The change that redo makes again
+             * @default null
+             */
+            redo?: components["schemas"]["Undoable"] | null;
             trip: components["schemas"]["Trip"] | null;
             /**
              * Scores
@@ -4582,7 +4636,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
             };
         };
         responses: {

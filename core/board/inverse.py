@@ -1,0 +1,71 @@
+"""Inverse: the commands that take a change of a board back, from now on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from core.board.commands import Command, Heal, Inject, Set, Switch
+from core.board.document import Document
+from core.board.log import LogEntry
+from core.faults.fault import FaultParams, Profile
+
+SORT = ("kind", "model")
+"""Parameters that choose a block, whose other parameters go with it."""
+IN_USE = ("controller", "sensor", "slots")
+"""Sections that only point at a block."""
+
+
+def inverse(command: Command, entry: LogEntry, before: Document) -> list[Command]:
+    """Return the commands that give a board what a command took from it.
+
+    States are not among it: what an estimator has learnt since then, it keeps.
+
+    Parameters
+    ----------
+    command : Command
+        What was done; not the reset of a trip, which nothing but the moment before takes back.
+    entry : LogEntry
+        What the log says of it, with what was before.
+    before : dict
+        The document of the bench before it.
+    """
+    if isinstance(command, Inject):
+        return [Heal(heal=[command.fault]) if entry.old is None else _inject(command.fault, entry.old)]
+    if isinstance(command, Heal):
+        return [_inject(name, params) for name, params in entry.old.items()]
+    if isinstance(command, Switch):
+        return [Switch(switch=entry.old)] if entry.old != entry.new else []
+    assert isinstance(command, Set)
+    return [Set(set=_values(command.set, entry.old, before))]
+
+
+def _inject(fault: str, params: Mapping[str, Any]) -> Inject:
+    """Return the command that puts a fault back; its profile begins anew."""
+    others = {name: value for name, value in params.items() if name not in FaultParams.model_fields}
+    profile = Profile.model_validate(params["profile"])
+    return Inject(fault=fault, severity=params["severity"], profile=profile, parameters=others)
+
+
+def _values(paths: Mapping[str, Any], old: Mapping[str, Any], before: Document) -> dict[str, Any]:
+    """Return the values of before: one by one, or the whole section where a block was exchanged."""
+    sections, values = {}, {}
+    for path in paths:
+        section, _, leaf = path.rpartition(".")
+        was, around = _at(before, path), _at(before, section)
+        exchanged = leaf in SORT and section not in IN_USE
+        if isinstance(was, dict):
+            sections[path] = was
+        elif isinstance(around, dict) and (exchanged or (was is None and old[path] is None)):
+            sections[section] = around
+        else:
+            values[path] = old[path] if was is None else was
+    return sections | {path: value for path, value in values.items() if path.rpartition(".")[0] not in sections}
+
+
+def _at(document: Document, path: str) -> Any:
+    """Return what stands at a path of a document, None for what is left at its default."""
+    found: Any = document
+    for name in path.split("."):
+        found = found.get(name) if isinstance(found, dict) else None
+    return found

@@ -1,0 +1,58 @@
+"""Moments: what a bench is at a tick edge, and which of its past still belongs to it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from core.board.board import Checkpoint
+from core.board.rows import Rows
+from scenarios.schema import Scenario
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A bench at a tick edge.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its scenario, which a reset may have given other values.
+    checkpoint : Checkpoint
+        Its board.
+    branch : int
+        The branch of time it lies on.
+    past : Rows, optional
+        The ticks before it, for when the history has them no more.
+    """
+
+    scenario: Scenario
+    checkpoint: Checkpoint
+    branch: int
+    past: Rows | None = None
+
+
+class Branches:
+    """The branches of time of a bench: going back begins one, and so does a reset."""
+
+    def __init__(self) -> None:
+        self._began: list[tuple[int, int]] = [(-1, 0)]
+
+    @property
+    def current(self) -> int:
+        """The branch of now."""
+        return len(self._began) - 1
+
+    def begin(self, parent: int = -1, tick: int = 0) -> None:
+        """Begin a branch at a tick of another; without one, from nothing."""
+        self._began.append((parent, tick))
+
+    def share(self, branch: int, tick: int) -> bool:
+        """Whether what lies before a tick of a branch is what the history of now has there."""
+        at, shared = self.current, math.inf
+        while at >= 0:
+            if at == branch:
+                return tick <= shared
+            at, began = self._began[at]
+            shared = min(shared, began)
+        return False
