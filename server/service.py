@@ -24,6 +24,7 @@ from server.security.limits import Buckets
 from server.settings import Settings
 from server.store.database import Database
 from server.store.keeping import Keeping
+from server.store.parameter_sets import ParameterSets
 from server.store.recordings import Recordings
 from server.stream.hub import Hub
 
@@ -51,6 +52,7 @@ class Service:
         self.engine = Engine(self.metrics, self._after_round)
         self.database = Database(settings.database_url or settings.data / "combbench.sqlite3")
         self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
+        self.parameter_sets = ParameterSets(self.database)
         self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
         self.jobs = Jobs(self.database, settings, self.metrics)
         self.keeping = Keeping(self.database, settings)

@@ -106,8 +106,12 @@ class Changes:
             text = f"{change.shown.text} can no more be {past}: {error}"
             raise InputError(text, "kind", error.hint, "conflict") from None
         target.append(Change(change.shown, way))
-        travelled = any(isinstance(step, Moment) for step in change.way)
-        return self._bench.note(actor, "restored" if travelled else past, f"{past}: {change.shown.text}")
+        text = f"{past}: {change.shown.text}"
+        moments = [step for step in change.way if isinstance(step, Moment)]
+        if moments:
+            tick = self._bench.board.tick
+            return self._bench.events.add(tick, actor, "restored", text, new=moments[0].last_event)
+        return self._bench.note(actor, past, text)
 
     def _go(self, way: Way, actor: str) -> Way:
         """Go a way as far as it can be gone; return the way back."""

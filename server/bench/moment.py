@@ -24,12 +24,15 @@ class Moment:
         The branch of time it lies on.
     past : Rows, optional
         The ticks before it, for when the history has them no more.
+    last_event : int
+        Number of the last event before it.
     """
 
     scenario: Scenario
     checkpoint: Checkpoint
     branch: int
     past: Rows | None = None
+    last_event: int = 0
 
 
 class Branches:

@@ -19,13 +19,9 @@ def _concerning(events: Sequence[Event], first: int) -> list[Event]:
     """Return the injections that still act at a tick, then the events from that tick on."""
     acting: dict[str, Event] = {}
     since: list[Event] = []
-    for event in events:
+    for event in _of_this_run(events):
         command = event.command or {}
-        if event.kind in ("reset", "restored"):  # events after the tick that was gone back to are undone
-            last = event.tick if event.kind == "restored" else -1
-            acting = {fault: done for fault, done in acting.items() if done.tick <= last}
-            since = [done for done in since if done.tick <= last]
-        elif event.tick >= first:
+        if event.tick >= first:
             since.append(event)
         elif event.kind == "inject":
             acting[command["fault"]] = event
@@ -33,6 +29,17 @@ def _concerning(events: Sequence[Event], first: int) -> list[Event]:
             healed = command["heal"]
             acting = {fault: done for fault, done in acting.items() if healed != "all" and fault not in healed}
     return [*acting.values(), *since]
+
+
+def _of_this_run(events: Sequence[Event]) -> list[Event]:
+    """Return the events since the last reset; of those before a return to a moment, the ones that led to it."""
+    jumps = [at for at, event in enumerate(events) if event.kind in ("reset", "restored")]
+    if not jumps:
+        return list(events)
+    before, since = events[: jumps[-1]], list(events[jumps[-1] :])
+    if since[0].kind == "reset":
+        return since
+    return _of_this_run([event for event in before if event.seq <= since[0].new]) + since
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import secrets
 from collections.abc import Callable
 from concurrent.futures import Future
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, get_args
 
@@ -193,10 +194,15 @@ class Session(Timeline):
         """Go back to a snapshot."""
         kept, before = self.snapshots.get(snapshot_id), self.moment(with_past=True)
         self.go_to(kept.moment)
-        event = self.note(actor, "restored", f"went back to {kept.snapshot.name or kept.snapshot.id}")
+        text = f"went back to {kept.snapshot.name or kept.snapshot.id}"
+        event = self.events.add(self.board.tick, actor, "restored", text, new=kept.moment.last_event)
         self.changes.jumped(event, before)
         self.refresh_status()
         return event
+
+    def moment(self, with_past: bool = False) -> Moment:
+        """Return what the bench is now, for a jump that empties the history with the past before it."""
+        return replace(super().moment(with_past), last_event=self.events.last)
 
     def go_to(self, moment: Moment) -> None:
         """Be what the bench was."""

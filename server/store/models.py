@@ -116,3 +116,15 @@ class RecordingRow(Base):
     created: Mapped[datetime] = mapped_column(default=now, index=True)
     finished: Mapped[datetime | None]
     reason: Mapped[str] = mapped_column(String(400), default="")
+
+
+class ParameterSetRow(Base):
+    """A named set of parameters."""
+
+    __tablename__ = "parameter_sets"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    name: Mapped[str] = mapped_column(String(100), unique=True)
+    scenario: Mapped[str] = mapped_column(String(200))
+    values: Mapped[dict[str, Any]]
+    created: Mapped[datetime] = mapped_column(default=now)

@@ -545,6 +545,114 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/parameter-sets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Save Parameter Set
+         * @description Keep every value of a bench that may change while it runs.
+         */
+        post: operations["save_parameter_set_api_v1_benches__bench_id__parameter_sets_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/parameter-sets/{set_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Apply Parameter Set
+         * @description Give a bench the values of a set, all in one tick.
+         */
+        post: operations["apply_parameter_set_api_v1_benches__bench_id__parameter_sets__set_id__post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/parameter-sets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Parameter Sets
+         * @description List the sets.
+         */
+        get: operations["list_parameter_sets_api_v1_parameter_sets_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/parameter-sets/{set_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Parameter Set
+         * @description Return a set with its values.
+         */
+        get: operations["get_parameter_set_api_v1_parameter_sets__set_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Parameter Set
+         * @description Forget a set.
+         */
+        delete: operations["delete_parameter_set_api_v1_parameter_sets__set_id__delete"];
+        options?: never;
+        head?: never;
+        /**
+         * Rename Parameter Set
+         * @description Give a set another name.
+         */
+        patch: operations["rename_parameter_set_api_v1_parameter_sets__set_id__patch"];
+        trace?: never;
+    };
+    "/api/v1/parameter-sets/{set_id}/difference": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Compare Parameter Sets
+         * @description Say where a set differs from another set or from a bench.
+         */
+        get: operations["compare_parameter_sets_api_v1_parameter_sets__set_id__difference_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/recordings": {
         parameters: {
             query?: never;
@@ -1290,6 +1398,19 @@ export interface components {
             pairs_named: components["schemas"]["NamedPair"][];
         };
         /**
+         * Applied
+         * @description What a set has changed on a bench.
+         */
+        Applied: {
+            /** @description Null: the bench had these values already */
+            result: components["schemas"]["CommandResult"] | null;
+            /**
+             * Left Out
+             * @description Paths of the set that this bench does not have
+             */
+            left_out: string[];
+        };
+        /**
          * Bench
          * @description A live bench.
          */
@@ -1791,6 +1912,31 @@ export interface components {
             /** Missed */
             missed: number;
             roc: components["schemas"]["Roc"] | null;
+        };
+        /**
+         * Difference
+         * @description Where two sets differ.
+         */
+        Difference: {
+            /** Rows */
+            rows: components["schemas"]["Differs"][];
+            /**
+             * Same
+             * @description Parameters with the same value in both
+             */
+            same: number;
+        };
+        /**
+         * Differs
+         * @description A parameter whose value is not the same in two sets; null: it is not in one of them, or left to its block.
+         */
+        Differs: {
+            /** Path */
+            path: string;
+            /** First */
+            first: unknown;
+            /** Second */
+            second: unknown;
         };
         /**
          * Digest
@@ -2718,6 +2864,52 @@ export interface components {
             choices: string[];
         };
         /**
+         * ParameterSet
+         * @description A set as a list shows it.
+         */
+        ParameterSet: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Scenario */
+            scenario: string;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+        };
+        /**
+         * ParameterSetDetail
+         * @description A set with its values.
+         */
+        ParameterSetDetail: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Scenario */
+            scenario: string;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /** Values */
+            values: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * ParameterSetList
+         * @description Sets by name.
+         */
+        ParameterSetList: {
+            /** Sets */
+            sets: components["schemas"]["ParameterSet"][];
+        };
+        /**
          * Pause
          * @description Stop time at the next tick edge.
          */
@@ -3315,6 +3507,14 @@ export interface components {
             set: {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * SetName
+         * @description The name of a set.
+         */
+        SetName: {
+            /** Name */
+            name: string;
         };
         /**
          * Signal
@@ -5143,6 +5343,233 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    save_parameter_set_api_v1_benches__bench_id__parameter_sets_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SetName"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ParameterSetDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    apply_parameter_set_api_v1_benches__bench_id__parameter_sets__set_id__post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                set_id: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Applied"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_parameter_sets_api_v1_parameter_sets_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ParameterSetList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_parameter_set_api_v1_parameter_sets__set_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ParameterSetDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    delete_parameter_set_api_v1_parameter_sets__set_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    rename_parameter_set_api_v1_parameter_sets__set_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SetName"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ParameterSetDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    compare_parameter_sets_api_v1_parameter_sets__set_id__difference_get: {
+        parameters: {
+            query?: {
+                /** @description Id of another set */
+                other?: string | null;
+                /** @description Id of a bench, whose values of now are compared */
+                bench?: string | null;
+            };
+            header?: never;
+            path: {
+                set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Difference"];
                 };
             };
             /** @description Refused or failed */

@@ -1,12 +1,13 @@
 import type { LogEntry } from "../api/types";
 
-/** The events of the present run: a reset begins a new one, going back to a snapshot undoes what came after it. */
+/** The events of the present run: a reset begins a new one, going back to a moment keeps those that led to it. */
 export function currentEvents(events: readonly LogEntry[]): LogEntry[] {
-  let kept: LogEntry[] = [];
-  for (const event of events) {
-    if (event.kind === "reset") kept = [];
-    if (event.kind === "restored") kept = kept.filter((e) => e.tick <= event.tick);
-    kept.push(event);
-  }
-  return kept;
+  const at = events.findLastIndex(({ kind }) => kind === "reset" || kind === "restored");
+  if (at < 0) return [...events];
+  const since = events.slice(at);
+  if (since[0].kind === "reset") return since;
+  const { tick, new: last } = since[0];
+  // a recording made by an earlier version does not say which was the last, only the tick
+  const led = (e: LogEntry) => (typeof last === "number" ? e.seq <= last : e.tick <= tick);
+  return [...currentEvents(events.slice(0, at).filter(led)), ...since];
 }
