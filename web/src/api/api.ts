@@ -17,6 +17,7 @@ import type {
 const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
 const run = (run_id: string) => ({ params: { path: { run_id } } });
 const recording = (recording_id: string) => ({ params: { path: { recording_id } } });
+const parameterSet = (set_id: string) => ({ params: { path: { set_id } } });
 const sweep = (sweep_id: string) => ({ params: { path: { sweep_id } } });
 
 /** The REST calls of the page. */
@@ -98,6 +99,16 @@ export const api = {
     data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set } })),
   snapshots: async (id: string) =>
     (await data(client.GET("/api/v1/benches/{bench_id}/snapshots", bench(id)))).snapshots,
+  parameterSets: async () => (await data(client.GET("/api/v1/parameter-sets"))).sets,
+  saveParameterSet: (id: string, name: string) =>
+    data(client.POST("/api/v1/benches/{bench_id}/parameter-sets", { ...bench(id), body: { name } })),
+  applyParameterSet: (bench_id: string, set_id: string) =>
+    data(client.POST("/api/v1/benches/{bench_id}/parameter-sets/{set_id}", { params: { path: { bench_id, set_id } } })),
+  compareParameterSets: (id: string, query: { other?: string; bench?: string }) =>
+    data(client.GET("/api/v1/parameter-sets/{set_id}/difference", { params: { path: { set_id: id }, query } })),
+  renameParameterSet: (id: string, name: string) =>
+    data(client.PATCH("/api/v1/parameter-sets/{set_id}", { ...parameterSet(id), body: { name } })),
+  removeParameterSet: (id: string) => data(client.DELETE("/api/v1/parameter-sets/{set_id}", parameterSet(id))),
   keep: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/snapshots", { ...bench(id), body: {} })),
   scenarioToml: (id: string): Promise<string> =>
     data(client.GET("/api/v1/benches/{bench_id}/scenario", { ...bench(id), parseAs: "text" })) as Promise<string>,

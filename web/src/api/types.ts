@@ -33,6 +33,7 @@ export type ModelAccount = Schemas["ModelAccount"];
 export type NewBench = Schemas["NewBench"];
 export type NewRun = Schemas["NewRun"];
 export type Parameter = Schemas["ParameterCard"];
+export type ParameterSet = Schemas["ParameterSet"];
 export type PointTally = Schemas["PointTally"];
 export type PositiveReal = Schemas["PositiveRealReport"];
 export type ProcessSpread = Schemas["ProcessSpread"];
@@ -58,6 +59,8 @@ export type Command =
   | Schemas["Step"]
   | Schemas["StepPeriod"]
   | Schemas["Reset"]
+  | Schemas["Undo"]
+  | Schemas["Redo"]
   | Schemas["TimeScale"]
   | Schemas["Inject"]
   | Schemas["Heal"]

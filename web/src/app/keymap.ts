@@ -3,12 +3,15 @@ import { focusNextGroup } from "../bench/dock";
 import type { PageName } from "../bench/view-store";
 import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
+import { takeBack } from "./take-back";
 import { themeSwitch } from "./theme-switch";
 
 export interface KeyBinding {
   /** `KeyboardEvent.key`, as typed. */
   key: string;
   shown: string;
+  /** With Ctrl, or Command where there is one. */
+  withControl?: boolean;
   does: string;
   group: "Run" | "Look" | "Bench" | "Pages";
   run(): void;
@@ -29,6 +32,9 @@ export const KEYMAP: KeyBinding[] = [
   { key: "f", shown: "F", does: "fork", group: "Bench", run: actions.fork },
   { key: "k", shown: "K", does: "keep this moment", group: "Bench", run: actions.keep },
   { key: "n", shown: "N", does: "new bench", group: "Bench", run: actions.newBench },
+  { key: "z", shown: "Ctrl Z", withControl: true, does: "undo", group: "Bench", run: () => takeBack("undo") },
+  { key: "y", shown: "Ctrl Y", withControl: true, does: "redo", group: "Bench", run: () => takeBack("redo") },
+  { key: "Z", shown: "Ctrl Shift Z", withControl: true, does: "redo", group: "Bench", run: () => takeBack("redo") },
   { key: "l", shown: "L", does: "all panels live", group: "Look", run: actions.live },
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },

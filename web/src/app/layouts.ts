@@ -4,6 +4,7 @@ import { dockNow, holdDock, restoreLayout } from "../bench/dock";
 import { type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
 import { BUILT_IN } from "./built-in-layouts";
+import { layoutHistory } from "./layout-history";
 import { PANELS } from "./panels";
 import { BUILT_IN_AXES } from "./two-axis-layouts";
 
@@ -18,6 +19,7 @@ export function layOutFor(withAxes: boolean): void {
   axes = withAxes;
   const name = useView.getState().layout;
   arrange(name, stored(name));
+  layoutHistory.forget();
 }
 
 /** The dock to lay out; called once it stands. A panel without a title of its own has that of its kind. */
@@ -30,6 +32,7 @@ export function attachDock(api: DockviewApi): void {
   const asked = new URLSearchParams(window.location.search).get("layout");
   const name = asked && asked in BUILT_IN ? (asked as LayoutName) : useView.getState().layout;
   arrange(name, stored(name));
+  layoutHistory.watch(api);
   api.onDidLayoutChange(() =>
     localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(api.toJSON())),
   );
@@ -49,7 +52,8 @@ function stored(name: LayoutName): SerializedDockview | undefined {
   return text ? (JSON.parse(text) as SerializedDockview) : undefined;
 }
 
-function arrange(name: LayoutName, saved: SerializedDockview | undefined): void {
+/** Put a layout there: as it was stored, or as it is built in. */
+export function arrange(name: LayoutName, saved: SerializedDockview | undefined): void {
   const api = dockNow();
   useView.setState({ layout: name, large: name === "lecture" });
   document.documentElement.dataset.size = name === "lecture" ? "large" : "normal";

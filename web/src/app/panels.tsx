@@ -19,6 +19,7 @@ import { RecordingsPanel } from "../panels/recordings/recordings-panel";
 import { SchematicPanel } from "../panels/schematic/schematic-panel";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
+import { SetsPanel } from "../panels/sets/sets-panel";
 import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
 import { TwinsPanel } from "../panels/twins/twins-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
@@ -57,6 +58,7 @@ export const PANELS: Record<string, PanelKind> = {
   allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
   faults: { title: "Faults", changes: true, tells: true, component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
+  sets: { title: "Parameter sets", changes: true, component: SetsPanel },
   environment: { title: "Environment", changes: true, component: EnvironmentPanel },
   phase: { title: "Phase plane", component: PhasePanel },
   spectrum: { title: "Spectrum", component: SpectrumPanel },

@@ -38,11 +38,13 @@ export function useKeys(): void {
 
   useEffect(() => {
     const listen = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.defaultPrevented || event.altKey) return;
       const target = event.target as HTMLElement;
       if (target.closest(TYPING)) return;
       if (event.key === " " && target.closest("button, a, summary, [role=button], [role=tab]")) return;
-      const binding = KEYMAP.find((b) => b.key === event.key);
+      const binding = KEYMAP.find(
+        (b) => b.key === event.key && (b.withControl ?? false) === (event.ctrlKey || event.metaKey),
+      );
       if (!binding) return;
       event.preventDefault();
       binding.run();

@@ -1,12 +1,13 @@
 import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
-import { slotMates } from "../api/use-catalog";
+import { cardOf, slotMates } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/jump";
 import { saveFile } from "../ui/save-file";
 import { layoutNow } from "./dock";
 import { openBench } from "./open-bench";
 import { send, showError } from "./send";
+import { sendAndTell } from "./tell";
 import { stepTimeScale } from "./time-scale";
 import { type PageName, setPage, useView } from "./view-store";
 
@@ -22,19 +23,19 @@ export const actions = {
   reset: () => {
     jump.to("live");
     useView.setState({ sample: undefined });
-    void send({ kind: "reset" }, "Reset");
+    void sendAndTell({ kind: "reset" }, "Reset to the start");
   },
-  resetTrip: () => void send({ reset_trip: true }, "Trip reset"),
+  resetTrip: () => void sendAndTell({ reset_trip: true }, "Trip reset"),
   faster: () => scale(2),
   slower: () => scale(0.5),
-  healAll: () => void send({ heal: "all" }, "All faults healed"),
+  healAll: () => void sendAndTell({ heal: "all" }, "All faults healed"),
   live: () => jump.to("live"),
   controller: (controller: string, cold = false) => void send({ switch: controller, cold }, `Controller ${controller}`),
   nextController: () => {
     const { controllers = [], controller = "" } = bench() ?? {};
     const others = slotMates(controller, controllers);
     const next = others[(others.indexOf(controller) + 1) % others.length];
-    if (next) actions.controller(next);
+    if (next) void sendAndTell({ switch: next }, `${cardOf("control", next)?.title ?? next} drives`);
   },
   keys: () => useView.setState({ dialog: "keys" }),
   newBench: () => useView.setState({ dialog: "bench" }),

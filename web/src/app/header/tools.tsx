@@ -1,6 +1,8 @@
 import { ActionIcon, Menu, Tooltip } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import {
+  IconArrowBackUp,
+  IconArrowForwardUp,
   IconBookmark,
   IconDeviceFloppy,
   IconDots,
@@ -14,8 +16,10 @@ import {
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { actions } from "../../bench/actions";
+import { benchChange } from "../../bench/undo";
 import { useBench } from "../../stream/bench-store";
 import { useScheme } from "../../ui/use-scheme";
+import { takeBack } from "../take-back";
 import { themeSwitch } from "../theme-switch";
 import styles from "./header.module.css";
 import { LayoutItems } from "./layout-items";
@@ -31,7 +35,19 @@ export function Tools() {
   const scheme = useScheme();
   const narrow = useMediaQuery("(max-width: 1180px)", undefined, { getInitialValueInEffect: false });
   const recording = useBench((s) => (s.bench?.recording.length ?? 0) > 0);
+  const undo = useBench((s) => s.bench?.undo?.seq !== undefined && benchChange("undo")?.text);
+  const redo = useBench((s) => s.bench?.redo?.seq !== undefined && benchChange("redo")?.text);
   const keep: Tool[] = [
+    {
+      label: undo ? `Undo: ${undo} (Ctrl Z)` : "Undo (Ctrl Z)",
+      icon: <IconArrowBackUp size={19} />,
+      run: () => takeBack("undo"),
+    },
+    {
+      label: redo ? `Redo: ${redo} (Ctrl Y)` : "Redo (Ctrl Y)",
+      icon: <IconArrowForwardUp size={19} />,
+      run: () => takeBack("redo"),
+    },
     {
       label: recording ? "Stop recording (V)" : "Record every signal (V)",
       icon: recording ? <IconPlayerRecordFilled size={19} color="var(--alarm)" /> : <IconPlayerRecord size={19} />,

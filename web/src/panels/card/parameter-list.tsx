@@ -1,6 +1,7 @@
 import { Button, Checkbox, Group } from "@mantine/core";
 import { useState } from "react";
 import type { Document, Parameter } from "../../api/types";
+import { showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
 import styles from "./card.module.css";
 import { type Instance, parameterValue } from "./instances";
@@ -19,21 +20,12 @@ type Values = Record<string, unknown>;
 export function ParameterList({ instance, parameters, document }: ParameterListProps) {
   const [collect, setCollect] = useState(false);
   const [staged, setStaged] = useState<Values>({});
-  const [undo, setUndo] = useState<Values | undefined>(undefined);
   const current = (name: string) => parameterValue(document, instance, name);
   const shown = parameters.filter((p) => p.type !== "list" && p.type !== "table");
 
   const apply = async (values: Values) => {
-    const before = Object.fromEntries(
-      Object.keys(values).map((path) => {
-        const parameter = parameters.find((p) => `${instance.path}.${p.name}` === path);
-        return [path, parameter && (current(parameter.name) ?? parameter.default)];
-      }),
-    );
     const named = parameters.filter((p) => `${instance.path}.${p.name}` in values).map(parameterTitle);
-    if (!(await send({ set: values }, `${named.join(", ")} set`))) return;
-    setStaged({});
-    setUndo(before);
+    if (await send({ set: values }, `${named.join(", ")} set`)) setStaged({});
   };
 
   const change = (parameter: Parameter, value: unknown) => {
@@ -73,11 +65,9 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
             Apply {count} in one tick
           </Button>
         )}
-        {undo && (
-          <Button size="compact-sm" variant="default" onClick={() => apply(undo)}>
-            Undo
-          </Button>
-        )}
+        <Button size="compact-sm" variant="default" onClick={() => showPanel("sets")}>
+          Sets…
+        </Button>
       </Group>
     </>
   );

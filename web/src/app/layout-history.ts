@@ -1,0 +1,95 @@
+import type { DockviewApi, SerializedDockview } from "dockview-react";
+import { type LayoutName, useView } from "../bench/view-store";
+
+/** A layout as it stood, and when it was left. */
+interface Kept {
+  name: LayoutName;
+  layout: SerializedDockview;
+  at: number;
+}
+
+type Arrange = (name: LayoutName, layout: SerializedDockview) => void;
+
+const MOST = 50;
+const SETTLES_MS = 250;
+
+/** Parts of a stored layout that only say what is in front: looking at another tab changes nothing. */
+const IN_FRONT = new Set(["activeView", "activeGroup"]);
+
+/** What a layout consists of, as text to compare. */
+export const shapeOf = ({ name, layout }: Pick<Kept, "name" | "layout">): string =>
+  JSON.stringify([name, layout], (key, value) =>
+    IN_FRONT.has(key) ? undefined : key === "size" ? Math.round(value) : value,
+  );
+
+/** Whether the place for the panels has another size: all of them change theirs then, and nobody asked for it. */
+const isResized = ({ grid: a }: SerializedDockview, { grid: b }: SerializedDockview): boolean =>
+  a.width !== b.width || a.height !== b.height;
+
+/** Changes of the layout that can be taken back and made again. */
+class LayoutHistory {
+  private past: Kept[] = [];
+  private future: Kept[] = [];
+  private now: Kept | undefined;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  /** The next change is not the user's: a layout was put there. */
+  private isOurs = true;
+  private dock: DockviewApi | undefined;
+
+  /** Watch a dock from here on. */
+  watch(dock: DockviewApi): void {
+    this.dock = dock;
+    this.forget();
+    dock.onDidLayoutChange(() => this.settleSoon());
+  }
+
+  /** Begin anew with the layout that is being put there. */
+  forget(): void {
+    this.past = [];
+    this.future = [];
+    this.adopt();
+  }
+
+  /** When the change that `way` takes was made. */
+  lastAt(way: "undo" | "redo"): number | undefined {
+    this.settle();
+    return (way === "undo" ? this.past : this.future).at(-1)?.at;
+  }
+
+  /** Go back to the layout before, or forward again. */
+  go(way: "undo" | "redo", arrange: Arrange): void {
+    this.settle();
+    const [from, to] = way === "undo" ? [this.past, this.future] : [this.future, this.past];
+    const wanted = from.pop();
+    if (!wanted || !this.now) return;
+    to.push({ ...this.now, at: wanted.at });
+    arrange(wanted.name, wanted.layout);
+    this.adopt();
+  }
+
+  /** Take what is there once it has settled as it is: nobody made it who would want the one before. */
+  private adopt(): void {
+    this.isOurs = true;
+    this.settleSoon();
+  }
+
+  private settleSoon(): void {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.settle(), SETTLES_MS);
+  }
+
+  private settle(): void {
+    clearTimeout(this.timer);
+    if (!this.dock) return;
+    const next: Kept = { name: useView.getState().layout, layout: this.dock.toJSON(), at: performance.now() };
+    const isChange = this.now && shapeOf(next) !== shapeOf(this.now);
+    if (this.now && isChange && !this.isOurs && !isResized(this.now.layout, next.layout)) {
+      this.past = [...this.past, { ...this.now, at: next.at }].slice(-MOST);
+      this.future = [];
+    }
+    this.isOurs = false;
+    this.now = next;
+  }
+}
+
+export const layoutHistory = new LayoutHistory();

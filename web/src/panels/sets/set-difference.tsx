@@ -1,0 +1,79 @@
+import { CloseButton, NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import { api } from "../../api/api";
+import type { ParameterSet } from "../../api/types";
+import { useAsked } from "../../api/use-asked";
+import { useCatalog } from "../../api/use-catalog";
+import { useBench } from "../../stream/bench-store";
+import { formatCount } from "../../ui/format";
+import { useInstances } from "../card/use-instances";
+import { namedPath, valueText } from "./named-path";
+import styles from "./sets.module.css";
+
+interface SetDifferenceProps {
+  first: ParameterSet;
+  others: readonly ParameterSet[];
+  onClose(): void;
+}
+
+const BENCH = "bench";
+
+/** Where a set differs from another, or from the bench as it is now. */
+export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
+  const bench = useBench((s) => s.bench?.id) ?? "";
+  const event = useBench((s) => s.bench?.last_event);
+  const [other, setOther] = useState(BENCH);
+  const { block } = useCatalog();
+  const list = useInstances();
+  const query = other === BENCH ? { bench } : { other };
+  const { answer } = useAsked(JSON.stringify([first.id, query, event]), () =>
+    api.compareParameterSets(first.id, query),
+  );
+  const options = others.filter(({ id }) => id !== first.id).map(({ id, name }) => ({ value: id, label: name }));
+  const second = options.find(({ value }) => value === other)?.label ?? "now";
+  return (
+    <div className={styles.difference}>
+      <div className={styles.head}>
+        <NativeSelect
+          size="xs"
+          label={`Compare ${first.name} with`}
+          value={other}
+          data={[{ value: BENCH, label: "the bench now" }, ...options]}
+          onChange={(e) => setOther(e.currentTarget.value)}
+        />
+        <CloseButton aria-label="End the comparison" onClick={onClose} />
+      </div>
+      {answer &&
+        (answer.rows.length === 0 ? (
+          <p>No difference in {formatCount(answer.same, "value")}.</p>
+        ) : (
+          <table>
+            <caption>
+              {formatCount(answer.rows.length, "value")} differ, {answer.same} are the same
+            </caption>
+            <thead>
+              <tr>
+                <th scope="col">Parameter</th>
+                <th scope="col">{first.name}</th>
+                <th scope="col">{second}</th>
+              </tr>
+            </thead>
+            <tbody>
+              {answer.rows.map((row) => {
+                const { block: title, parameter, unit } = namedPath(row.path, list, block);
+                return (
+                  <tr key={row.path}>
+                    <th scope="row" title={row.path}>
+                      {parameter} <small>{title}</small>
+                    </th>
+                    <td>{valueText(row.first, unit)}</td>
+                    <td>{valueText(row.second, unit)}</td>
+                  </tr>
+                );
+              })}
+            </tbody>
+          </table>
+        ))}
+    </div>
+  );
+}

@@ -1,0 +1,81 @@
+import { ActionIcon, Button, TextInput } from "@mantine/core";
+import { IconPencil, IconTrash } from "@tabler/icons-react";
+import { useState } from "react";
+import { api } from "../../api/api";
+import type { ParameterSet } from "../../api/types";
+import { announce } from "../../bench/announce";
+import { send, showError } from "../../bench/send";
+import { tellUndoable } from "../../bench/tell";
+import { formatCount } from "../../ui/format";
+import styles from "./sets.module.css";
+
+interface SetRowProps {
+  set: ParameterSet;
+  bench: string;
+  onCompare(): void;
+  onChanged(): void;
+}
+
+/** One set: put it on the bench, compare it, name it anew, delete it. */
+export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
+  const [name, setName] = useState<string | undefined>(undefined);
+  const apply = async () => {
+    try {
+      const { result, left_out } = await api.applyParameterSet(bench, set.id);
+      const rest = left_out.length > 0 ? `; ${formatCount(left_out.length, "value")} of it are not on this bench` : "";
+      if (!result) announce(`The bench has the values of ${set.name} already${rest}.`);
+      const said = result ? `${set.name} is on the bench${rest}` : `The bench has these values already${rest}`;
+      tellUndoable(said, result ? () => send({ kind: "undo" }, `Undone: ${set.name}`) : undefined);
+    } catch (error) {
+      showError(error);
+    }
+  };
+  const rename = async () => {
+    const next = name?.trim();
+    setName(undefined);
+    if (!next || next === set.name) return;
+    await api.renameParameterSet(set.id, next).then(onChanged, showError);
+  };
+  const remove = () => {
+    if (window.confirm(`Delete the set ${set.name} for good?`))
+      void api.removeParameterSet(set.id).then(onChanged, showError);
+  };
+  return (
+    <li className={styles.row}>
+      {name === undefined ? (
+        <div className={styles.what}>
+          <b>{set.name}</b>
+          <span>
+            from {set.scenario}, {new Date(set.created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
+          </span>
+        </div>
+      ) : (
+        <TextInput
+          className={styles.what}
+          size="xs"
+          aria-label={`New name of ${set.name}`}
+          autoFocus
+          maxLength={100}
+          value={name}
+          onChange={(e) => setName(e.currentTarget.value)}
+          onBlur={rename}
+          onKeyDown={(e) => e.key === "Enter" && rename()}
+        />
+      )}
+      <div className={styles.do}>
+        <Button size="compact-xs" onClick={apply} aria-label={`Put ${set.name} on the bench`}>
+          Put on the bench
+        </Button>
+        <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${set.name}`}>
+          Compare
+        </Button>
+        <ActionIcon size={24} variant="subtle" aria-label={`Rename ${set.name}`} onClick={() => setName(set.name)}>
+          <IconPencil size={14} />
+        </ActionIcon>
+        <ActionIcon size={24} variant="subtle" aria-label={`Delete ${set.name}`} onClick={remove}>
+          <IconTrash size={14} />
+        </ActionIcon>
+      </div>
+    </li>
+  );
+}

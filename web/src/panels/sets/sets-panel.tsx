@@ -1,0 +1,75 @@
+import { Button, TextInput } from "@mantine/core";
+import { useState } from "react";
+import { api } from "../../api/api";
+import { useAnswer } from "../../api/use-answer";
+import { showError } from "../../bench/send";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { usePanelVisible } from "../../ui/panel-visible";
+import { Stale } from "../../ui/stale";
+import { SetDifference } from "./set-difference";
+import { SetRow } from "./set-row";
+import styles from "./sets.module.css";
+
+const EVERY_MS = 10_000;
+
+/** Values of the bench under a name: kept, put back in one tick, compared. */
+export function SetsPanel() {
+  return usePanelVisible() ? <Sets /> : null;
+}
+
+function Sets() {
+  const bench = useBench((s) => s.bench?.id) ?? "";
+  const { value: sets, error, since, again } = useAnswer(api.parameterSets, () => EVERY_MS);
+  const [name, setName] = useState("");
+  const [chosen, setChosen] = useState<string | undefined>(undefined);
+  const comparing = sets?.find((one) => one.id === chosen);
+  const keep = async () => {
+    try {
+      await api.saveParameterSet(bench, name.trim());
+      setName("");
+      again();
+    } catch (refusal) {
+      showError(refusal);
+    }
+  };
+  return (
+    <section className={styles.panel} aria-label="Parameter sets">
+      <form
+        className={styles.form}
+        onSubmit={(event) => {
+          event.preventDefault();
+          void keep();
+        }}
+      >
+        <TextInput
+          size="xs"
+          label="Keep the values of now as"
+          placeholder="soft PID, lecture 3"
+          maxLength={100}
+          value={name}
+          onChange={(e) => setName(e.currentTarget.value)}
+        />
+        <Button type="submit" size="xs" disabled={!name.trim()}>
+          Keep
+        </Button>
+      </form>
+      <Stale error={error} since={since} onRetry={again} />
+      {comparing && sets && (
+        <SetDifference key={comparing.id} first={comparing} others={sets} onClose={() => setChosen(undefined)} />
+      )}
+      {sets?.length === 0 ? (
+        <EmptyState title="No set yet">
+          A set holds every value that may change while the bench runs. Keep one, change what you like, and put it back
+          in one tick.
+        </EmptyState>
+      ) : (
+        <ul className={styles.list}>
+          {sets?.map((one) => (
+            <SetRow key={one.id} set={one} bench={bench} onCompare={() => setChosen(one.id)} onChanged={again} />
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}
