@@ -81,8 +81,7 @@ def format_short(value: float, unit: str, digits: int = 4) -> str:
     if not math.isfinite(value):
         return NOTHING
     scale = unit_scale(unit, value, digits)
-    shown = float(_fixed(value * scale.factor, scale.decimals))
-    return format_on(replace(scale, decimals=_decimals_of(shown, scale.decimals)), value)
+    return format_on(replace(scale, decimals=_decimals_of(value * scale.factor, scale.decimals)), value)
 
 
 def format_on(scale: UnitScale, value: float) -> str:
@@ -171,9 +170,8 @@ def _decimals_for(shown: float, digits: int) -> int:
 
 
 def _decimals_of(value: float, most: int) -> int:
-    """Return the fewest decimals that show a value as it is."""
-    full = float(_fixed(value, most))
-    return next((decimals for decimals in range(most) if float(_fixed(value, decimals)) == full), most)
+    """Return the fewest decimals that show a value as so many do."""
+    return len(_fixed(value, most).partition(".")[2].rstrip("0"))
 
 
 def _power(size: float) -> int:
@@ -181,7 +179,7 @@ def _power(size: float) -> int:
 
 
 def _fixed(value: float, decimals: int) -> str:
-    return str(_EXACT.quantize(Decimal(value), Decimal(1).scaleb(-decimals)))
+    return f"{_EXACT.quantize(Decimal(value), Decimal(1).scaleb(-decimals)):f}"
 
 
 def _with_unit(text: str, unit: str) -> str:
