@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, ClassVar, Literal, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -43,9 +44,14 @@ class Timed(Table):
 
     def document(self) -> Document:
         """Return the command as an event of a scenario, without what is left at its default."""
-        fields = type(self).model_fields.items()
-        said = {name for name, info in fields if getattr(self, name) != info.default}
+        said = {name for name, default in _defaults(type(self)) if getattr(self, name) != default}
         return self.model_dump(mode="json", include=said)
+
+
+@cache
+def _defaults(model: type[Timed]) -> list[tuple[str, Any]]:
+    """Return the fields of a command with their defaults."""
+    return [(name, info.default) for name, info in model.model_fields.items()]
 
 
 class ResetTrip(Timed):
