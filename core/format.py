@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from decimal import ROUND_HALF_UP, Context, Decimal
+from functools import cache
+from typing import NamedTuple
 
 MINUS, THIN, SPACE, NOTHING = "−", "\u2009", "\u00a0", "–"
 IMMENSE = 1e15
@@ -35,8 +36,7 @@ PREFIXES = tuple(zip((1e12, 1e9, 1e6, 1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 
 _EXACT = Context(prec=100, rounding=ROUND_HALF_UP)
 
 
-@dataclass(frozen=True)
-class UnitScale:
+class UnitScale(NamedTuple):
     """How numbers of one unit are shown: the shown value is the value times the factor, with a number of decimals."""
 
     factor: float
@@ -81,7 +81,7 @@ def format_short(value: float, unit: str, digits: int = 4) -> str:
     if not math.isfinite(value):
         return NOTHING
     scale = unit_scale(unit, value, digits)
-    return format_on(replace(scale, decimals=_decimals_of(value * scale.factor, scale.decimals)), value)
+    return format_on(scale._replace(decimals=_decimals_of(value * scale.factor, scale.decimals)), value)
 
 
 def format_on(scale: UnitScale, value: float) -> str:
@@ -136,7 +136,7 @@ def unit_text(unit: str) -> str:
 
 def round_to(value: float, digits: int) -> float:
     """Round a value to a number of significant digits; a half goes away from zero."""
-    return float(Context(prec=digits, rounding=ROUND_HALF_UP).create_decimal(Decimal(value)))
+    return float(_rounding(digits).create_decimal(Decimal(value)))
 
 
 def _part(part: float, whole: float, unit: str, decimals: int) -> str:
@@ -179,7 +179,18 @@ def _power(size: float) -> int:
 
 
 def _fixed(value: float, decimals: int) -> str:
-    return f"{_EXACT.quantize(Decimal(value), Decimal(1).scaleb(-decimals)):f}"
+    return f"{_EXACT.quantize(Decimal(value), _last(decimals)):f}"
+
+
+@cache
+def _rounding(digits: int) -> Context:
+    return Context(prec=digits, rounding=ROUND_HALF_UP)
+
+
+@cache
+def _last(decimals: int) -> Decimal:
+    """Return one in the last of so many decimals."""
+    return Decimal(1).scaleb(-decimals)
 
 
 def _with_unit(text: str, unit: str) -> str:

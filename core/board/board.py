@@ -65,7 +65,7 @@ class Board:
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
         self.log = Log()  # a live bench puts its own in its place
-        self.done: list[Command] = []  # each with the tick at which it took effect
+        self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
         self.pending = Queue()
         self.trip: Trip | None = None
         self.folds = fold.begin(self.wiring.signals.outputs)
@@ -231,7 +231,7 @@ class Board:
 
     def _do(self, command: Command, actor: str) -> LogEntry:
         old, new = changes.carry_out(self, command)
-        self.done.append(command.at(self.tick))
+        self.done.append((self.tick, command))
         text = words.describe(command)
         return self.note(actor, command.kind, text, command=command.at(None), old=old, new=new)
 
@@ -295,6 +295,8 @@ class Board:
 
         Run headless it gives the same bits.
         """
-        events = [command.document() for command in self.done] + [entry.event() for entry in self.pending.as_asked]
+        events = [command.at(tick).document() for tick, command in self.done] + [
+            entry.event() for entry in self.pending.as_asked
+        ]
         length = {"samples": self.tick} if self.tick else {}
         return {**copy.deepcopy(self.base), **length, "events": events}

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from core import registry
-from core.block import Block, BlockParams
+from core.block import BlockParams
 from core.board.commands import Command, Heal, Inject, Set, Switch, Trip
 from core.board.difference import change
 from core.board.document import CHOSEN, as_written
@@ -189,7 +189,7 @@ def _fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
     reason = misfit(block, spec.plant.block)
     if reason:
         raise InputError(f"{block.name} {reason}", "fault")
-    own = _own_parameters(block)
+    own = _own_parameters(block.Params)
     for name in command.parameters:
         if name not in own:
             raise unknown("parameter", name, own, f"parameters.{name}")
@@ -203,9 +203,9 @@ def _fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
 
 
 @cache
-def _own_parameters(block: type[Block]) -> list[str]:
+def _own_parameters(params: type[BlockParams]) -> list[str]:
     """Return the names of what a fault lets one choose besides its severity and profile."""
-    return [name for name in block.Params.model_fields if name not in FaultParams.model_fields]
+    return [name for name in params.model_fields if name not in FaultParams.model_fields]
 
 
 def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:

@@ -177,8 +177,8 @@ class Ensemble(Board):
         todo, self._mirrored = self.done[self._mirrored :], len(self.done)
         outputs, taps, idle = [rows.outputs], [rows.taps], [rows.idle]
         for (name, twin), (shown_outputs, shown_taps) in zip(self.twins.items(), self._columns, strict=True):
-            for command in todo:
-                self._mirror(name, twin, command)
+            for tick, command in todo:
+                self._mirror(name, twin, command.at(tick))
             seen = twin.log.last
             own = twin.advance(rows.count)
             new = list(takewhile(lambda entry: entry.seq > seen, reversed(twin.log)))  # noqa: B023

@@ -61,5 +61,5 @@ def _ambiguity_um(board: Board) -> float:
 
 def _chosen_at(board: Board) -> int:
     """Return the tick at which the sensor in use was chosen; before it, another sensor fed the loop."""
-    chosen = [command for command in board.done if isinstance(command, Set) and "sensor.kind" in command.set]
-    return chosen[-1].at_sample or 0 if chosen else 0
+    chosen = [tick for tick, command in board.done if isinstance(command, Set) and "sensor.kind" in command.set]
+    return chosen[-1] if chosen else 0

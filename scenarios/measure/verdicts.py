@@ -47,7 +47,7 @@ def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, flo
 
 def _edges(board: Board) -> list[int]:
     """Return the ticks at which a fault came or went, with start and end."""
-    ticks = {command.at_sample or 0 for command in board.done if isinstance(command, Inject | Heal)}
+    ticks = {tick for tick, command in board.done if isinstance(command, Inject | Heal)}
     return [0, *sorted(tick for tick in ticks if 0 < tick < board.tick), board.tick] if board.tick else []
 
 
