@@ -123,4 +123,4 @@ def test_twins_do_what_the_board_does_and_tell_it_to_the_same_log() -> None:
     assert told(bench)[4:] == [(20, "inject"), (3, "twin_tripped"), (25, "switch")]
     calm = bench.board.twins["calm"]
     assert calm.spec.active == bench.board.spec.active == "mrac"
-    assert [type(command).__name__ for command in calm.done] == ["Inject", "Switch"]
+    assert [type(command).__name__ for _, command in calm.done] == ["Inject", "Switch"]
