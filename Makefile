@@ -16,7 +16,7 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run setup first-kernels test check fix dev bench load soak image codegen digests lock clean help
+.PHONY: run setup first-kernels test check fix dev bench load soak page-speed image codegen digests lock clean help
 
 run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels
@@ -43,6 +43,9 @@ bench: $(PYTHON_STAMP)  ## Measure speed, each figure as a ratio to a peer in th
 
 load: setup  ## Many watchers of one bench for 20 s: frame rate, latency, board timing
 	@.venv/bin/python scripts/load.py $(ARGS)
+
+page-speed: setup  ## How often eight scopes are drawn, what a frame costs, how soon a click acts, the heap over 30 min
+	@scripts/npm --prefix web exec -- playwright test -c measure.config.ts $(ARGS)
 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
 	@.venv/bin/python scripts/load.py --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
