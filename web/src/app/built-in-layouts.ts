@@ -62,6 +62,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "motion", "scope", {}, MOTION, "Displacement");
     addTo(api, "faults", "faults", { right: "motion" });
     addTo(api, "view3d", "view3d", { below: "faults" });
+    addTo(api, "why", "why", { within: "view3d", inactive: true });
     addTo(api, "lanes", "lanes", { below: "motion" });
     size(api, width, height, { faults: { w: 0.3, h: 0.42 }, lanes: { h: 0.52 } });
   },

@@ -30,6 +30,7 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "rate", "scope", {}, RATE, "Angular rate");
     addTo(api, "controllers", "controllers", { right: "rate" });
     addTo(api, "faults", "faults", { within: "controllers", inactive: true });
+    addTo(api, "why", "why", { within: "controllers", inactive: true });
     addTo(api, "allan", "allan", { within: "rate", inactive: true });
     addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
     addTo(api, "locus", "locus", { below: "rate" });
