@@ -6,6 +6,9 @@ const MOTION = scopeConfig(["plant.displacement", "sensor.displacement", "model.
 const TRACKING = scopeConfig(["model.tracking_error"]);
 const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
 
+/** The loop is drawn no narrower than this, and what stands below it. */
+export const LOOP_PX = 284;
+
 interface Where {
   below?: string;
   right?: string;
@@ -93,7 +96,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "identify", "identify", { within: "lanes", inactive: true });
     addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
-      schematic: { w: 0.26, h: 0.34 },
+      schematic: { w: Math.max(0.26, LOOP_PX / width), h: 0.34 },
       motion: { h: 0.33 },
       voltage: { h: 0.28 },
       lanes: { h: 0.39 },

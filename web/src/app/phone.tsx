@@ -17,7 +17,7 @@ import { PanelBody } from "./panel-body";
 import { PANELS, suits } from "./panels";
 import styles from "./phone.module.css";
 
-const MOTION = scopeConfig(["model.displacement", "plant.displacement"]);
+const MOTION = scopeConfig(["plant.displacement", "model.displacement"]);
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });
 
 /** A bench in the hand: status, one scope, the lanes, 3D, and the button that stops it. */

@@ -40,11 +40,12 @@ const PIECES = 24;
 
 export const phaseTitle = ({ name, scale }: PhaseAxis) => (scale.unit ? `${name}, ${scale.unit}` : name);
 
-/** The square field of a plane in a picture: as large as it can be, in the middle. */
-export function squareField(width: number, height: number): Field {
-  const side = Math.max(0, Math.floor(Math.min(width - LEFT - RIGHT, height - TOP - BOTTOM)));
+/** The square field of a plane in a picture: as large as it can be, in the middle; above it stands a title, or none. */
+export function squareField(width: number, height: number, title: number): Field {
+  const above = TOP + title;
+  const side = Math.max(0, Math.floor(Math.min(width - LEFT - RIGHT, height - above - BOTTOM)));
   const left = Math.round(LEFT + (width - LEFT - RIGHT - side) / 2);
-  const top = Math.round(TOP + (height - TOP - BOTTOM - side) / 2);
+  const top = Math.round(above + (height - above - BOTTOM - side) / 2);
   return { left, top, right: left + side, bottom: top + side };
 }
 
@@ -59,7 +60,7 @@ interface Field {
 export function paintPhase(ctx: Pen, picture: PhasePicture): void {
   const { width, height, scheme, fontSize } = picture;
   const ink = CANVAS[scheme];
-  const field = squareField(width, height);
+  const field = squareField(width, height, picture.isFramed ? 0 : fontSize);
   const { left, top, right, bottom } = field;
   const px = (value: number) => left + ((value - picture.x.range[0]) / span(picture.x.range)) * (right - left);
   const py = (value: number) => bottom - ((value - picture.y.range[0]) / span(picture.y.range)) * (bottom - top);
@@ -77,7 +78,7 @@ export function paintPhase(ctx: Pen, picture: PhasePicture): void {
   ctx.lineWidth = 1;
   ctx.textAlign = "center";
   ctx.textBaseline = "top";
-  const across = scaled(picture.x, (right - left) / 80);
+  const across = scaled(picture.x, (right - left) / 60);
   labelsOn(picture.x.scale, across).forEach((label, i) => {
     line(ctx, px(across[i]), top, px(across[i]), bottom);
     ctx.fillText(label, px(across[i]), bottom + 4);
@@ -93,8 +94,7 @@ export function paintPhase(ctx: Pen, picture: PhasePicture): void {
     ctx.textBaseline = "bottom";
     ctx.fillText(phaseTitle(picture.x), right, bottom + BOTTOM - 2);
     ctx.textAlign = "left";
-    ctx.textBaseline = "top";
-    ctx.fillText(phaseTitle(picture.y), left + 6, top + 2);
+    ctx.fillText(phaseTitle(picture.y), left - LEFT + 12, top - 4);
   }
 
   ctx.save();

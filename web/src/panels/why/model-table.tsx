@@ -26,9 +26,9 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
             <th scope="col">Hypothesis</th>
             <th scope="col">Posterior</th>
             <th scope="col">Misses by</th>
+            {filtered && <th scope="col">Gain K{axes}</th>}
             <th scope="col">Residual{axes}</th>
             <th scope="col">√ covariance{axes}</th>
-            {filtered && <th scope="col">Gain K{axes}</th>}
             <th scope="col">ln f</th>
             <th scope="col">Prior</th>
           </tr>
@@ -56,13 +56,13 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
                 </span>
               </td>
               <td>{formatNumber(model.missed_sigma, 1)} σ</td>
+              {filtered && <td>{lines(gains(account, i))}</td>}
               <td>{lines(model.residual_um.map((value) => formatSi(value, "um", 3)))}</td>
               <td>
                 {model.covariance_um2 === null
                   ? "–"
                   : lines(model.covariance_um2.map((row, j) => formatSi(Math.sqrt(row[j]), "um", 3)))}
               </td>
-              {filtered && <td>{lines(gains(account, i))}</td>}
               <td>{model.log_likelihood === null ? "–" : formatNumber(model.log_likelihood, 2)}</td>
               <td>{formatPercent(model.prior, 2)}</td>
             </tr>

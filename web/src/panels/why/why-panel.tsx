@@ -128,6 +128,7 @@ function Verdict({
       <p className={styles.turn}>
         <span>σ is the miss that its own filter expects. {turn && turnWords(turn, account.tick)}</span>
         <Button
+          className={styles.wrapping}
           size="compact-sm"
           variant="light"
           disabled={at === null || at === account.tick}
