@@ -117,6 +117,7 @@ export class ScopePlot {
     return {
       traces: this.options.traces,
       envelopes: this.envelopes,
+      bands: this.bands()?.traces ?? [],
       times: columnTimes(this.frame, this.origin),
       units: this.units,
       scales: this.scales,
