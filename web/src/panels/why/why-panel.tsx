@@ -2,7 +2,7 @@ import { ActionIcon, Button, NativeSelect } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
-import type { Account, ApiErrorBody, Turn } from "../../api/types";
+import type { Account, ApiErrorBody } from "../../api/types";
 import { useAsked } from "../../api/use-asked";
 import { useView } from "../../bench/view-store";
 import { askLatest, pickSample } from "../../bench/why";
@@ -10,12 +10,12 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatClock } from "../../ui/format";
 import { Formula } from "../../ui/formula";
-import { jump } from "../../ui/jump";
 import { NumberField } from "../../ui/number-field";
 import { ModelTable } from "./model-table";
 import styles from "./why.module.css";
 import { correctionLatex, densityLatex, floorLatex, posteriorLatex } from "./why-latex";
-import { likeliest, turnWords, whySentence } from "./why-sentence";
+import { likeliest } from "./why-sentence";
+import { WhyVerdict } from "./why-verdict";
 
 const LAST_TICK = 2 ** 53;
 
@@ -52,9 +52,7 @@ export function WhyPanel() {
 
   return (
     <section className={styles.panel} aria-label="Why this sample">
-      {account && !refusal && (
-        <Verdict account={account} turn={turn} onTurn={(tick) => showTurn(sample.diagnoser, tick)} />
-      )}
+      {account && !refusal && <WhyVerdict diagnoser={sample.diagnoser} account={account} turn={turn} />}
       <div className={styles.bar}>
         <NativeSelect
           size="xs"
@@ -102,42 +100,6 @@ export function WhyPanel() {
       )}
       {account && !refusal && <Explained account={account} waiting={waiting} />}
     </section>
-  );
-}
-
-/** Go to the sample at which a verdict turned; the lanes show it too. */
-function showTurn(diagnoser: string, tick: number): void {
-  pickSample(diagnoser, tick);
-  jump.to({ tick });
-}
-
-/** What the bank says in one sentence, and since when. */
-function Verdict({
-  account,
-  turn,
-  onTurn,
-}: {
-  account: Account;
-  turn: Turn | undefined;
-  onTurn: (tick: number) => void;
-}) {
-  const at = turn?.tick ?? null;
-  return (
-    <>
-      <p className={styles.sentence}>{whySentence(account, turn, account.tick)}</p>
-      <p className={styles.turn}>
-        <span>σ is the miss that its own filter expects. {turn && turnWords(turn, account.tick)}</span>
-        <Button
-          className={styles.wrapping}
-          size="compact-sm"
-          variant="light"
-          disabled={at === null || at === account.tick}
-          onClick={() => at !== null && onTurn(at)}
-        >
-          The sample where it turned
-        </Button>
-      </p>
-    </>
   );
 }
 
