@@ -20,6 +20,14 @@ SMALLEST = 1e-30
 """Square of a residual below which the covariance cannot be read from it."""
 
 
+class Turn(BaseModel):
+    """The last change of the verdict up to a sample."""
+
+    tick: int | None = Field(description="The first sample with the verdict there is; none in what is kept")
+    before: str = Field(description="The verdict before it; empty without a change")
+    since: int = Field(description="The first sample kept")
+
+
 class ModelAccount(BaseModel):
     """One hypothesis before and after a sample."""
 
@@ -30,6 +38,10 @@ class ModelAccount(BaseModel):
     prior: float
     posterior: float
     recorded: float
+    missed_sigma: float = Field(description="Root of the square that its diagnoser weighs, over its covariance")
+    gain: list[list[float]] = Field(
+        description="Kalman gain, a row for each state and a column for each residual; empty without a filter"
+    )
 
 
 class Account(BaseModel):
@@ -45,6 +57,7 @@ class Account(BaseModel):
     residuals: list[str] = Field(description="Signals of the residuals, below the name of the diagnoser")
     weighed: str = Field(description="What the prior is, in words")
     evidence: str = Field(description="What log_likelihood is, in LaTeX; empty for that of the normal density")
+    gain_units: list[str] = Field(description="Of the rows of each gain")
     models: list[ModelAccount]
 
 
@@ -59,10 +72,32 @@ def signals_of(section: Section) -> list[str]:
     block = section.block
     if not (scored(block) and issubclass(block, Bank) and block.sample_by_sample):
         raise InputError(f"{block.name} does not weigh sample by sample", "name", "look at its signals instead")
-    ports = ["probability", *block.residuals, *block.covariances, "nis"]
+    gains = [port for row in block.gains for port in row]
+    ports = ["probability", *block.residuals, *block.covariances, "nis", *gains]
     if any(port.name == "tone" for port in block.taps):
         ports.append("tone")
     return [f"{port}.{name}" for port in ports for name in names_of(section.params)]
+
+
+def last_turn(names: list[str], winners: FloatArray, first: int) -> Turn:
+    """Return where a verdict last changed.
+
+    Parameters
+    ----------
+    names : list of str
+        Hypotheses.
+    winners : array of shape (n,)
+        Index of the hypothesis that won, or -1, at each tick from ``first`` on; not finite where nothing was kept.
+    first : int
+    """
+    gaps = np.flatnonzero(~np.isfinite(winners))
+    kept = int(gaps[-1]) + 1 if gaps.size else 0
+    changes = np.flatnonzero(np.diff(winners[kept:]))
+    if not changes.size:
+        return Turn(tick=None, before="", since=first + kept)
+    at = kept + int(changes[-1])
+    loser = int(winners[at])
+    return Turn(tick=first + at + 1, before=names[loser] if loser >= 0 else "", since=first + kept)
 
 
 def explain(
@@ -116,6 +151,7 @@ def explain(
         residuals=list(block.residuals),
         weighed=block.weighed,
         evidence=block.evidence,
+        gain_units=[next(port.unit for port in block.taps if port.name == row[0]) for row in block.gains],
         models=[
             ModelAccount(
                 name=label,
@@ -125,6 +161,8 @@ def explain(
                 prior=prior,
                 posterior=posterior,
                 recorded=read(now, "probability", label),
+                missed_sigma=math.sqrt(read(now, block.judged_by, label) * len(block.residuals)),
+                gain=[[read(now, port, label) for port in row] for row in block.gains],
             )
             for label, (residual, covariance, density), prior, posterior in zip(
                 labels, rows, priors, posteriors, strict=True

@@ -46,6 +46,7 @@ class AxesBank(Bank):
     axes = ("x", "y")
     residuals = ("residual_x", "residual_y")
     covariances = ("covariance_x", "covariance_xy", "covariance_y")
+    gains = tuple((f"gain_{state}_x", f"gain_{state}_y") for state in ("x", "y", "x_velocity", "y_velocity", "rate"))
     weighed = "what was believed before, the winner raised by the least evidence that counts"
     lengths = ("hypotheses",)
     weaknesses = (
@@ -142,6 +143,16 @@ class AxesBank(Bank):
         covariance_y: Vector = tap("um^2", "the same along y", each="hypotheses")
         nis: Vector = tap("1", "half the normalised residual squared, 1 on average for a true model", each="hypotheses")
         rate: Vector = tap("deg/s", "rate under the hypothesis", each="hypotheses")
+        gain_x_x: Vector = tap("1", "Kalman gain of the displacement along x by residual_x", each="hypotheses")
+        gain_x_y: Vector = tap("1", "Kalman gain of the displacement along x by residual_y", each="hypotheses")
+        gain_y_x: Vector = tap("1", "Kalman gain of the displacement along y by residual_x", each="hypotheses")
+        gain_y_y: Vector = tap("1", "Kalman gain of the displacement along y by residual_y", each="hypotheses")
+        gain_x_velocity_x: Vector = tap("1/ms", "Kalman gain of the velocity along x by residual_x", each="hypotheses")
+        gain_x_velocity_y: Vector = tap("1/ms", "Kalman gain of the velocity along x by residual_y", each="hypotheses")
+        gain_y_velocity_x: Vector = tap("1/ms", "Kalman gain of the velocity along y by residual_x", each="hypotheses")
+        gain_y_velocity_y: Vector = tap("1/ms", "Kalman gain of the velocity along y by residual_y", each="hypotheses")
+        gain_rate_x: Vector = tap("deg/s/um", "Kalman gain of the rate by residual_x", each="hypotheses")
+        gain_rate_y: Vector = tap("deg/s/um", "Kalman gain of the rate by residual_y", each="hypotheses")
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:
@@ -220,4 +231,14 @@ class AxesBank(Bank):
             x.covariance_y[i] = f.psi_y
             x.nis[i] = f.nis
             x.rate[i] = DPS * f.rate
+            x.gain_x_x[i] = f.gain[0]
+            x.gain_x_y[i] = f.gain[1]
+            x.gain_y_x[i] = f.gain[2]
+            x.gain_y_y[i] = f.gain[3]
+            x.gain_x_velocity_x[i] = f.gain[4]
+            x.gain_x_velocity_y[i] = f.gain[5]
+            x.gain_y_velocity_x[i] = f.gain[6]
+            x.gain_y_velocity_y[i] = f.gain[7]
+            x.gain_rate_x[i] = DPS * f.rate_gain_x
+            x.gain_rate_y[i] = DPS * f.rate_gain_y
         take_floored_softmax(s.weight, s.likelihood, x.probability, n, best, p.probability_floor, p.log_floor)

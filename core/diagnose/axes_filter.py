@@ -17,13 +17,16 @@ from core.record import Record, Vector, vector
 
 
 class AxesFilter(Record):
-    """Motion, its sensitivity to the rate, rate (rad/ms), its variance; last residuals, their covariance; room."""
+    """Motion, its sensitivity to the rate, rate (rad/ms), its variance; last residuals, covariance, gains; room."""
 
     motion: Vector = vector(STATES)
     sensitivity: Vector = vector(STATES)
     moved: Vector = vector(STATES)
     spread: Vector = vector(STATES)
+    gain: Vector = vector(2 * STATES)
     rate: float
+    rate_gain_x: float
+    rate_gain_y: float
     variance: float
     residual_x: float
     residual_y: float
@@ -60,6 +63,8 @@ def correct(m: AxesModel, f: AxesFilter, x: float, y: float) -> float:
     .. math:: r=z-Hx^-,\quad S=HV,\quad\psi=\psi_0+SM S^T,\quad\Delta\Omega=MS^T\psi^{-1}r
 
     .. math:: V\leftarrow V-KS,\quad x=x^-+Kr+V\Delta\Omega,\quad M\leftarrow M-M^2S^T\psi^{-1}S
+
+    The gain of the motion is :math:`K+VMS^T\psi^{-1}`, that of the rate :math:`MS^T\psi^{-1}`.
     """
     first = x - f.motion[0]
     second = y - f.motion[1]
@@ -77,11 +82,15 @@ def correct(m: AxesModel, f: AxesFilter, x: float, y: float) -> float:
     change = doubt * (along * weighed_x + across * weighed_y)
     f.variance = doubt * (1.0 - doubt * (along * told_x + across * told_y))
     f.rate += change
+    f.rate_gain_x = doubt * told_x
+    f.rate_gain_y = doubt * told_y
     for i in range(STATES):
         k1 = m.gain[2 * i]
         k2 = m.gain[2 * i + 1]
         f.sensitivity[i] -= k1 * along + k2 * across
         f.motion[i] += k1 * first + k2 * second + f.sensitivity[i] * change
+        f.gain[2 * i] = k1 + f.sensitivity[i] * f.rate_gain_x
+        f.gain[2 * i + 1] = k2 + f.sensitivity[i] * f.rate_gain_y
     square = first * weighed_x + second * weighed_y
     f.residual_x = first
     f.residual_y = second

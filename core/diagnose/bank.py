@@ -37,11 +37,17 @@ class Bank(Block):
     covariances: ClassVar[tuple[str, ...]] = ()
     """Taps of its covariance, upper triangle row by row; none where a single residual and its nis tell it."""
 
+    gains: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    """Taps of the Kalman gain, a row for each state, a column for each residual; none without filters."""
+
     weighed: ClassVar[str] = "what was believed before"
     """What the prior of a sample is, in words."""
 
     evidence: ClassVar[str] = ""
     """LaTeX of `log_likelihood`; empty for the logarithm of the normal density."""
+
+    judged_by: ClassVar[str] = "nis"
+    """Tap of what a hypothesis is judged by: a square over its covariance, divided by the number of residuals."""
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:

@@ -25,6 +25,8 @@ class BankPorts(ObservedPorts):
     nis: Vector = tap(
         "1", "normalised residual squared, 1 on average for a true and well tuned model", each="hypotheses"
     )
+    gain_displacement: Vector = tap("1", "Kalman gain of the displacement", each="hypotheses")
+    gain_velocity: Vector = tap("1/ms", "Kalman gain of the velocity", each="hypotheses")
 
 
 @inlined
@@ -175,12 +177,14 @@ def correct_state(
     s.x2[i] = flush_tiny(x2 + k2 * residual)
     s.residual[i] = residual
     s.inverse[i] = inverse
+    s.gain1[i] = k1
+    s.gain2[i] = k2
     s.nis[i] = residual * residual * inverse
 
 
 @inlined
 def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
-    """Predict and correct all filters; show their residuals, and the squares over psi.
+    """Predict and correct all filters; show their residuals, the squares over psi, and the gains.
 
     Returns whether a residual covariance has changed, so that its logarithm must be renewed.
     """
@@ -200,9 +204,13 @@ def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
             s.covariance[i] = psi
     residuals = x.residual
     squares = x.nis
+    gains1 = x.gain_displacement
+    gains2 = x.gain_velocity
     for i in range(n):
         residuals[i] = s.residual[i]
         squares[i] = s.nis[i]
+        gains1[i] = s.gain1[i]
+        gains2[i] = s.gain2[i]
     return changed != 0
 
 

@@ -51,6 +51,7 @@ class KalmanBank(Bank):
     """Base of every bank of Kalman filters: it has the filters; its subclasses draw the conclusions."""
 
     Params: ClassVar[type[BlockParams]] = KalmanParams
+    gains = (("gain_displacement",), ("gain_velocity",))
 
     class Packed(PackedFilters):
         """Parameters of the filters."""

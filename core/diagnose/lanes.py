@@ -70,6 +70,8 @@ class Filters(Record):
     nis: Vector = vector(LANE)
     covariance: Vector = vector(LANE)
     inverse: Vector = vector(LANE)
+    gain1: Vector = vector(LANE)
+    gain2: Vector = vector(LANE)
     half_log: Vector = vector(LANE)
     pushed1: Vector = vector(LANE)
     pushed2: Vector = vector(LANE)

@@ -64,6 +64,7 @@ class LockIn(KalmanBank):
 
         tone: Vector = tap("1", "part of the residuals at the tone, 2 on average", each="hypotheses")
 
+    judged_by = "tone"
     evidence = r"-\frac{T_k}{2W}"
 
     @classmethod

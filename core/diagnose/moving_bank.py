@@ -99,6 +99,8 @@ class MovingBank(KalmanBank):
         nis: Vector = tail()
         covariance: Vector = tail()
         inverse: Vector = tail()
+        gain1: Vector = tail()
+        gain2: Vector = tail()
         half_log: Vector = tail()
         pushed1: Vector = tail()
         pushed2: Vector = tail()
@@ -110,6 +112,8 @@ class MovingBank(KalmanBank):
         estimate: float = output("1", "estimated factor on the parameter")
         residual: Vector = tap("um", "measured minus predicted displacement", labels=THREE)
         nis: Vector = tap("1", "normalised residual squared", labels=THREE)
+        gain_displacement: Vector = tap("1", "Kalman gain of the displacement", labels=THREE)
+        gain_velocity: Vector = tap("1/ms", "Kalman gain of the velocity", labels=THREE)
 
     @classmethod
     def floor(cls, params: Any) -> float:
@@ -153,6 +157,8 @@ class MovingBank(KalmanBank):
             nis = s.nis[i]
             x.residual[j] = s.residual[i]
             x.nis[j] = nis
+            x.gain_displacement[j] = s.gain1[i]
+            x.gain_velocity[j] = s.gain2[i]
             likelihood = s.log[j]
             if evidence:
                 likelihood += -0.5 * nis - s.half_log[i]

@@ -17,8 +17,8 @@ from core.record import Vector, vector
 
 
 @kernel
-def correct_velocity(s: Filters, i: int, residual: float, psi: float) -> None:
-    """Correct one filter by the velocity, after the displacement."""
+def correct_velocity(s: Filters, i: int, residual: float, psi: float) -> tuple[float, float]:
+    """Correct one filter by the velocity, after the displacement; return its gain."""
     c12 = s.p12[i]
     c22 = s.p22[i]
     k1 = c12 / psi
@@ -28,6 +28,7 @@ def correct_velocity(s: Filters, i: int, residual: float, psi: float) -> None:
     s.p11[i] -= k1 * c12
     s.p12[i] = c12 - k1 * c22
     s.p22[i] = c22 - k2 * c22
+    return k1, k2
 
 
 class TwoOutput(KalmanBank):
@@ -78,6 +79,12 @@ class TwoOutput(KalmanBank):
 
         velocity: float = reads("velocimeter.velocity", "um/ms", "measured velocity")
         velocity_residual: Vector = tap("um/ms", "measured velocity minus that expected by then", each="hypotheses")
+        velocity_gain_displacement: Vector = tap(
+            "ms", "Kalman gain of the displacement by the measured velocity", each="hypotheses"
+        )
+        velocity_gain_velocity: Vector = tap(
+            "1", "Kalman gain of the velocity by the measured velocity", each="hypotheses"
+        )
 
     @classmethod
     def floor(cls, params: Any) -> float:
@@ -124,7 +131,9 @@ class TwoOutput(KalmanBank):
                 psi = s.p22[i] + p.velocity_noise
                 residual = zv - s.x2[i]
                 square = residual * residual / psi
-                correct_velocity(s, i, residual, psi)
+                k1, k2 = correct_velocity(s, i, residual, psi)
+                x.velocity_gain_displacement[i] = k1
+                x.velocity_gain_velocity[i] = k2
                 if drive:
                     likelihood += -0.5 * square - 0.5 * log(psi)
                 nis = 0.5 * (nis + square) if seen else square

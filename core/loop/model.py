@@ -102,8 +102,10 @@ class Model(Block):
         reference: float = reads("reference.voltage", "V", "reference voltage")
         middle: float = reads("reference.middle", "V", "reference half a sample later")
         end: float = reads("reference.end", "V", "reference one sample later")
+        actual: float = reads("plant.displacement", "um", "true displacement")
         displacement: float = output("um", "where the shuttle should be")
         velocity: float = tap("um/ms", "how fast it should move")
+        tracking_error: float = tap("um", "true minus model displacement")
 
     @classmethod
     def oscillator(cls, params: Any, device: Oscillator) -> Oscillator:
@@ -190,3 +192,4 @@ class Model(Block):
             s.end = x.end
             x.displacement = p.zeroth * s.x + p.first * s.v
             x.velocity = p.slope_x * s.x + p.slope_v * s.v + p.slope_reference * s.start
+        x.tracking_error = x.actual - x.displacement

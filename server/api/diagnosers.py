@@ -8,10 +8,11 @@ import numpy as np
 from fastapi import APIRouter, Query
 
 from core.board.ensemble import Ensemble
-from core.board.explain import Account, explain, signals_of
+from core.board.explain import Account, Turn, explain, last_turn, signals_of
+from core.board.instances import scored
 from core.board.spec import Section, Spec
 from core.diagnose.aliases import AliasMap, alias_map, hidden_um
-from core.diagnose.hypothesis import Hypothesis
+from core.diagnose.hypothesis import Hypothesis, names_of
 from core.diagnose.hypothesis import hypotheses_of as factors_of
 from core.errors import InputError, unknown
 from core.reference.waveform import Waveform
@@ -34,12 +35,8 @@ def explain_sample(
     signals = signals_of(section)
     columns = session.indices([f"{name}.{signal}" for signal in signals])
     history = session.history
-    first, end = history.first_tick, history.end_tick
-    asked = end - 1 if tick is None else tick
-    if not first <= asked < end:
-        raise InputError(
-            f"is not kept; the history has {first} to {end - 1}" if end > first else "nothing is kept", "tick"
-        )
+    first = history.first_tick
+    asked = kept_tick(session, tick)
     turns = spec.turns(section)
     at = asked - asked % turns
 
@@ -52,6 +49,21 @@ def explain_sample(
         return dict(zip(signals, map(float, values), strict=True))
 
     return explain(spec, section, at, read(at - turns) if at > 0 else None, read(at))
+
+
+@router.get("/turn")
+def find_turn(
+    session: SessionDep,
+    name: str,
+    tick: Annotated[int | None, Query(ge=0, le=2**53, description="The sample; the last one unless given")] = None,
+) -> Turn:
+    """Find the sample up to this one at which the verdict last changed."""
+    _, section = spec_and_section(session, name)
+    if not scored(section.block):
+        raise InputError(f"{section.block.name} has no verdict", "name")
+    first, asked = session.history.first_tick, kept_tick(session, tick)
+    winners = session.history.read(session.indices([f"{name}.winner"]), first, asked + 1)[0]
+    return last_turn(names_of(section.params), winners, first)
 
 
 @router.get("/aliases")
@@ -69,6 +81,17 @@ def map_aliases(
     if not tones:
         raise InputError("give one: the reference has no tone of its own", "frequency_hz")
     return alias_map(hypotheses_of(section), context.device, tones, hidden_um(context.sensor_noise_um))
+
+
+def kept_tick(session: Session, tick: int | None) -> int:
+    """Return the tick asked for, the last one unless one is; an error if it is not kept."""
+    first, end = session.history.first_tick, session.history.end_tick
+    asked = end - 1 if tick is None else tick
+    if not first <= asked < end:
+        raise InputError(
+            f"is not kept; the history has {first} to {end - 1}" if end > first else "nothing is kept", "tick"
+        )
+    return asked
 
 
 def spec_and_section(session: Session, name: str) -> tuple[Spec, Section]:

@@ -17,6 +17,7 @@ H = 0.01
 NOISE_UM = 0.1e-6 * np.sqrt(0.5e5)
 THERMAL = 2.0 * 1.380649e-23 * 300.0 / 1e-5 * 1e12 * 1e-3
 """2 k T / h, in uN^2 per uN ms/um."""
+STATES = ("x", "y", "x_velocity", "y_velocity", "rate")
 STEP = {"kind": "step", "deg_per_s": 300.0, "start_ms": 300.0}
 
 
@@ -60,6 +61,10 @@ def test_a_filter_is_that_of_all_five_states():
         state, covariance = state + gain @ residual, covariance - gain @ seen @ covariance
         now = [trace[f"bank.{port}.healthy"][i] for port in ("residual_x", "residual_y")]
         np.testing.assert_allclose(now, residual, atol=1e-4 * NOISE_UM, err_msg=str(i))
+        gains = [trace[f"bank.gain_{row}_{axis}.healthy"][i] for row in STATES for axis in "xy"]
+        expected = np.vstack([gain[:4], np.degrees(gain[4:]) * 1e3])
+        size = np.abs(expected).max(axis=1, keepdims=True) + 1e-300  # that of the rate is 0 at rest
+        np.testing.assert_allclose(np.reshape(gains, (5, 2)) / size, expected / size, atol=1e-3, err_msg=str(i))
         assert trace["bank.nis.healthy"][i] == pytest.approx(0.5 * residual @ np.linalg.solve(psi, residual), rel=1e-3)
     assert trace["bank.rate.healthy"][-1] == pytest.approx(np.degrees(state[4]) * 1e3, rel=1e-4)
     assert abs(np.degrees(state[4]) * 1e3) > 1.0

@@ -93,6 +93,38 @@ def test_noise_of_the_voltage_as_assumed_is_as_large_as_expected(device, rate_kh
     assert nis.mean() == pytest.approx(1.0, abs=5.0 * math.sqrt(2.0 / len(nis)))
 
 
+@pytest.mark.parametrize(("form", "every"), [("recursive", 1), ("recursive", 3), ("steady", 1)])
+def test_the_gains_are_those_of_the_riccati_recursion(form, every):
+    r"""By the formula: the covariance is predicted at every tick, :math:`K=P^-H^T/\psi` where the bank corrects."""
+    trace = signals(120, {"diagnosers": {"kalman": {"kind": "mmae", "form": form, "every": every}}})
+    for name in NAMES:
+        phi, gamma = model(FACTORS[name])
+        noise = gamma @ gamma.T * 0.3**2
+        p, expected = np.diag([1.0, K / M * 1e-6]), []
+        for i in range(120 if form == "recursive" else 4000):
+            p = phi @ p @ phi.T + noise if i else p
+            if i % every == 0:
+                gain = p[:, 0] / (p[0, 0] + 0.05**2)
+                p = p - np.outer(gain, p[0])
+            expected.append(gain)  # held between two corrections
+        expected = expected if form == "recursive" else [expected[-1]] * 120
+        found = [trace[f"kalman.gain_{state}.{name}"] for state in ("displacement", "velocity")]
+        np.testing.assert_allclose(np.column_stack(found), expected, rtol=1e-8)
+
+
+@pytest.mark.parametrize("kind", ["imm", "reseed", "lock_in", "consistency", "cusum", "lock_in_glr", "two_output"])
+def test_every_bank_of_filters_shows_its_gains(kind):
+    r"""Since :math:`\psi=HP^-H^T+R`, the gain of the displacement is :math:`1-R/\psi`."""
+    values = {"diagnosers": {"kalman": {"kind": kind}}}
+    trace = signals(300, values | ({"sensor": {"kind": "ideal", "noise_um": 0.05}} if kind == "two_output" else {}))
+    residual = of_bank(trace, "residual")[1:]
+    square = of_bank(trace, "nis")[1:]
+    gain = of_bank(trace, "gain_displacement")[1:]
+    assert np.all(gain > 0.0) and np.all(np.isfinite(of_bank(trace, "gain_velocity")))
+    if kind != "two_output":  # its square is that of both residuals
+        np.testing.assert_allclose(1.0 - 0.05**2 * square / residual**2, gain, rtol=1e-6, atol=1e-7)
+
+
 def test_steady_form_is_the_filter_with_the_limit_gain():
     values = {"diagnosers": {"kalman": {"kind": "mmae", "process_noise_v": 0.3, "form": "steady"}}}
     trace = signals(600, values, {"damping": 0.3})

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.lab import make, phasor, play
+from tests.lab import inject, make, phasor, play
 
 M, K, FORCE = 2.2090e-10, 0.0538, -6.375e-9
 HZ, VOLTS = 2000.0, 10.0
@@ -59,3 +59,12 @@ def test_a_transfer_function_of_first_order_follows_an_analogue_sine():
     assert found[0] / found[1] == pytest.approx(
         1.0 / (1.0 + 1j * ratio), rel=(2.0 * math.pi * HZ * 1e-3 / rate_khz) ** 4
     )
+
+
+@pytest.mark.parametrize("kind", ["copy", "damped", "direct"])
+def test_the_tracking_error_is_what_the_shuttle_is_away_from_the_model(kind):
+    board = make({"device": {"id": "ch3"}, "model": {"kind": kind}, "controller": {"kind": "pid"}})
+    inject(board, added_mass=0.05)
+    trace = play(board, 500)
+    error = trace["plant.displacement"] - trace["model.displacement"]
+    assert np.array_equal(trace["model.tracking_error"], error) and np.ptp(error[100:]) > 0.0

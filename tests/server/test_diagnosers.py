@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 
+import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
@@ -74,6 +75,10 @@ def test_a_sample_of_two_displacements_is_explained_as_bayes_has_it(live):
             assert [m["posterior"] for m in models] == pytest.approx(expected, abs=1e-9)
             assert [m["recorded"] for m in models] == pytest.approx(expected, abs=1e-3), (name, tick)
             assert any(abs(m["covariance_um2"][0][1]) > 0.0 for m in models)
+            squares = [np.dot(m["residual_um"], np.linalg.solve(m["covariance_um2"], m["residual_um"])) for m in models]
+            assert [m["missed_sigma"] for m in models] == pytest.approx(np.sqrt(squares), rel=1e-3)
+            assert found["gain_units"] == ["1", "1", "1/ms", "1/ms", "deg/s/um"]
+            assert all(np.shape(m["gain"]) == (5, 2) for m in models)
             moved += max(abs(m["posterior"] - m["prior"]) for m in models)
     assert moved > 0.01
 
@@ -95,6 +100,14 @@ def test_a_sample_is_explained_as_bayes_has_it(live):
             if tick == 0:
                 continue  # nothing has been driven yet: the sample was no evidence
             assert found["residuals"] == ["residual"]
+            filtered = name in ("mmae", "imm", "reseed", "lock_in")
+            assert found["gain_units"] == (["1", "1/ms"] if filtered else [])
+            for model in models:
+                (r,), psi = model["residual_um"], model["covariance_um2"]
+                if filtered:
+                    assert model["gain"][0][0] == pytest.approx(1.0 - 0.05**2 / psi[0][0], rel=1e-3)
+                if name != "lock_in":  # it is judged by what of the residuals is at the tone
+                    assert model["missed_sigma"] == pytest.approx(abs(r) / math.sqrt(psi[0][0]), rel=1e-3)
             density = [normal(model["residual_um"], model["covariance_um2"]) for model in models]
             if not found["evidence"]:  # the normal density
                 assert [math.exp(model["log_likelihood"]) for model in models] == pytest.approx(density)
@@ -105,6 +118,31 @@ def test_a_sample_is_explained_as_bayes_has_it(live):
             recorded = [model["recorded"] for model in models]
             assert [model["posterior"] for model in models] == pytest.approx(recorded, abs=2e-4), (name, tick)
     assert live.http.get(f"{path}/diagnosers/mmae/explain").json()["tick"] == 429
+
+
+def test_the_sample_where_a_verdict_turned_is_found(live):
+    """Against the verdicts themselves, as the bench gives them."""
+    path, key = bench(live, 400, diagnosers={"mmae": {"kind": "mmae", "every": 4}})
+    live.command(key, fault="added_mass", severity=0.05)
+    live.command(key, "step", ticks=200)
+    trace = live.http.get(f"{path}/trace", params={"signals": "mmae.winner", "format": "csv"}).text.splitlines()
+    winners = [int(float(line.split(",")[-1])) for line in trace if line[:1].isdigit()]
+    assert len(winners) == 600
+    turns = [i for i in range(1, 600) if winners[i] != winners[i - 1]]
+    assert turns and turns[-1] > 400 and winners[-1] == 1
+    for tick in (turns[-1] - 1, turns[-1], 599):
+        found = live.http.get(f"{path}/diagnosers/mmae/turn", params={"tick": tick}).json()
+        before = [turn for turn in turns if turn <= tick]
+        names = ["healthy", "m+5", "m+10", "k+5", "k+10", "b+30"]
+        expected = (
+            {"tick": before[-1], "before": names[winners[before[-1] - 1]]} if before else {"tick": None, "before": ""}
+        )
+        assert found == {**expected, "since": 0}
+    early = live.http.get(f"{path}/diagnosers/mmae/turn", params={"tick": turns[0] - 1}).json()
+    assert early == {"tick": None, "before": "", "since": 0}
+    for params, field in (({"tick": 5000}, "tick"), ({"tick": -1}, "tick")):
+        answer = live.http.get(f"{path}/diagnosers/mmae/turn", params=params)
+        assert answer.status_code == 422 and answer.json()["error"]["field"].endswith(field)
 
 
 def test_a_seldom_bank_and_that_of_a_twin_are_explained(live):

@@ -19,6 +19,10 @@ test("the phase plane moves, and has the unstable region beneath once the plant 
   await page.getByRole("tab", { name: "Phase plane" }).click();
   const panel = page.getByRole("region", { name: "Phase plane" });
   await expect(panel.getByText(/^No unstable region: the linear plant/)).toBeVisible();
+  for (const width of [1366, 1920, 820]) {
+    await page.setViewportSize({ width, height: 768 });
+    await expect.poll(() => page.locator(CANVAS).evaluate(outOfSquare)).toBeLessThanOrEqual(2);
+  }
   const before = await pictureOf(page, CANVAS);
   await expect.poll(() => pictureOf(page, CANVAS)).not.toBe(before);
 
@@ -75,3 +79,21 @@ test("the spectrum finds the tone of the drive", async ({ page, openBench }) => 
   await panel.getByRole("combobox", { name: "Signal" }).selectOption("reference.voltage");
   await expect(panel.getByText(/^Strongest: (10\.0|9\.9\d|10\.1)\sV at (2\.00\d|1\.99\d)\skHz$/)).toBeVisible();
 });
+
+/** How much longer one axis of the field is than the other, px, by the grid that is drawn between its edges. */
+function outOfSquare(canvas: HTMLCanvasElement): number {
+  const context = canvas.getContext("2d") as CanvasRenderingContext2D;
+  const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+  const [across, up] = [[] as number[], [] as number[]];
+  for (let y = 0; y < canvas.height; y += 1)
+    for (let x = 0; x < canvas.width; x += 1) {
+      const at = 4 * (y * canvas.width + x);
+      const isGrid = [230, 234, 238].every((value, k) => Math.abs(data[at + k] - value) < 3) && data[at + 3] > 250;
+      if (!isGrid) continue;
+      across.push(x);
+      up.push(y);
+    }
+  const length = (places: number[]) =>
+    places.reduce((a, b) => Math.max(a, b), 0) - places.reduce((a, b) => Math.min(a, b));
+  return across.length === 0 ? Number.POSITIVE_INFINITY : Math.abs(length(across) - length(up));
+}

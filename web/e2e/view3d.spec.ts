@@ -11,6 +11,75 @@ test("the device is alive in 3D: it is drawn, and it moves", async ({ page, open
   await expect(page.getByTestId("bench-state")).toHaveText("running", { timeout: 30_000 });
 });
 
+test("scene and camera outlive layouts, a maximised panel, a closed panel, other pages", async ({
+  page,
+  openBench,
+}) => {
+  const warnings: string[] = [];
+  page.on("console", (message) => message.type() === "warning" && warnings.push(message.text()));
+  await openBench("research");
+  await page.getByRole("button", { name: "Pause" }).click();
+  const frame = page.locator("iframe[title='The device in 3D']");
+  const inside = frame.contentFrame();
+  await expect(inside.locator("#caption")).toContainText("motion ×", { timeout: 60_000 });
+  await inside.locator("body").evaluate((body) => body.setAttribute("data-kept", "yes"));
+  const shown = async () => (await frame.screenshot()).toString("base64");
+  const steady = async () => {
+    const before = await shown();
+    await expect.poll(async () => (await shown()) === before, { timeout: 20_000, intervals: [500] }).toBe(true);
+    return before;
+  };
+  await page.evaluate(() =>
+    window.addEventListener("message", ({ data }) => data.look && Object.assign(window, { looked: data.look })),
+  );
+  // somebody turns the device
+  const whole = await steady();
+  const box = (await frame.boundingBox()) as { x: number; y: number; width: number; height: number };
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 90, box.y + box.height / 2 + 30, { steps: 5 });
+  await page.mouse.up();
+  await expect.poll(shown, { timeout: 20_000 }).not.toBe(whole);
+  await steady();
+  const camera = () => page.evaluate(() => (window as { looked?: { position: number[] } }).looked?.position);
+  const turned = await camera();
+  expect(turned).toHaveLength(3);
+  const kept = async () => {
+    await expect(inside.locator("body")).toHaveAttribute("data-kept", "yes");
+    (await camera())?.forEach((value, axis) => {
+      expect(value).toBeCloseTo((turned as number[])[axis], 3);
+    });
+  };
+
+  await page.keyboard.press("2"); // the lab layout has no 3D
+  await expect(frame).toBeHidden();
+  await page.keyboard.press("1");
+  await expect(frame).toBeVisible();
+  await kept();
+  const group = page.locator(".dv-groupview", { has: page.getByRole("tab", { name: "3D" }) });
+  await group.getByRole("button", { name: "Fill the page with this panel" }).click();
+  await expect.poll(async () => (await frame.boundingBox())?.width).toBeGreaterThan(box.width * 2);
+  await kept();
+  await group.getByRole("button", { name: "Back to all panels" }).click();
+  await group.getByRole("button", { name: "Add or close panels" }).click();
+  await page.getByRole("menuitem", { name: "Close 3D" }).click();
+  await expect(frame).toBeHidden();
+  await page.keyboard.press("g");
+  await page.keyboard.press("g");
+  await page.keyboard.press("3");
+  await expect(frame).toBeVisible();
+  await kept();
+
+  // its connection breaks: it loads again, and looks from where it was put
+  await page.evaluate(() => Object.assign(window, { looked: undefined }));
+  await inside.locator("body").evaluate(() => parent.postMessage({ viser: "closed" }, location.origin));
+  await expect(inside.locator("body")).not.toHaveAttribute("data-kept");
+  await expect
+    .poll(async () => (await camera())?.map((value) => value.toFixed(2)), { timeout: 30_000 })
+    .toEqual(turned?.map((value) => value.toFixed(2)));
+  expect(warnings.filter((text) => text.includes("THREE."))).toEqual([]);
+});
+
 test.describe("in the hand", () => {
   test.use({ viewport: { width: 390, height: 844 }, colorScheme: "dark" });
 

@@ -1,29 +1,63 @@
+import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
+
+const lanesOf = (page: Page) => page.getByRole("region", { name: "Diagnosis by kalman" });
+const whyOf = (page: Page) => page.getByRole("region", { name: "Why this sample" });
+/** A view in 3D, drawn in software, would take the time of these tests. */
+test.beforeEach(({ page }) => page.route("**/3d/**", (route) => route.abort()));
+
+const SENTENCE = /^(healthy|[mkb]\+\d+) wins.* by [\d.]+ σ/;
+
+/** Click one of the newest samples in the lanes. */
+async function pick(page: Page): Promise<void> {
+  const lanes = lanesOf(page);
+  await expect(lanes.locator("dd").first()).toHaveText("healthy");
+  const clock = page.getByRole("timer").locator("small");
+  await expect.poll(async () => Number((await clock.innerText()).replaceAll(/\D/g, ""))).toBeGreaterThan(500);
+  const box = await lanes.locator("canvas").boundingBox();
+  if (!box) throw new Error("the lanes are not drawn");
+  await page.mouse.click(box.x + box.width - 88, box.y + 20);
+}
+
+/** Lanes and Why are both in sight, and neither lies over the other. */
+async function besideEachOther(page: Page): Promise<void> {
+  await expect(whyOf(page).getByText(SENTENCE)).toBeInViewport({ ratio: 1 });
+  await expect(whyOf(page)).toBeInViewport({ ratio: 0.3 });
+  await expect(lanesOf(page)).toBeInViewport({ ratio: 0.9 });
+  const lanes = await lanesOf(page).boundingBox();
+  const why = await whyOf(page).boundingBox();
+  if (!lanes || !why) throw new Error("one of them is not drawn");
+  const apart =
+    lanes.x + lanes.width <= why.x ||
+    why.x + why.width <= lanes.x ||
+    lanes.y + lanes.height <= why.y ||
+    why.y + why.height <= lanes.y;
+  expect(apart).toBe(true);
+}
 
 test("a click on a sample shows the numbers behind it, and the next sample is one key away", async ({
   page,
   openBench,
 }) => {
   await openBench("research");
-  const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
-  await expect(lanes.getByText("healthy", { exact: true })).toBeVisible();
-  await page.waitForTimeout(2000); // some samples to click on
-  const canvas = lanes.locator("canvas");
-  const box = await canvas.boundingBox();
-  if (!box) throw new Error("the lanes are not drawn");
-  await page.mouse.click(box.x + box.width * 0.75, box.y + 20);
-
-  const why = page.getByRole("region", { name: "Why this sample" });
+  const why = whyOf(page);
+  await pick(page);
+  await expect(why.getByText(SENTENCE)).toBeVisible();
   await expect(why.getByRole("row")).toHaveCount(7);
   const healthy = why.getByRole("row", { name: /^healthy/ });
   await expect(healthy).toContainText("%");
-  // the equations carry the numbers: a density, Bayes' rule, the floor
-  await expect(why.getByRole("listitem")).toHaveCount(3);
+  await expect(healthy).toContainText(/0\.\d+\s1\/ms/); // the gain of the velocity
+  // the equations carry the numbers: a density, Bayes' rule, the floor, the correction by the gain
+  await expect(why.getByRole("listitem")).toHaveCount(4);
   await why.getByRole("button", { name: "m+5" }).click();
   await expect(why.getByRole("heading", { name: /^m\+5 at this sample/ })).toBeVisible();
 
-  const tick = Number(await why.getByRole("textbox", { name: "Sample" }).inputValue());
+  const picked = Number(await why.getByRole("textbox", { name: "Sample" }).inputValue());
+  await page.keyboard.press("w"); // the newest one
+  const sample = async () => Number(await why.getByRole("textbox", { name: "Sample" }).inputValue());
+  await expect.poll(sample).toBeGreaterThan(picked);
+  const tick = await sample();
   await why.getByRole("button", { name: "Sample after" }).press("Enter");
   await expect(why.getByRole("textbox", { name: "Sample" })).toHaveValue(String(tick + 1));
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
@@ -33,4 +67,53 @@ test("a click on a sample shows the numbers behind it, and the next sample is on
   await expect(why.getByText(/^Sample 999999999 is not kept; the history has/)).toBeVisible();
   await why.getByRole("button", { name: "Explain the latest sample" }).click();
   await expect(healthy).toBeVisible();
+});
+
+test("why opens beside the lanes in every layout, and goes to where the verdict turned", async ({
+  page,
+  openBench,
+}) => {
+  await page.setViewportSize({ width: 1366, height: 768 });
+  await openBench("lecture");
+  for (const key of ["1", "2", "3"]) {
+    await page.keyboard.press(key);
+    await pick(page);
+    await besideEachOther(page);
+  }
+  // also over a panel that fills the page, and where it was put over the lanes
+  const group = page.locator(".dv-groupview", { has: lanesOf(page) });
+  await group.getByRole("button", { name: "Fill the page with this panel" }).click();
+  await pick(page);
+  await besideEachOther(page);
+
+  const faults = page.locator("section[aria-label='Faults']");
+  await faults.getByRole("button", { name: /^Inject .*: Added mass$/ }).click();
+  await expect(lanesOf(page).locator("dd").first()).toHaveText("m+5");
+  await page.getByRole("button", { name: "Pause" }).click();
+  const why = whyOf(page);
+  await why.getByRole("button", { name: "Latest" }).click();
+  const last = Number(await why.getByRole("textbox", { name: "Sample" }).inputValue());
+  const turn = why.getByRole("button", { name: "The sample where it turned" });
+  await turn.click();
+  await expect(why.getByText(/The verdict turned at this sample, from /)).toBeVisible();
+  await expect(why.getByText(/^m\+5 wins/)).toBeVisible();
+  await expect(turn).toBeDisabled();
+  expect(Number(await why.getByRole("textbox", { name: "Sample" }).inputValue())).toBeLessThan(last);
+  await why.getByRole("textbox", { name: "Sample" }).fill("1");
+  await why.getByRole("textbox", { name: "Sample" }).press("Enter");
+  await expect(why.getByText(/The verdict has not turned since sample 0, the first one kept/)).toBeVisible();
+  await expect(turn).toBeDisabled();
+});
+
+test.describe("in the hand", () => {
+  test.use({ viewport: { width: 390, height: 844 } });
+
+  test("why opens below the lanes, both in sight, and closes", async ({ page, openBench }) => {
+    await openBench();
+    await lanesOf(page).scrollIntoViewIfNeeded();
+    await pick(page);
+    await besideEachOther(page);
+    await page.getByRole("button", { name: "Close Why" }).click();
+    await expect(whyOf(page)).toBeHidden();
+  });
 });

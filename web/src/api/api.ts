@@ -39,6 +39,12 @@ export const api = {
         params: { path: { bench_id, name }, query: { tick } },
       }),
     ),
+  turn: (bench_id: string, name: string, tick: number) =>
+    data(
+      client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/turn", {
+        params: { path: { bench_id, name }, query: { tick } },
+      }),
+    ),
   aliases: (bench_id: string, name: string, body: Partial<AliasSource>) =>
     data(
       client.POST("/api/v1/benches/{bench_id}/diagnosers/{name}/aliases", {

@@ -461,6 +461,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/turn": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Find Turn
+         * @description Find the sample up to this one at which the verdict last changed.
+         */
+        get: operations["find_turn_api_v1_benches__bench_id__diagnosers__name__turn_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/readouts/{name}": {
         parameters: {
             query?: never;
@@ -1311,6 +1331,11 @@ export interface components {
              * @description What log_likelihood is, in LaTeX; empty for that of the normal density
              */
             evidence: string;
+            /**
+             * Gain Units
+             * @description Of the rows of each gain
+             */
+            gain_units: string[];
             /** Models */
             models: components["schemas"]["ModelAccount"][];
         };
@@ -2680,6 +2705,16 @@ export interface components {
             posterior: number;
             /** Recorded */
             recorded: number;
+            /**
+             * Missed Sigma
+             * @description Root of the square that its diagnoser weighs, over its covariance
+             */
+            missed_sigma: number;
+            /**
+             * Gain
+             * @description Kalman gain, a row for each state and a column for each residual; empty without a filter
+             */
+            gain: number[][];
         };
         /**
          * NamedPair
@@ -3867,6 +3902,27 @@ export interface components {
             signal: string;
             /** Value */
             value: number | null;
+        };
+        /**
+         * Turn
+         * @description The last change of the verdict up to a sample.
+         */
+        Turn: {
+            /**
+             * Tick
+             * @description The first sample with the verdict there is; none in what is kept
+             */
+            tick: number | null;
+            /**
+             * Before
+             * @description The verdict before it; empty without a change
+             */
+            before: string;
+            /**
+             * Since
+             * @description The first sample kept
+             */
+            since: number;
         };
         /**
          * Undo
@@ -5183,6 +5239,41 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Account"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    find_turn_api_v1_benches__bench_id__diagnosers__name__turn_get: {
+        parameters: {
+            query?: {
+                /** @description The sample; the last one unless given */
+                tick?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Turn"];
                 };
             };
             /** @description Refused or failed */

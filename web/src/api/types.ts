@@ -48,6 +48,7 @@ export type SweepRun = Schemas["SweepRun"];
 export type SweptSine = Schemas["SweptSine"];
 export type Wanted = Schemas["Wanted"];
 export type Trace = Schemas["Trace"];
+export type Turn = Schemas["Turn"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
 
 /** A scenario document as plain values. */

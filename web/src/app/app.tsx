@@ -4,6 +4,7 @@ import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/api-error";
 import { benchInAddress, showBench } from "../bench/open-bench";
 import { pageInAddress, useView } from "../bench/view-store";
+import { View3dHost } from "../panels/view3d/view3d-host";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
 import { EmptyState } from "../ui/empty-state";
@@ -64,6 +65,7 @@ export function App() {
         <div className="body">
           <Rail />
           {phone && page === "bench" ? <Phone /> : <Page />}
+          {!phone && <View3dHost />}
         </div>
       )}
       <KeySheet />

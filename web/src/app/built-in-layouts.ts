@@ -2,8 +2,12 @@ import type { AddPanelOptions, DockviewApi } from "dockview-react";
 import type { LayoutName } from "../bench/view-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 
-const MOTION = scopeConfig(["model.displacement", "plant.displacement", "sensor.displacement"]);
+const MOTION = scopeConfig(["plant.displacement", "sensor.displacement", "model.displacement"]);
+const TRACKING = scopeConfig(["model.tracking_error"]);
 const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
+
+/** The loop is drawn no narrower than this, and what stands below it. */
+export const LOOP_PX = 284;
 
 interface Where {
   below?: string;
@@ -53,20 +57,27 @@ export function size(
     api.getPanel(id)?.api.setSize({ ...(w ? { width: w * width } : {}), ...(h ? { height: h * height } : {}) });
 }
 
+/** Where the shuttle is and should be; how far it is away stands behind. */
+function addMotion(api: DockviewApi): void {
+  addTo(api, "motion", "scope", {}, MOTION, "Displacement");
+  addTo(api, "tracking", "scope", { within: "motion", inactive: true }, TRACKING, "Tracking error");
+}
+
 /** The layouts everybody has; sizes are shares of the page. */
 export type Layouts = Record<LayoutName, (api: DockviewApi, width: number, height: number) => void>;
 
 /** Those of a device with one displacement. */
 export const BUILT_IN: Layouts = {
   lecture(api, width, height) {
-    addTo(api, "motion", "scope", {}, MOTION, "Displacement");
+    addMotion(api);
     addTo(api, "faults", "faults", { right: "motion" });
     addTo(api, "view3d", "view3d", { below: "faults" });
+    addTo(api, "why", "why", { within: "view3d", inactive: true });
     addTo(api, "lanes", "lanes", { below: "motion" });
     size(api, width, height, { faults: { w: 0.3, h: 0.42 }, lanes: { h: 0.52 } });
   },
   lab(api, width, height) {
-    addTo(api, "motion", "scope", {}, MOTION, "Displacement");
+    addMotion(api);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
     addTo(api, "environment", "environment", { within: "faults", inactive: true });
@@ -85,14 +96,14 @@ export const BUILT_IN: Layouts = {
     addTo(api, "identify", "identify", { within: "lanes", inactive: true });
     addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
-      schematic: { w: 0.26, h: 0.34 },
-      motion: { h: 0.34 },
-      voltage: { h: 0.26 },
-      lanes: { h: 0.4 },
+      schematic: { w: Math.max(0.26, LOOP_PX / width), h: 0.34 },
+      motion: { h: 0.33 },
+      voltage: { h: 0.28 },
+      lanes: { h: 0.39 },
     });
   },
   research(api, width, height) {
-    addTo(api, "motion", "scope", {}, MOTION, "Displacement");
+    addMotion(api);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "view3d", "view3d", { right: "motion" });
     addTo(api, "card", "card", { below: "view3d" });
@@ -115,9 +126,9 @@ export const BUILT_IN: Layouts = {
     size(api, width, height, {
       schematic: { w: 0.225, h: 0.32 },
       view3d: { w: 0.25, h: 0.4 },
-      motion: { h: 0.33 },
-      voltage: { h: 0.25 },
-      lanes: { h: 0.42 },
+      motion: { h: 0.32 },
+      voltage: { h: 0.28 },
+      lanes: { h: 0.4 },
     });
   },
 };

@@ -1,6 +1,7 @@
 import { actions } from "../bench/actions";
 import { focusNextGroup } from "../bench/dock";
 import type { PageName } from "../bench/view-store";
+import { askLatest } from "../bench/why";
 import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
 import { takeBack } from "./take-back";
@@ -39,6 +40,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
   { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
+  { key: "w", shown: "W", does: "why the newest verdict", group: "Look", run: askLatest },
   { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },

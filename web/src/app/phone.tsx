@@ -1,5 +1,5 @@
-import { Button, NativeSelect } from "@mantine/core";
-import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
+import { ActionIcon, Button, NativeSelect } from "@mantine/core";
+import { IconPlayerPauseFilled, IconPlayerPlayFilled, IconX } from "@tabler/icons-react";
 import { useEffect, useRef, useState } from "react";
 import { hasAxes } from "../api/fits";
 import type { Bench } from "../api/types";
@@ -17,7 +17,7 @@ import { PanelBody } from "./panel-body";
 import { PANELS, suits } from "./panels";
 import styles from "./phone.module.css";
 
-const MOTION = scopeConfig(["model.displacement", "plant.displacement"]);
+const MOTION = scopeConfig(["plant.displacement", "model.displacement"]);
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });
 
 /** A bench in the hand: status, one scope, the lanes, 3D, and the button that stops it. */
@@ -48,10 +48,12 @@ export function Phone() {
           <div className={styles.lanes}>
             <PanelBody kind={isFlat ? PANELS.lanes : PANELS.locus} params={{}} setParams={() => undefined} />
           </div>
+          {isFlat && <Why />}
           <div className={styles.view}>
             <PanelBody kind={PANELS.view3d} params={{}} setParams={() => undefined} />
           </div>
           <Extra />
+          {!isFlat && <Why />}
         </main>
         <footer className={styles.stop}>
           <Button
@@ -67,6 +69,30 @@ export function Phone() {
         </footer>
       </div>
     </PanelVisible>
+  );
+}
+
+/** Why a sample was judged as it was, below the lanes it was chosen in; both are in sight. */
+function Why() {
+  const chosen = useView((s) => s.sample !== undefined);
+  const place = useRef<HTMLElement>(null);
+  useEffect(() => {
+    if (chosen) place.current?.previousElementSibling?.scrollIntoView({ block: "start" });
+  }, [chosen]);
+  if (!chosen) return null;
+  return (
+    <section ref={place} className={styles.why} aria-label="Why">
+      <ActionIcon
+        className={styles.close}
+        variant="subtle"
+        color="gray"
+        aria-label="Close Why"
+        onClick={() => useView.setState({ sample: undefined })}
+      >
+        <IconX size={16} />
+      </ActionIcon>
+      <PanelBody kind={PANELS.why} params={{}} setParams={() => undefined} />
+    </section>
   );
 }
 
@@ -103,4 +129,4 @@ function Extra() {
 }
 
 /** What a phone shows anyway. */
-const always = (bench: Bench | undefined) => ["scope", "view3d", hasAxes(bench) ? "locus" : "lanes"];
+const always = (bench: Bench | undefined) => ["scope", "view3d", "why", hasAxes(bench) ? "locus" : "lanes"];

@@ -1,6 +1,7 @@
 /** Scopes worth opening, by the signals they show; what a bench does not have is left out. */
 export const SCOPE_PRESETS: { title: string; pick: RegExp }[] = [
   { title: "Displacement", pick: /^(model|plant|sensor)\.displacement$/ },
+  { title: "Tracking error", pick: /^model\.tracking_error$/ },
   { title: "Rate, and every estimate of it", pick: /^[a-z_]+\.rate$/ },
   { title: "Motion", pick: /^plant\.(partner_)?[xy]$/ },
   { title: "Forces", pick: /^drive\.(partner_)?[xy]\.force$/ },

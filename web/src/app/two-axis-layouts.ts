@@ -1,14 +1,11 @@
 import type { DockviewApi } from "dockview-react";
 import { scopeConfig } from "../stream/scope-config";
-import { addTo, type Layouts, size } from "./built-in-layouts";
+import { addTo, type Layouts, LOOP_PX, size } from "./built-in-layouts";
 
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 500 });
 const MOTION = scopeConfig(["plant.x", "plant.y"], { windowMs: 2 });
 const FORCES = scopeConfig(["drive.x.force", "drive.y.force"], { windowMs: 2 });
 const QUADRATURE = scopeConfig(["@active.quadrature"], { windowMs: 500 });
-
-/** The loops are drawn no narrower than this. */
-const LOOPS_PX = 284;
 
 /** Below the rate: what moves and what pushes, and beside it the path in its plane. */
 function addBelow(api: DockviewApi): void {
@@ -30,6 +27,7 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "rate", "scope", {}, RATE, "Angular rate");
     addTo(api, "controllers", "controllers", { right: "rate" });
     addTo(api, "faults", "faults", { within: "controllers", inactive: true });
+    addTo(api, "why", "why", { within: "controllers", inactive: true });
     addTo(api, "allan", "allan", { within: "rate", inactive: true });
     addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
     addTo(api, "locus", "locus", { below: "rate" });
@@ -46,7 +44,7 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "why", "why", { within: "controllers", inactive: true });
     addBelow(api);
     addTo(api, "events", "events", { within: "forces", inactive: true });
-    const loops = Math.max(0.28, LOOPS_PX / width);
+    const loops = Math.max(0.28, LOOP_PX / width);
     size(api, width, height, {
       schematic: { w: loops, h: 0.4 },
       rate: { h: 0.44 },
@@ -66,7 +64,7 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "environment", "environment", { within: "controllers", inactive: true });
     addBelow(api);
     size(api, width, height, {
-      schematic: { w: Math.max(0.25, LOOPS_PX / width), h: 0.36 },
+      schematic: { w: Math.max(0.25, LOOP_PX / width), h: 0.36 },
       view3d: { w: 0.25, h: 0.4 },
       rate: { h: 0.46 },
       forces: { w: 0.27 },

@@ -56,6 +56,26 @@ export function showPanel(kind: string): void {
   else addPanel(kind);
 }
 
+/**
+ * Bring the panel of a kind to the front beside that of another kind, so that both are seen.
+ *
+ * A page without a dock has its own place for it.
+ */
+export function showBeside(kind: string, anchor: string): void {
+  if (!current) return;
+  if (current.hasMaximizedGroup()) current.exitMaximizedGroup();
+  const find = (wanted: string) => current?.panels.find((p) => p.view.contentComponent === wanted);
+  const beside = find(anchor);
+  let panel = find(kind);
+  if (!panel) {
+    const position = beside && { referencePanel: beside.id, direction: "right" as const };
+    panel = current.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position });
+  } else if (beside && panel.group === beside.group) panel.api.moveTo({ group: beside.group, position: "right" });
+  beside?.api.setActive();
+  panel.api.setActive();
+  revealActiveTabs();
+}
+
 /** The tabs of a narrow group scroll; the one whose panel is shown must be among those seen. */
 function revealActiveTabs(): void {
   for (const group of current?.groups ?? [])

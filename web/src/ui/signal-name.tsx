@@ -5,7 +5,7 @@ export function SignalName({ name }: { name: string }) {
   const [block, ...rest] = name.split(".");
   return (
     <span className={styles.signal} title={name}>
-      <span className={styles.block}>{words(block)}</span> {words(rest.join(" "))}
+      <span className={styles.block}>{words(block)}</span> <span data-rest>{words(rest.join(" "))}</span>
     </span>
   );
 }

@@ -7,7 +7,8 @@ export interface TraceStyle {
   dash: number;
 }
 
-const BANKS = /^[^.]+\.(?:probability|residual(?:_[a-z]+)?|log_likelihood|likelihood)\.(.+)$/;
+const BANKS =
+  /^[^.]+\.(?:probability|residual(?:_[a-z]+)?|(?:velocity_)?gain_(?!ideal)[a-z_]+|log_likelihood|likelihood)\.(.+)$/;
 
 /**
  * Colour and dash of a signal: the same in every panel, because it depends on the bench alone.

@@ -1,5 +1,6 @@
 import { useMemo, useRef } from "react";
 import { useView } from "../../bench/view-store";
+import { pickSample } from "../../bench/why";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/current-events";
 import { useScheme } from "../../ui/use-scheme";
@@ -10,7 +11,6 @@ import styles from "./lanes.module.css";
 import { LanesHeadline } from "./lanes-headline";
 import { lanesLayout } from "./lanes-layout";
 import { type LanesPicture, paintLanes } from "./paint-lanes";
-import { pickSample } from "./pick-sample";
 import { printLanes } from "./print-lanes";
 import type { LaneTime } from "./use-lane-time";
 

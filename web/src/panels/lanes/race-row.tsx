@@ -1,6 +1,7 @@
 import { useMemo } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { useView } from "../../bench/view-store";
+import { pickSample } from "../../bench/why";
 import { useBench } from "../../stream/bench-store";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { useScheme } from "../../ui/use-scheme";
@@ -9,7 +10,6 @@ import type { TruthSwitch } from "./delays";
 import { FitsNone } from "./fits-none";
 import { LaneCanvas, type LanePainting } from "./lane-canvas";
 import { paintRow, type RacePicture, rowLayout } from "./paint-race";
-import { pickSample } from "./pick-sample";
 import styles from "./race.module.css";
 import type { LaneTime } from "./use-lane-time";
 

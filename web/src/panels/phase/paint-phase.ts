@@ -40,20 +40,36 @@ const PIECES = 24;
 
 export const phaseTitle = ({ name, scale }: PhaseAxis) => (scale.unit ? `${name}, ${scale.unit}` : name);
 
+/** The square field of a plane in a picture: as large as it can be, in the middle; above it stands a title, or none. */
+export function squareField(width: number, height: number, title: number): Field {
+  const above = TOP + title;
+  const side = Math.max(0, Math.floor(Math.min(width - LEFT - RIGHT, height - above - BOTTOM)));
+  const left = Math.round(LEFT + (width - LEFT - RIGHT - side) / 2);
+  const top = Math.round(above + (height - above - BOTTOM - side) / 2);
+  return { left, top, right: left + side, bottom: top + side };
+}
+
+interface Field {
+  left: number;
+  top: number;
+  right: number;
+  bottom: number;
+}
+
 /** A trajectory over the map of the unstable region. */
 export function paintPhase(ctx: Pen, picture: PhasePicture): void {
   const { width, height, scheme, fontSize } = picture;
   const ink = CANVAS[scheme];
-  const right = width - RIGHT;
-  const bottom = height - BOTTOM;
-  const px = (value: number) => LEFT + ((value - picture.x.range[0]) / span(picture.x.range)) * (right - LEFT);
-  const py = (value: number) => bottom - ((value - picture.y.range[0]) / span(picture.y.range)) * (bottom - TOP);
+  const field = squareField(width, height, picture.isFramed ? 0 : fontSize);
+  const { left, top, right, bottom } = field;
+  const px = (value: number) => left + ((value - picture.x.range[0]) / span(picture.x.range)) * (right - left);
+  const py = (value: number) => bottom - ((value - picture.y.range[0]) / span(picture.y.range)) * (bottom - top);
 
   ctx.save();
   ctx.beginPath();
-  ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
+  ctx.rect(left, top, right - left, bottom - top);
   ctx.clip();
-  if (picture.map) paintMap(ctx, picture, px, py, { right, bottom, alarm: ink.alarm });
+  if (picture.map) paintMap(ctx, picture, px, py, field, ink.alarm);
   ctx.restore();
 
   ctx.font = fontFor(fontSize, 1);
@@ -62,29 +78,28 @@ export function paintPhase(ctx: Pen, picture: PhasePicture): void {
   ctx.lineWidth = 1;
   ctx.textAlign = "center";
   ctx.textBaseline = "top";
-  const across = scaled(picture.x, (right - LEFT) / 80);
+  const across = scaled(picture.x, (right - left) / 60);
   labelsOn(picture.x.scale, across).forEach((label, i) => {
-    line(ctx, px(across[i]), TOP, px(across[i]), bottom);
+    line(ctx, px(across[i]), top, px(across[i]), bottom);
     ctx.fillText(label, px(across[i]), bottom + 4);
   });
   ctx.textAlign = "right";
   ctx.textBaseline = "middle";
-  const up = scaled(picture.y, (bottom - TOP) / 30);
+  const up = scaled(picture.y, (bottom - top) / 30);
   labelsOn(picture.y.scale, up).forEach((label, i) => {
-    line(ctx, LEFT, py(up[i]), right, py(up[i]));
-    ctx.fillText(label, LEFT - 6, py(up[i]));
+    line(ctx, left, py(up[i]), right, py(up[i]));
+    ctx.fillText(label, left - 6, py(up[i]));
   });
   if (!picture.isFramed) {
     ctx.textBaseline = "bottom";
-    ctx.fillText(phaseTitle(picture.x), right, height - 2);
+    ctx.fillText(phaseTitle(picture.x), right, bottom + BOTTOM - 2);
     ctx.textAlign = "left";
-    ctx.textBaseline = "top";
-    ctx.fillText(phaseTitle(picture.y), LEFT + 6, TOP + 2);
+    ctx.fillText(phaseTitle(picture.y), left - LEFT + 12, top - 4);
   }
 
   ctx.save();
   ctx.beginPath();
-  ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
+  ctx.rect(left, top, right - left, bottom - top);
   ctx.clip();
   paintTrail(ctx, picture, px, py);
   if (picture.hovered !== undefined) {
@@ -104,9 +119,9 @@ function paintMap(
   { map, fits, x, fontSize }: PhasePicture,
   px: Place,
   py: Place,
-  frame: { right: number; bottom: number; alarm: string },
+  { left, top, right, bottom }: Field,
+  alarm: string,
 ): void {
-  const { right, bottom, alarm } = frame;
   const edge = fits.boundary ? map?.boundary : undefined;
   ctx.fillStyle = `${alarm}2e`;
   if (edge) {
@@ -115,7 +130,7 @@ function paintMap(
       ...edge.x_um.map((at, i) => [px(at), py(-edge.speed_um_ms[i])] as const).reverse(),
     ];
     ctx.beginPath();
-    ctx.rect(LEFT, TOP, right - LEFT, bottom - TOP);
+    ctx.rect(left, top, right - left, bottom - top);
     loop(ctx, inside);
     ctx.fill("evenodd");
     ctx.strokeStyle = alarm;
@@ -131,10 +146,10 @@ function paintMap(
   for (const fold of map.folds) {
     const at = px(fold.x_um);
     if (!edge) {
-      if (fold.x_um > 0) ctx.fillRect(at, TOP, px(x.range[1]) - at, bottom - TOP);
-      else ctx.fillRect(LEFT, TOP, at - LEFT, bottom - TOP);
+      if (fold.x_um > 0) ctx.fillRect(at, top, px(x.range[1]) - at, bottom - top);
+      else ctx.fillRect(left, top, at - left, bottom - top);
     }
-    line(ctx, at, TOP, at, bottom);
+    line(ctx, at, top, at, bottom);
   }
   ctx.setLineDash([]);
 }

@@ -16,6 +16,7 @@ const PICTURE: ScopePicture = {
     { name: "drive.voltage", unit: "V", colour: TRACE_COLOURS.dark[5], dash: 4 },
   ],
   envelopes: [flat([-1, 0, 1]), { low: Float32Array.of(0, -5, 0), high: Float32Array.of(0, 5, 0) }],
+  bands: [1],
   times: Float64Array.of(1, 1.5, 2),
   units: ["um", "V"],
   scales: [MICRO, { factor: 1, unit: "V", decimals: 2, exponent: "" }],
@@ -54,6 +55,7 @@ it("is well-formed, with a title for each axis and a name for each trace", () =>
   expect(texts).toContain("voltage, V");
   expect(texts).toContain("time of the device, ms");
   expect(texts).toContain("plant displacement");
+  expect(texts).toContain("drive voltage, envelope");
 });
 
 it("marks and tells the events in sight that speak, and bands the faults", () => {

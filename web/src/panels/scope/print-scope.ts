@@ -25,11 +25,15 @@ export function axisTitle(names: readonly string[], scale: UnitScale): string {
 
 /** A scope as a picture: an upright axis for each unit, time below. */
 export function printScope(shown: ScopePicture, title: string, stem: string): Picture {
-  const { traces, units, span, dtMs, origin, isTriggered, marks } = shown;
+  const { traces, bands, units, span, dtMs, origin, isTriggered, marks } = shown;
   const time: EventAxis = { span, dtMs, origin, isTriggered, marks, field: (box) => fieldOf(box, units.length) };
   const legend = traces
     .filter((trace) => units.includes(trace.unit))
-    .map(({ name, colour, dash }) => ({ name: words(name), colour: onWhite(colour), dashes: DASHES[dash] }));
+    .map(({ name, colour, dash }) => ({
+      name: bands.includes(traces.findIndex((trace) => trace.name === name)) ? `${words(name)}, envelope` : words(name),
+      colour: onWhite(colour),
+      dashes: DASHES[dash],
+    }));
   return { stem, title, legend, height: 350, time, paint: (pen, box) => paintScope(pen, shown, time.field(box)) };
 }
 

@@ -1,3 +1,4 @@
+import { Popover } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
 import { type RefObject, useEffect, useRef } from "react";
 import { stream } from "../../stream/stream";
@@ -7,6 +8,7 @@ import { TraceSwatch } from "../../ui/trace-swatch";
 import styles from "./scope.module.css";
 import type { PlotTrace } from "./scope-options";
 import type { ScopePlot } from "./scope-plot";
+import { useLegendRow } from "./use-legend-row";
 
 const EVERY_MS = 90;
 
@@ -16,50 +18,72 @@ interface ScopeLegendProps {
   onRemove(name: string): void;
 }
 
-/** Names and values; the values follow the hovered time, or the newest sample. */
+/** Names and values in one row; what has no room in it is behind a button that says how many there are. */
 export function ScopeLegend({ traces, plot, onRemove }: ScopeLegendProps) {
-  const values = useRef<(HTMLElement | null)[]>([]);
+  const { list, fits, isShort } = useLegendRow(traces);
+  const entry = (trace: PlotTrace, index: number, hidden = false) => (
+    <LegendEntry key={trace.name} trace={trace} index={index} hidden={hidden} plot={plot} onRemove={onRemove} />
+  );
+  return (
+    <>
+      <ul ref={list} className={styles.legend} aria-label="Signals" data-short={isShort}>
+        {traces.map((trace, i) => entry(trace, i, i >= fits))}
+      </ul>
+      {fits < traces.length && (
+        <Popover position="bottom-start">
+          <Popover.Target>
+            <button type="button" className={styles.more} title="The other signals of this scope">
+              +{traces.length - fits}
+            </button>
+          </Popover.Target>
+          <Popover.Dropdown>
+            <ul className={styles.others} aria-label="Other signals">
+              {traces.slice(fits).map((trace, i) => entry(trace, fits + i))}
+            </ul>
+          </Popover.Dropdown>
+        </Popover>
+      )}
+    </>
+  );
+}
 
+interface LegendEntryProps {
+  trace: PlotTrace;
+  index: number;
+  hidden: boolean;
+  plot: RefObject<ScopePlot | undefined>;
+  onRemove(name: string): void;
+}
+
+/** A trace and its value at the hovered time, or the newest one. */
+function LegendEntry({ trace, index, hidden, plot, onRemove }: LegendEntryProps) {
+  const value = useRef<HTMLSpanElement>(null);
   useEffect(() => {
+    if (hidden) return;
     let last = 0;
     return stream.loop.add(() => {
       const now = performance.now();
-      if (now - last < EVERY_MS || !plot.current) return;
+      if (now - last < EVERY_MS || !plot.current || !value.current) return;
       last = now;
-      const shown = plot.current;
-      traces.forEach((trace, i) => {
-        const element = values.current[i];
-        if (!element) return;
-        const scale = shown.scaleOf(trace.unit);
-        const value = shown.reading(i);
-        const text = scale ? formatOn(scale, value) : `${formatSi(value, trace.unit)} (no axis left)`;
-        if (element.textContent !== text) element.textContent = text;
-      });
+      const scale = plot.current.scaleOf(trace.unit);
+      const reading = plot.current.reading(index);
+      const text = scale ? formatOn(scale, reading) : `${formatSi(reading, trace.unit)} (no axis left)`;
+      if (value.current.textContent !== text) value.current.textContent = text;
     });
-  }, [traces, plot]);
-
+  }, [trace, index, hidden, plot]);
   return (
-    <ul className={styles.legend} aria-label="Signals">
-      {traces.map((trace, i) => (
-        <li key={trace.name} className={styles.trace}>
-          <TraceSwatch colour={trace.colour} dash={trace.dash} />
-          <SignalName name={trace.name} />
-          <span
-            className={styles.value}
-            ref={(element) => {
-              values.current[i] = element;
-            }}
-          />
-          <button
-            type="button"
-            className={styles.remove}
-            aria-label={`Remove ${trace.name}`}
-            onClick={() => onRemove(trace.name)}
-          >
-            <IconX size={12} />
-          </button>
-        </li>
-      ))}
-    </ul>
+    <li className={styles.trace} data-hidden={hidden}>
+      <TraceSwatch colour={trace.colour} dash={trace.dash} />
+      <SignalName name={trace.name} />
+      <span className={styles.value} ref={value} />
+      <button
+        type="button"
+        className={styles.remove}
+        aria-label={`Remove ${trace.name}`}
+        onClick={() => onRemove(trace.name)}
+      >
+        <IconX size={12} />
+      </button>
+    </li>
   );
 }

@@ -38,7 +38,7 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
   return {
     width: Math.max(50, host.clientWidth),
     height: Math.max(50, host.clientHeight),
-    padding: [fontSize + 12, units.length > 1 ? 0 : fontSize * 1.6, 0, 0],
+    padding: [fontSize + 7, units.length > 1 ? 0 : fontSize * 1.6, 0, 0],
     legend: { show: false },
     cursor: {
       y: false,
@@ -60,7 +60,7 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
       {
         ...axis,
         scale: "x",
-        size: fontSize + 12,
+        size: fontSize + 9,
         gap: 4,
         grid: { stroke: colours.grid, width: 1 },
         splits: (u, _i, min, max) => timeSplits(min, max, Math.max(2, u.over.clientWidth / (fontSize * 8))),

@@ -9,6 +9,7 @@ import { useFeed } from "../../stream/use-feed";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import { useScheme } from "../../ui/use-scheme";
+import { EnvelopeNote } from "./envelope-note";
 import { ExportMenu } from "./export-menu";
 import { MeasureStrip } from "./measure-strip";
 import { RearmContext } from "./rearm-context";
@@ -139,6 +140,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
               onKeyDown={onKeyDown}
               aria-label="Plot. Arrow keys move, plus and minus zoom, L returns to live."
             />
+            <EnvelopeNote traces={traces} plot={plot} />
             {config.measure && area && <ScopeCursors area={area} at={cursors} say={sayTime} onMove={setCursors} />}
           </div>
           {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}

@@ -7,6 +7,8 @@ import type { PlotTrace } from "./scope-options";
 export interface ScopePicture {
   traces: PlotTrace[];
   envelopes: Envelope[];
+  /** Traces that are drawn as bands and not as signals. */
+  bands: readonly number[];
   /** Of each column, in ms from the origin of the time axis. */
   times: Float64Array;
   units: string[];

@@ -11,6 +11,7 @@ import { columnAt } from "./column-at";
 import { columnTimes } from "./column-times";
 import { drawUnits } from "./draw-units";
 import type { Envelope } from "./envelope-path";
+import { type Banded, bandsOf } from "./envelope-rule";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { drawMarks } from "./scope-marks";
 import { type ScopeModel, scopeOptions } from "./scope-options";
@@ -116,6 +117,7 @@ export class ScopePlot {
     return {
       traces: this.options.traces,
       envelopes: this.envelopes,
+      bands: this.bands()?.traces ?? [],
       times: columnTimes(this.frame, this.origin),
       units: this.units,
       scales: this.scales,
@@ -126,6 +128,13 @@ export class ScopePlot {
       dtMs: this.frame.dtMs,
       marks: this.options.marks(),
     };
+  }
+
+  /** What of the picture is a filled band and no signal. */
+  bands(): Banded | undefined {
+    if (!this.frame) return undefined;
+    const ranges = this.options.traces.map(({ unit }) => this.ranges[this.units.indexOf(unit)]);
+    return bandsOf(this.frame, this.envelopes, ranges);
   }
 
   /** The scale of a unit's axis, or undefined if it has got none. */

@@ -1,8 +1,7 @@
 import { useEffect, useRef, useState } from "react";
+import { usePageVisible } from "../../api/use-page-visible";
 import { useBench } from "../../stream/bench-store";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { softwareGl } from "../../ui/software-gl";
-import { useOnScreen } from "../../ui/use-on-screen";
 import { useScheme } from "../../ui/use-scheme";
 import { CAMERAS, type Camera } from "./cameras";
 import styles from "./view3d.module.css";
@@ -10,22 +9,31 @@ import styles from "./view3d.module.css";
 const POLL_MS = 1000;
 /** The traces come first: loading the 3D page holds the main thread for a while. */
 const HEAD_START_MS = 1200;
+/** Out of sight for so long, it lets go of its scene, which costs the server; the camera is kept. */
+const IDLE_MS = 120_000;
+
+/** Where somebody has put the camera. */
+interface Look {
+  position: number[];
+  target: number[];
+}
 
 /**
- * The server's 3D page in a frame, loaded only while it can be seen.
+ * The server's 3D page in a frame, loaded when it is first seen; out of sight it draws nothing.
  *
- * When its connection closes, the frame waits for the server and is loaded afresh, unless the bench is gone. Scheme and camera are told to it,
- * so that neither loads it again.
+ * When its connection closes, the frame waits for the server and is loaded afresh, unless the bench is gone. Scheme and
+ * camera are told to it, so that neither loads it again, and it says where the camera is put, so that loading does not
+ * lose it.
  */
-export function View3dFrame({ path }: { path: string }) {
+export function View3dFrame({ path, visible: inSight }: { path: string; visible: boolean }) {
   const waiting = useBench((s) => s.connection.phase === "waiting");
   const gone = useBench((s) => s.connection.phase === "closed");
   const scheme = useScheme();
-  const place = useRef<HTMLDivElement>(null);
   const frame = useRef<HTMLIFrameElement>(null);
-  const onScreen = useOnScreen(place);
-  const visible = usePanelVisible() && onScreen;
+  const visible = usePageVisible() && inSight;
   const [ready, setReady] = useState(false);
+  const [idle, setIdle] = useState(true);
+  const look = useRef<Look | undefined>(undefined);
   const [loads, setLoads] = useState(0);
   const [closed, setClosed] = useState(false);
   const [connected, setConnected] = useState(0);
@@ -38,9 +46,16 @@ export function View3dFrame({ path }: { path: string }) {
   }, []);
 
   useEffect(() => {
+    if (visible) return setIdle(false);
+    const timer = setTimeout(() => setIdle(true), IDLE_MS);
+    return () => clearTimeout(timer);
+  }, [visible]);
+
+  useEffect(() => {
     const listen = (event: MessageEvent) => {
       if (event.source !== frame.current?.contentWindow || event.origin !== window.location.origin) return;
-      const state = (event.data as { viser?: string } | null)?.viser;
+      const { viser: state, look: moved } = (event.data ?? {}) as { viser?: string; look?: Look };
+      if (moved) look.current = moved;
       if (state === "closed") setClosed(true);
       if (state === "connected") {
         setClosed(false);
@@ -62,27 +77,35 @@ export function View3dFrame({ path }: { path: string }) {
     return () => clearInterval(timer);
   }, [closed, path, visible, gone]);
 
-  const tell = (message: { scheme?: string; camera?: Camera }) =>
+  const tell = (message: { scheme?: string; camera?: Camera; look?: Look }) =>
     frame.current?.contentWindow?.postMessage(message, window.location.origin);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a page that has just connected has to be told
   useEffect(() => tell({ scheme }), [scheme, connected]);
   // biome-ignore lint/correctness/useExhaustiveDependencies: the same
-  useEffect(() => tell({ camera }), [camera, connected]);
+  useEffect(() => tell(look.current ? { look: look.current } : { camera }), [connected]);
 
-  const look = (next: Camera) => {
+  const choose = (next: Camera) => {
     setCamera(next);
+    look.current = undefined;
     tell({ camera: next }); // the same camera again brings the picture back
   };
 
   return (
-    <div ref={place} className={styles.view}>
-      {ready && visible && (
-        <iframe key={`${path}-${loads}`} ref={frame} className={styles.frame} src={address} title="The device in 3D" />
+    <div className={styles.view}>
+      {ready && !idle && (
+        <iframe
+          key={`${path}-${loads}`}
+          ref={frame}
+          className={styles.frame}
+          src={address}
+          title="The device in 3D"
+          hidden={!inSight}
+        />
       )}
       <fieldset className={styles.cameras} aria-label="Camera">
         {CAMERAS.map(({ name, label, title }) => (
-          <button key={name} type="button" title={title} aria-pressed={name === camera} onClick={() => look(name)}>
+          <button key={name} type="button" title={title} aria-pressed={name === camera} onClick={() => choose(name)}>
             {label}
           </button>
         ))}

@@ -1,12 +1,42 @@
+import { useEffect, useRef } from "react";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { usePanelVisible } from "../../ui/panel-visible";
+import { useOnScreen } from "../../ui/use-on-screen";
+import styles from "./view3d.module.css";
 import { View3dFrame } from "./view3d-frame";
+import { offerPlace, usePlaces } from "./view3d-places";
 
-/** The shuttle in 3D, if this server draws it. */
+/** The shuttle in 3D, if this server draws it: the page's own view in this place, or one that stands here. */
 export function View3dPanel() {
   const path = useBench((s) => s.bench?.view3d);
+  const hosted = usePlaces((s) => s.hosted);
   if (path === undefined) return <EmptyState title="No bench yet">The device appears here in 3D.</EmptyState>;
   if (path === null)
     return <EmptyState title="No 3D view">This server runs without it; everything else works.</EmptyState>;
-  return <View3dFrame key={path} path={`.${path}`} />;
+  return hosted ? <Place /> : <Standing key={path} path={`.${path}`} />;
+}
+
+/** Room for the view the page keeps; there is one, and the latest panel has it. */
+function Place() {
+  const place = useRef<HTMLDivElement>(null);
+  useEffect(() => (place.current ? offerPlace(place.current) : undefined), []);
+  return (
+    <div ref={place} className={styles.view}>
+      <EmptyState title="Shown in another panel">
+        There is one 3D view; close the other panel to see it here.
+      </EmptyState>
+    </div>
+  );
+}
+
+function Standing({ path }: { path: string }) {
+  const place = useRef<HTMLDivElement>(null);
+  const onScreen = useOnScreen(place);
+  const visible = usePanelVisible() && onScreen;
+  return (
+    <div ref={place} className={styles.view}>
+      <View3dFrame path={path} visible={visible} />
+    </div>
+  );
 }

@@ -14,6 +14,7 @@ interface ModelTableProps {
 export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
   const scheme = useScheme();
   const best = account.models.reduce((top, m, i, all) => (m.posterior > all[top].posterior ? i : top), 0);
+  const filtered = account.gain_units.length > 0;
   const axes =
     account.residuals.length > 1 &&
     ` along ${account.residuals.map((name) => name.replace("residual_", "")).join(", ")}`;
@@ -23,11 +24,13 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
         <thead>
           <tr>
             <th scope="col">Hypothesis</th>
+            <th scope="col">Posterior</th>
+            <th scope="col">Misses by</th>
+            {filtered && <th scope="col">Gain K{axes}</th>}
             <th scope="col">Residual{axes}</th>
             <th scope="col">√ covariance{axes}</th>
             <th scope="col">ln f</th>
             <th scope="col">Prior</th>
-            <th scope="col">Posterior</th>
           </tr>
         </thead>
         <tbody>
@@ -39,12 +42,6 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
                   {model.name}
                 </button>
               </th>
-              <td>{lengths(model.residual_um)}</td>
-              <td>
-                {model.covariance_um2 === null ? "–" : lengths(model.covariance_um2.map((row, j) => Math.sqrt(row[j])))}
-              </td>
-              <td>{model.log_likelihood === null ? "–" : formatNumber(model.log_likelihood, 2)}</td>
-              <td>{formatPercent(model.prior, 2)}</td>
               <td>
                 <span
                   className={styles.share}
@@ -58,6 +55,16 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
                   {formatPercent(model.posterior, 2)}
                 </span>
               </td>
+              <td>{formatNumber(model.missed_sigma, 1)} σ</td>
+              {filtered && <td>{lines(gains(account, i))}</td>}
+              <td>{lines(model.residual_um.map((value) => formatSi(value, "um", 3)))}</td>
+              <td>
+                {model.covariance_um2 === null
+                  ? "–"
+                  : lines(model.covariance_um2.map((row, j) => formatSi(Math.sqrt(row[j]), "um", 3)))}
+              </td>
+              <td>{model.log_likelihood === null ? "–" : formatNumber(model.log_likelihood, 2)}</td>
+              <td>{formatPercent(model.prior, 2)}</td>
             </tr>
           ))}
         </tbody>
@@ -66,7 +73,15 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
   );
 }
 
-/** Lengths below each other, one for each displacement measured. */
-const lengths = (values: number[]) =>
+/** Values below each other, one for each displacement measured. */
+const lines = (values: string[]) =>
   // biome-ignore lint/suspicious/noArrayIndexKey: a value is known by its displacement, which is its place
-  values.map((value, i) => <div key={i}>{formatSi(value, "um", 3)}</div>);
+  values.map((value, i) => <div key={i}>{value}</div>);
+
+/** The gain of a model: all of it for one displacement; of several, what each residual moves the displacement by. */
+const gains = ({ models, residuals, gain_units }: Account, index: number): string[] => {
+  const { gain } = models[index];
+  return residuals.length === 1
+    ? gain.map(([k], i) => formatSi(k, gain_units[i], 4))
+    : residuals.map((_, i) => formatSi(gain[i][i], gain_units[i], 4));
+};

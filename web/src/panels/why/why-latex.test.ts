@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { Account } from "../../api/types";
-import { densityLatex, floorLatex, posteriorLatex, texNumber } from "./why-latex";
+import { correctionLatex, densityLatex, floorLatex, posteriorLatex, texNumber } from "./why-latex";
 
 const model = (name: string, residual: number, prior: number, posterior: number) => ({
   name,
@@ -10,6 +10,8 @@ const model = (name: string, residual: number, prior: number, posterior: number)
   prior,
   posterior,
   recorded: posterior,
+  missed_sigma: Math.abs(residual) / 0.1,
+  gain: [[0.1434], [0.554]],
 });
 const account: Account = {
   kind: "mmae",
@@ -19,6 +21,7 @@ const account: Account = {
   residuals: ["residual"],
   weighed: "what was believed before",
   evidence: "",
+  gain_units: ["1", "1/ms"],
   // exp(-r^2/2psi): 1 and exp(-2)
   models: [model("healthy", 0, 0.5, 0.8808), model("m+5", -0.2, 0.5, 0.1192)],
 };
@@ -58,6 +61,14 @@ it("shows the evidence of a diagnoser that has another than the normal density, 
 it("works out Bayes' rule: 0.5 against 0.5 exp(-2)", () => {
   expect(posteriorLatex(account, 0)).toMatch(/=0\.8808$/);
   expect(posteriorLatex(account, 1)).toMatch(/\\cdot0\.5000}{0\.5677}=0\.1192$/);
+});
+
+it("puts the gain and the residual into the correction of the state: K r", () => {
+  expect(correctionLatex(account.models[1])).toBe(
+    "Kr=\\begin{pmatrix}0.1434\\\\0.5540\\end{pmatrix}\\begin{pmatrix}-0.2000\\end{pmatrix}" +
+      "=\\begin{pmatrix}-0.02868\\\\-0.1108\\end{pmatrix}",
+  );
+  expect(correctionLatex({ ...account.models[1], gain: [] })).toBeUndefined();
 });
 
 it("has nothing to work out before the first residual, and no floor where there is none", () => {

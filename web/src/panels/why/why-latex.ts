@@ -26,15 +26,23 @@ export function densityLatex(evidence: string, model: ModelAccount): string | un
 
 /** The density of several residuals at once, with their numbers put in. */
 function jointLatex(residuals: number[], covariance: number[][], log: number): string {
-  const matrix = (rows: number[][]) =>
-    `\\begin{pmatrix}${rows.map((row) => row.map((value) => texNumber(value)).join("&")).join("\\\\")}\\end{pmatrix}`;
-  const r = matrix(residuals.map((value) => [value]));
+  const r = matrixLatex(residuals.map((value) => [value]));
   return (
-    `r=${r},\\quad\\psi=${matrix(covariance)},\\quad` +
+    `r=${r},\\quad\\psi=${matrixLatex(covariance)},\\quad` +
     "\\ln f=-\\tfrac12\\bigl(r^T\\psi^{-1}r+\\ln\\det2\\pi\\psi\\bigr)" +
     `=${texNumber(log)}`
   );
 }
+
+/** What the Kalman gain makes of the residuals, with the numbers put in; nothing without a filter. */
+export function correctionLatex({ gain, residual_um: residuals }: ModelAccount): string | undefined {
+  if (gain.length === 0) return undefined;
+  const moved = gain.map((row) => [row.reduce((sum, k, j) => sum + k * residuals[j], 0)]);
+  return `Kr=${matrixLatex(gain)}${matrixLatex(residuals.map((r) => [r]))}=${matrixLatex(moved)}`;
+}
+
+const matrixLatex = (rows: number[][]) =>
+  `\\begin{pmatrix}${rows.map((row) => row.map((value) => texNumber(value)).join("&")).join("\\\\")}\\end{pmatrix}`;
 
 /**
  * Bayes' rule for one model with its numbers put in.

@@ -5,15 +5,17 @@ import { api } from "../../api/api";
 import type { Account, ApiErrorBody } from "../../api/types";
 import { useAsked } from "../../api/use-asked";
 import { useView } from "../../bench/view-store";
+import { askLatest, pickSample } from "../../bench/why";
 import { useBench } from "../../stream/bench-store";
-import { stream } from "../../stream/stream";
 import { EmptyState } from "../../ui/empty-state";
 import { formatClock } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { NumberField } from "../../ui/number-field";
 import { ModelTable } from "./model-table";
 import styles from "./why.module.css";
-import { densityLatex, floorLatex, posteriorLatex } from "./why-latex";
+import { correctionLatex, densityLatex, floorLatex, posteriorLatex } from "./why-latex";
+import { likeliest } from "./why-sentence";
+import { WhyVerdict } from "./why-verdict";
 
 const LAST_TICK = 2 ** 53;
 
@@ -29,15 +31,13 @@ export function WhyPanel() {
   } = useAsked(bench && sample && `${bench} ${sample.diagnoser} ${sample.tick}`, () =>
     api.explanation(bench ?? "", sample?.diagnoser ?? "", sample?.tick ?? 0),
   );
+  const { answer: turn } = useAsked(
+    account && sample && !refusal ? `${bench} ${sample.diagnoser} ${account.tick}` : undefined,
+    () => api.turn(bench ?? "", sample?.diagnoser ?? "", account?.tick ?? 0),
+  );
   const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length ? [id] : []));
-  const pick = (diagnoser: string, tick: number) =>
-    useView.setState({ sample: { diagnoser, tick: Math.max(0, tick) } });
   const latest = (
-    <Button
-      size="xs"
-      disabled={ids.length === 0}
-      onClick={() => pick(sample?.diagnoser ?? ids[0], stream.client.head.tick - 1)}
-    >
+    <Button size="xs" disabled={ids.length === 0} onClick={askLatest}>
       Explain the latest sample
     </Button>
   );
@@ -52,20 +52,21 @@ export function WhyPanel() {
 
   return (
     <section className={styles.panel} aria-label="Why this sample">
+      {account && !refusal && <WhyVerdict diagnoser={sample.diagnoser} account={account} turn={turn} />}
       <div className={styles.bar}>
         <NativeSelect
           size="xs"
           aria-label="Diagnoser"
           value={sample.diagnoser}
           data={ids.map((id) => ({ value: id, label: id.replaceAll("_", " ") }))}
-          onChange={(e) => pick(e.currentTarget.value, sample.tick)}
+          onChange={(e) => pickSample(e.currentTarget.value, sample.tick)}
         />
         <span className={styles.step}>
           <ActionIcon
             variant="default"
             size={28}
             aria-label="Sample before"
-            onClick={() => pick(sample.diagnoser, sample.tick - 1)}
+            onClick={() => pickSample(sample.diagnoser, sample.tick - 1)}
           >
             <IconChevronLeft size={16} />
           </ActionIcon>
@@ -76,19 +77,19 @@ export function WhyPanel() {
             minimum={0}
             maximum={LAST_TICK}
             value={sample.tick}
-            onCommit={(tick) => pick(sample.diagnoser, tick)}
+            onCommit={(tick) => pickSample(sample.diagnoser, tick)}
           />
           <ActionIcon
             variant="default"
             size={28}
             aria-label="Sample after"
-            onClick={() => pick(sample.diagnoser, sample.tick + 1)}
+            onClick={() => pickSample(sample.diagnoser, sample.tick + 1)}
           >
             <IconChevronRight size={16} />
           </ActionIcon>
         </span>
         {account && !refusal && <span className={styles.time}>{formatClock(account.time_ms)} s</span>}
-        <Button size="compact-sm" variant="default" onClick={() => pick(sample.diagnoser, stream.client.head.tick - 1)}>
+        <Button size="compact-sm" variant="default" onClick={askLatest}>
           Latest
         </Button>
       </div>
@@ -110,17 +111,19 @@ function inWords({ field, message }: ApiErrorBody, tick: number): string {
 
 function Explained({ account, waiting }: { account: Account; waiting: boolean }) {
   const [name, setName] = useState<string | undefined>(undefined);
-  const likeliest = account.models.reduce((top, m, i, all) => (m.posterior > all[top].posterior ? i : top), 0);
   const wanted = account.models.findIndex((m) => m.name === name);
-  const chosen = wanted >= 0 ? wanted : likeliest;
+  const chosen = wanted >= 0 ? wanted : account.models.indexOf(likeliest(account.models));
   const model = account.models[chosen];
   const density = densityLatex(account.evidence, model);
   const posterior = posteriorLatex(account, chosen);
   const floor = floorLatex(account, chosen);
+  const correction = correctionLatex(model);
   return (
     <div className={styles.explained} data-waiting={waiting}>
       <ModelTable account={account} chosen={chosen} onChoose={(i) => setName(account.models[i].name)} />
-      <h2 className={styles.heading}>{model.name} at this sample, in µm</h2>
+      <h2 className={styles.heading}>
+        {model.name} at this sample, in µm and ms{account.gain_units.length > 2 && ", the rate in deg/s"}
+      </h2>
       {density && posterior ? (
         <ol className={styles.steps}>
           <li>
@@ -135,6 +138,12 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
             <li>
               <span>No hypothesis is ever given up</span>
               <Formula latex={floor} />
+            </li>
+          )}
+          {correction && (
+            <li>
+              <span>How far its Kalman gain moves its state after what was measured</span>
+              <Formula latex={correction} />
             </li>
           )}
         </ol>

@@ -1,0 +1,26 @@
+import { useBench } from "../stream/bench-store";
+import { stream } from "../stream/stream";
+import { showBeside } from "./dock";
+import { useView } from "./view-store";
+
+/** Ask why a diagnoser believed what it did at a sample; the panel that answers opens beside the lanes. */
+export function pickSample(diagnoser: string, tick: number): void {
+  useView.setState({ sample: { diagnoser, tick: Math.max(0, tick) } });
+  showBeside("why", "lanes");
+}
+
+/** Ask it of the newest sample, of the diagnoser that was asked last or else the first. */
+export function askLatest(): void {
+  const weighing = weighingDiagnosers();
+  const asked = useView.getState().sample?.diagnoser;
+  const diagnoser = asked !== undefined && weighing.includes(asked) ? asked : weighing[0];
+  if (diagnoser !== undefined) pickSample(diagnoser, stream.client.head.tick - 1);
+  else showBeside("why", "lanes");
+}
+
+/** The diagnosers of the bench that choose between hypotheses. */
+export function weighingDiagnosers(): string[] {
+  return Object.entries(useBench.getState().bench?.diagnosers ?? {}).flatMap(([id, { names }]) =>
+    names.length ? [id] : [],
+  );
+}

@@ -1,0 +1,43 @@
+import { Tooltip } from "@mantine/core";
+import { type RefObject, useEffect, useState } from "react";
+import { stream } from "../../stream/stream";
+import { formatCount, formatShort } from "../../ui/format";
+import type { Banded } from "./envelope-rule";
+import styles from "./scope.module.css";
+import type { PlotTrace } from "./scope-options";
+import type { ScopePlot } from "./scope-plot";
+
+const EVERY_MS = 300;
+
+interface EnvelopeNoteProps {
+  traces: PlotTrace[];
+  plot: RefObject<ScopePlot | undefined>;
+}
+
+/** Says that a filled band is the envelope of a tone too fast for the window, so that nobody takes it for a signal. */
+export function EnvelopeNote({ traces, plot }: EnvelopeNoteProps) {
+  const [bands, setBands] = useState<Banded | undefined>(undefined);
+  useEffect(() => {
+    let last = 0;
+    return stream.loop.add(() => {
+      const now = performance.now();
+      if (now - last < EVERY_MS) return;
+      last = now;
+      const found = plot.current?.bands();
+      setBands((before) => (JSON.stringify(before) === JSON.stringify(found) ? before : found));
+    });
+  }, [plot]);
+  if (!bands) return null;
+  const names = bands.traces.flatMap((i) => traces[i]?.name.replaceAll(/[._]/g, " ") ?? []).join(", ");
+  const label =
+    `Each pixel takes ${formatShort(bands.perPixelMs, "ms", 3)}, ${formatCount(Math.round(bands.samples), "sample")}. ` +
+    `The band reaches from the least to the largest value in it: ${names}. A shorter window shows the signal.`;
+  return (
+    <Tooltip label={label} multiline w={280}>
+      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: what it means is read by keys too */}
+      <span className={styles.band} role="note" aria-label={`envelope: ${label}`} tabIndex={0}>
+        envelope
+      </span>
+    </Tooltip>
+  );
+}

@@ -1,0 +1,49 @@
+import type { PanelFrame } from "../../stream/panel-frame";
+import type { AxisRange } from "./axis-range";
+import type { Envelope } from "./envelope-path";
+
+/** Of the axis: what is thinner looks like a line. */
+const THIN = 0.03;
+/** Of the columns: from here on the picture is a band. */
+const MOST = 0.5;
+
+/**
+ * Whether a trace is drawn as a filled band and not as a signal.
+ *
+ * A signal that is resolved goes on in each column where it was at the end of the one before, so its columns meet. One
+ * that turns several times within a column fills the same heights again in the next.
+ */
+export function isEnvelope({ low, high }: Envelope, height: number): boolean {
+  let filled = 0;
+  let drawn = 0;
+  for (let c = 0; c + 1 < low.length; c += 1) {
+    if (Number.isNaN(low[c]) || Number.isNaN(low[c + 1])) continue;
+    drawn += 1;
+    const least = Math.min(high[c] - low[c], high[c + 1] - low[c + 1]);
+    const shared = Math.min(high[c], high[c + 1]) - Math.max(low[c], low[c + 1]);
+    if (least > THIN * height && shared > 0.5 * least) filled += 1;
+  }
+  return drawn > 0 && filled > MOST * drawn;
+}
+
+/** What a scope draws as bands: which traces, and how much time each of their pixels takes. */
+export interface Banded {
+  traces: number[];
+  perPixelMs: number;
+  samples: number;
+}
+
+/** The bands of a picture; none where every column is a sample. */
+export function bandsOf(
+  frame: PanelFrame,
+  envelopes: Envelope[],
+  ranges: (AxisRange | undefined)[],
+): Banded | undefined {
+  const samples = (frame.endTick - frame.startTick) / frame.columns;
+  if (samples <= 1) return undefined;
+  const traces = envelopes.flatMap((envelope, i) => {
+    const range = ranges[i];
+    return range && isEnvelope(envelope, range.max - range.min) ? [i] : [];
+  });
+  return traces.length > 0 ? { traces, perPixelMs: samples * frame.dtMs, samples } : undefined;
+}

@@ -1,0 +1,64 @@
+import { type RefObject, useLayoutEffect, useRef, useState } from "react";
+import type { PlotTrace } from "./scope-options";
+
+/** Kept free for the button of those that do not fit, px. */
+const MORE_PX = 34;
+const GAP_PX = 4;
+
+interface LegendRow {
+  list: RefObject<HTMLUListElement | null>;
+  /** How many entries have room. */
+  fits: number;
+  /** Whether what all names have in common is left out. */
+  isShort: boolean;
+}
+
+/** How much of a legend has room in one row beside what else stands there: with whole names, else with short ones. */
+export function useLegendRow(traces: PlotTrace[]): LegendRow {
+  const list = useRef<HTMLUListElement>(null);
+  const [row, setRow] = useState({ fits: traces.length, isShort: false });
+  useLayoutEffect(() => {
+    const box = list.current;
+    const place = box?.parentElement;
+    if (!box || !place) return;
+    const measure = () => {
+      const [first] = place.getElementsByTagName("ul");
+      const last = place.lastElementChild as HTMLElement;
+      const room = place.clientWidth - last.offsetWidth - GAP_PX;
+      const widths = (short: boolean) => {
+        first.dataset.short = String(short);
+        return [...first.children].map((entry) => (entry as HTMLElement).offsetWidth + GAP_PX);
+      };
+      const whole = widths(false);
+      const isShort = sum(whole) > room && shareTheRest(traces);
+      const shown = isShort ? widths(true) : whole;
+      const fits = countFitting(shown, room, MORE_PX);
+      box.style.maxWidth = `${fits < shown.length ? sum(shown.slice(0, fits)) : room}px`;
+      setRow((now) => (now.fits === fits && now.isShort === isShort ? now : { fits, isShort }));
+      first.dataset.short = String(isShort);
+    };
+    measure();
+    const observer = new ResizeObserver(measure);
+    observer.observe(place);
+    return () => observer.disconnect();
+  }, [traces]);
+  return { list, ...row, fits: Math.min(row.fits, traces.length) };
+}
+
+const sum = (widths: number[]) => widths.reduce((total, width) => total + width, 0);
+
+/** How many of some widths fit into a room, where those left out need a button. */
+export function countFitting(widths: number[], room: number, more: number): number {
+  if (sum(widths) <= room) return widths.length;
+  let taken = more;
+  return widths.findIndex((width) => {
+    taken += width;
+    return taken > room;
+  });
+}
+
+/** Whether all are the same quantity of several blocks: the block then tells them apart. */
+export function shareTheRest(traces: { name: string }[]): boolean {
+  const rests = new Set(traces.map(({ name }) => name.split(".").slice(1).join(".")));
+  return traces.length > 1 && rests.size === 1;
+}

@@ -1,0 +1,42 @@
+import { useEffect, useRef, useState } from "react";
+import { useBench } from "../../stream/bench-store";
+import { stream } from "../../stream/stream";
+import styles from "./view3d.module.css";
+import { View3dFrame } from "./view3d-frame";
+import { usePlaces } from "./view3d-places";
+
+/**
+ * The 3D view, kept outside the dock and laid over the panel that is in sight.
+ *
+ * A frame that moves within the document loads again: here panels may come, go and move, and scene and camera stay.
+ */
+export function View3dHost() {
+  const path = useBench((s) => s.bench?.view3d);
+  const host = useRef<HTMLElement>(null);
+  const [visible, setVisible] = useState(false);
+  useEffect(() => {
+    usePlaces.setState({ hosted: true });
+    let laid = "";
+    const stop = stream.loop.add(() => {
+      const places = usePlaces.getState().places.map((place) => place.getBoundingClientRect());
+      const rect = places.findLast(({ width, height }) => width > 0 && height > 0);
+      setVisible(rect !== undefined);
+      if (!rect || !host.current) return;
+      const wanted = `${rect.left}px ${rect.top}px ${rect.width}px ${rect.height}px`;
+      if (wanted === laid) return;
+      laid = wanted;
+      const [left, top, width, height] = wanted.split(" ");
+      Object.assign(host.current.style, { left, top, width, height });
+    });
+    return () => {
+      stop();
+      usePlaces.setState({ hosted: false });
+    };
+  }, []);
+  if (!path) return null;
+  return (
+    <section ref={host} className={styles.host} aria-label="3D view" hidden={!visible}>
+      <View3dFrame key={path} path={`.${path}`} visible={visible} />
+    </section>
+  );
+}
