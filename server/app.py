@@ -18,6 +18,7 @@ from server.api import (
     experiments,
     gallery,
     health,
+    links,
     metrics,
     readouts,
     recordings,
@@ -57,6 +58,7 @@ ROUTERS = (
     sweeps,
     gallery,
     theory,
+    links,
     stream,
 )
 

@@ -13,7 +13,7 @@ from server.bench.commands import MAX_PENDING
 from server.bench.live_bench import LiveBench
 from server.bench.pacing import Pacer
 from server.bench.recordings import Recordings
-from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
+from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Opened, Pending, State
 
 
 class ShownBench(LiveBench, Protocol):
@@ -27,6 +27,8 @@ class ShownBench(LiveBench, Protocol):
     recordings: Recordings
     replay_of: str
     recorded_scale: float | None
+    opened: Opened | None
+    keep: bool
 
     @property
     def dt_ms(self) -> float:
@@ -126,6 +128,8 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
         view3d=view3d,
         replay_of=bench.replay_of or None,
         recorded_scale=bench.recorded_scale,
+        opened=bench.opened,
+        keep=bench.keep,
     )
 
 

@@ -24,6 +24,7 @@ from server.bench.portrait import status_of
 from server.bench.recorder import Recorder
 from server.bench.recordings import Recordings
 from server.bench.snapshots import Snapshots
+from server.bench.status import Opened
 from server.bench.steps import Steps
 from server.bench.tick_source import TickSource
 from server.bench.timeline import Timeline
@@ -31,7 +32,6 @@ from server.errors import not_found
 from server.metrics import Metrics
 
 RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
-RUN = get_args(RunsBench)
 STATUS_S = 0.2
 FORK_TICKS = 20_000
 """Ticks of the past that a fork brings along."""
@@ -60,6 +60,10 @@ class Session(Timeline):
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
     """Device seconds per wall second of the recording."""
+    opened: Opened | None = None
+    """The experiment it was opened from, if it was."""
+    keep = False
+    """Whether it is never let go."""
 
     def __init__(
         self,
@@ -86,8 +90,6 @@ class Session(Timeline):
         self._counted = (0, 0.0)
         self._status_due = 0.0
         self.refresh_status()
-
-    # ---- calls of the engine
 
     @property
     def is_running(self) -> bool:
@@ -138,14 +140,14 @@ class Session(Timeline):
         self.note("board", "failed", f"stopped by an internal error: {error}")
         self.refresh_status()
 
-    # ---- actions of people; the engine runs all of them as jobs
-
     def begin(self, start: bool) -> None:
         """Begin, running or paused."""
         self._running = start
+        if self._ends_at is not None and self.board.tick >= self._ends_at:
+            self._ends_at = None
         self.pacer.anchor(self.board.tick, self._clock())
         self._share_log()
-        self.note("board", "opened", "running" if start else "paused at the first tick")
+        self.note("board", "opened", "running" if start else f"paused at tick {self.board.tick}")
         self.refresh_status()
 
     def execute(self, command: Any, actor: str) -> Event | Future[Event]:
@@ -157,7 +159,7 @@ class Session(Timeline):
             If the command cannot be carried out; nothing has changed then.
         """
         self.must_be_open()
-        if isinstance(command, RUN):
+        if isinstance(command, get_args(RunsBench)):
             event = self._run_command(command, actor)
             if isinstance(event, Future):  # its end refreshes the status
                 return event
@@ -218,8 +220,6 @@ class Session(Timeline):
         self._running, self._closed = False, True
         self.steps.end()
         return self.recordings.close()
-
-    # ---- inside
 
     def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
         """Carry out a command that runs the bench."""
