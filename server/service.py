@@ -57,7 +57,7 @@ class Service:
         self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
         self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
         self.links = Links(self.database, settings.max_links)
-        self.idling = Idling(self.hub.watchers, settings.idle_minutes)
+        self.idling = Idling(self._present, settings.idle_minutes)
         self.jobs = Jobs(self.database, settings, self.metrics)
         self.keeping = Keeping(self.database, settings)
         self.sweeps = Sweeps(self.database, settings, self.metrics)
@@ -195,6 +195,10 @@ class Service:
         """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")
         await asyncio.sleep(0.1)
+
+    def _present(self, bench_id: str) -> int:
+        """Count the pages that watch a bench, those with its 3D view alone too."""
+        return self.hub.watchers(bench_id) + (self.viewers.watchers(bench_id) if self.viewers is not None else 0)
 
     def _lateness(self) -> dict[str, float]:
         """Return the lateness of the event loop and of the engine."""

@@ -35,6 +35,7 @@ interface Failure {
 export function App() {
   const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
   const page = useView((s) => s.page);
+  const noted = useBench((s) => Boolean(s.bench?.opened?.note));
   const silent = useBench((s) => s.connection.staleSince !== undefined);
   const stale = useLasting(silent, 700);
   const Page = PAGES[page].component;
@@ -64,9 +65,9 @@ export function App() {
 
   return (
     <div className="page" data-stale={stale}>
-      {phone ? null : <Header />}
+      {phone || failure ? null : <Header />}
       <ReplayBar />
-      <Banner hints={!phone && page === "bench"} />
+      <Banner hints={!phone && page === "bench" && !noted} />
       <OpenedLine />
       {failure?.code === "too_many_benches" ? (
         <FullServer

@@ -1,7 +1,7 @@
 import { Button } from "@mantine/core";
 import { api } from "../api/api";
 import { useAnswer } from "../api/use-answer";
-import { formatSi } from "../ui/format";
+import { formatCount } from "../ui/format";
 import styles from "./full-server.module.css";
 
 const AGAIN_MS = 4000;
@@ -19,9 +19,9 @@ export function FullServer({ onJoin, onRetry }: FullServerProps) {
     <main className={styles.full}>
       <h1>Every bench of this server is taken</h1>
       <p>
-        It has {benches.length} benches, as many as it may.{" "}
+        It has {benches.length === 1 ? "one bench" : `${benches.length} benches`}, as many as it may.{" "}
         {leaving.length > 0
-          ? `Nobody watches ${leaving.length} of them; the next one is let go in ${formatSi(Math.min(...leaving), "s", 2)} unless somebody comes back.`
+          ? `Nobody watches ${leaving.length} of them; the next one is let go in ${formatCount(Math.ceil(Math.min(...leaving) / 60), "minute")}, unless somebody comes back to it.`
           : "All of them are watched or have something to finish; wait until somebody closes one, or ask whoever runs the server."}{" "}
         Meanwhile you can join one and watch.
       </p>

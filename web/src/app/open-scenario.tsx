@@ -46,7 +46,7 @@ export function OpenScenario({ onKept }: { onKept(): void }) {
   };
 
   return (
-    <Input.Wrapper error={error && <span role="alert">{error}</span>}>
+    <Input.Wrapper error={error && <span role="alert">{error}</span>} errorProps={{ fz: "sm", mt: 4 }}>
       {/* biome-ignore lint/a11y/noStaticElementInteractions: dropping is beside the button, not instead of it */}
       <div
         className={styles.drop}

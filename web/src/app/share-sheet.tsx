@@ -65,8 +65,7 @@ function Share() {
       </p>
       <LinkBox query={`link=${made.id}`} what="Link" onCopy={keepNote} />
       <Textarea
-        label="Note"
-        description="Whoever opens the link reads it above the bench."
+        label="Note, read above the bench by whoever opens the link"
         maxLength={LONGEST_NOTE}
         autosize
         minRows={2}
