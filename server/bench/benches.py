@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import math
 from collections import Counter
 from collections.abc import Coroutine
 from concurrent.futures import Future
@@ -17,6 +18,7 @@ from core.board.board import Board
 from core.board.condition import parse_condition
 from core.board.history import History
 from core.errors import InputError
+from core.format import format_count
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
@@ -334,7 +336,11 @@ class Benches:
         """Refuse a new bench if the limit is reached."""
         if len(self) + self._coming >= self._settings.max_benches:
             most, minutes = self._settings.max_benches, self._settings.idle_minutes
-            wait = f"; one that nobody watches is let go after {minutes:g} minutes" if minutes else ""
+            wait = (
+                f"; one that nobody watches is let go after {format_count(math.ceil(minutes), 'minute')}"
+                if minutes
+                else ""
+            )
             raise ApiError(
                 409,
                 "too_many_benches",

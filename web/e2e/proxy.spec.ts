@@ -38,7 +38,9 @@ for (const prefix of ["", "/bench"]) {
       await expect.poll(drawn, { timeout: 60_000 }).not.toBe(first);
 
       await page.getByRole("button", { name: "Share this experiment" }).click();
-      await expect(page.getByRole("textbox", { name: "Link" })).toHaveValue(new RegExp(`^${base}\\?link=[2-9a-z]{8}$`));
+      await expect(page.getByRole("textbox", { name: "Link", exact: true })).toHaveValue(
+        new RegExp(`^${base}\\?link=[2-9a-z]{8}$`),
+      );
       await expect(page.getByText("Others cannot reach")).toHaveCount(0);
 
       expect(

@@ -45,7 +45,7 @@ test("a link made in two clicks opens the same tick, log, layout, cursors and no
   await expect(cursor).toHaveAttribute("aria-valuenow", "23");
 
   await page.getByRole("button", { name: "Share this experiment" }).click();
-  const link = page.getByRole("textbox", { name: "Link" });
+  const link = page.getByRole("textbox", { name: "Link", exact: true });
   await expect(link).toHaveValue(new RegExp(`^${server.origin}/\\?link=[2-9a-z]{8}$`));
   const qr = page.getByRole("img", { name: /^QR code of/ });
   expect((await qr.boundingBox())?.width).toBeGreaterThanOrEqual(200);
