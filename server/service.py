@@ -149,7 +149,8 @@ class Service:
             version_now=THIS_VERSION,
             same_bits=False,
         )
-        return await self.benches.repeat(experiment, opened, bench_id)
+        async with self.experiment_turn:  # a class opens a link all at once
+            return await self.benches.repeat(experiment, opened, bench_id)
 
     async def bring_back(self, bench_id: str) -> Session:
         """Return a bench; one that was let go is opened again as it was, by the same id."""

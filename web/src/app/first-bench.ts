@@ -10,6 +10,9 @@ import { showShared } from "./layouts";
 /** Worth seeing at first sight: the first of these that the library has. */
 const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
 
+/** Longer than this takes about a second to repeat. */
+const LONG_TICKS = 300_000;
+
 /** Open what the address names: an experiment by its link, or a bench to join; else the bench of this browser. */
 export async function openFirstBench(): Promise<void> {
   const link = inAddress("link");
@@ -22,8 +25,17 @@ export async function openFirstBench(): Promise<void> {
 
 /** Open the experiment of a link on a fresh bench, with its layout. */
 export async function openLink(id: string, replace = false): Promise<void> {
-  const { content } = await api.link(id);
-  const bench = await api.openLink(id);
+  const { content, title, tick } = await api.link(id);
+  const notice = `link-${id}`;
+  if ((tick ?? 0) > LONG_TICKS)
+    notifications.show({
+      id: notice,
+      loading: true,
+      autoClose: false,
+      title: "Repeating what was done",
+      message: `${title}, to ${formatTick(tick ?? 0)}.`,
+    });
+  const bench = await api.openLink(id).finally(() => notifications.hide(notice));
   openOwn(bench.id, replace);
   if (content.layout) showShared(content.layout as unknown as SharedLayout);
 }
