@@ -18,6 +18,7 @@ from server.api import (
     experiments,
     gallery,
     health,
+    links,
     metrics,
     parameter_sets,
     readouts,
@@ -59,6 +60,7 @@ ROUTERS = (
     sweeps,
     gallery,
     theory,
+    links,
     stream,
 )
 

@@ -44,6 +44,12 @@ class Settings(BaseSettings):
     open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
 
     max_benches: int = Field(16, ge=1, le=256, description="Live benches at once.")
+    idle_minutes: float = Field(
+        15.0,
+        ge=0,
+        description="Minutes until a bench that nobody watches and no script asks for is let go; 0 lets none go.",
+    )
+    max_links: int = Field(10_000, ge=0, description="Experiments and layouts kept by a link.")
     max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
     max_clients_per_bench: int = Field(256, ge=1, description="Open streams of one bench.")
     max_snapshots: int = Field(32, ge=1, description="Snapshots kept per bench.")

@@ -134,7 +134,7 @@ class Board:
         first, done = self.tick, 0
         idle = self._idle
         while done < n:
-            self._apply_due()
+            self.apply_due()
             idle = idle & self._idle
             if self.trip is not None:
                 break
@@ -222,7 +222,8 @@ class Board:
         self.pending.add(Pending(command, actor, tick, condition, self.tick))
         return self.note(actor, "scheduled", f"waiting: {words.describe(command)}", command=command)
 
-    def _apply_due(self) -> None:
+    def apply_due(self) -> None:
+        """Carry out what waits for this very tick, as the next advance would."""
         for entry in self.pending.take_due(self.tick):
             try:
                 self._do(entry.command, entry.actor)

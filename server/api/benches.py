@@ -26,6 +26,7 @@ class NewBench(StrictBody):
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
     seed: int | None = Field(None, ge=0, le=2**53)
     paused: bool = False
+    keep: bool = Field(False, description="Never let it go, however long nobody watches it or asks for it")
     time_scale: float | None = Field(
         DEFAULT_SCALE,
         ge=MIN_SCALE,
@@ -82,6 +83,7 @@ async def create_bench(body: NewBench, service: ServiceDep, response: Response) 
     session = await service.benches.create(
         body.scenario, body.set, body.seed, body.paused, body.time_scale, own_scale=not given
     )
+    session.keep = body.keep
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
     return await service.opened(session)
 
@@ -102,6 +104,14 @@ async def get_bench(session: SessionDep, service: ServiceDep) -> Bench:
 async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
     """Close a bench; what it recorded stays."""
     await service.close_bench(session)
+
+
+@router.post("/{bench_id}/reopen", dependencies=[RateLimited])
+async def reopen_bench(bench_id: str, service: ServiceDep) -> Bench:
+    """Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running."""
+    session = await service.bring_back(bench_id)
+    service.idling.saw(bench_id)
+    return service.view(session)
 
 
 @router.post("/{bench_id}/commands", dependencies=[RateLimited])

@@ -27,8 +27,10 @@ SocketServiceDep = Annotated[Service, Depends(get_socket_service)]
 
 
 def get_session(bench_id: str, service: ServiceDep) -> Session:
-    """Return the bench in the path, or refuse with 404."""
-    return service.benches.get(bench_id)
+    """Return the bench in the path, which somebody asks for so, or refuse with 404."""
+    session = service.benches.get(bench_id)
+    service.idling.saw(bench_id)
+    return session
 
 
 SessionDep = Annotated[Session, Depends(get_session)]

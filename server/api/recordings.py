@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
 from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
-from server.bench.benches import Wanted
+from server.bench.recordings import Wanted
 from server.bench.status import Bench
 from server.store.compare import Comparison, compare
 from server.store.recordings import Recording, RecordingDetail

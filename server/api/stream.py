@@ -82,6 +82,8 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
         hub.remove(client)
+        if service.benches.find(bench_id):
+            service.idling.saw(bench_id)
         for task in tasks:
             task.cancel()
         for outcome in await asyncio.gather(*tasks, return_exceptions=True):

@@ -5,18 +5,20 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import math
 from collections import Counter
+from collections.abc import Coroutine
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import pyarrow.parquet as pq
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from core.board.board import Board
 from core.board.condition import parse_condition
 from core.board.history import History
 from core.errors import InputError
+from core.format import format_count
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
@@ -25,10 +27,13 @@ from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Se
 from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
+from server.bench.experiment import Experiment, rebuilt, repeat
 from server.bench.portrait import design_of, document_of
 from server.bench.recorder import CLOSED, WANTED, Recorder
+from server.bench.recordings import Wanted
 from server.bench.replay import Replay
 from server.bench.session import Session
+from server.bench.status import Opened
 from server.bench.tape import REFUSAL, Tape
 from server.bench.tick_source import TickSource
 from server.errors import ApiError, not_found
@@ -40,33 +45,6 @@ from server.version import VERSION
 
 AXES_SCALE = 0.1
 """Device seconds per wall second of a plant with axes."""
-MOST_LAYOUT = 200_000
-"""Most characters of a layout as JSON; the page writes far fewer."""
-
-
-class Wanted(BaseModel):
-    """A recording to make: from now or from a condition on, with some of the past."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
-
-    name: str = Field("recording", min_length=1, max_length=100)
-    past_ticks: int = Field(0, ge=0, le=5_000_000, description="Ticks of the past it takes along, as far as kept")
-    ticks: int | None = Field(None, ge=0, description="Ends by itself so many ticks after its beginning")
-    when: str | None = Field(None, max_length=200, description="Waits for '<signal> > <value>'")
-    layout: dict[str, Any] | None = Field(None, description="Layout of the page, kept with it")
-
-    @field_validator("layout")
-    @classmethod
-    def _fits(cls, layout: dict[str, Any] | None) -> dict[str, Any] | None:
-        if (size := len(json.dumps(layout))) > MOST_LAYOUT:
-            raise ValueError(f"has {size} characters as JSON, at most {MOST_LAYOUT}")
-        return layout
-
-    @model_validator(mode="after")
-    def _has_something(self) -> Self:
-        if self.ticks == 0 and self.past_ticks == 0:
-            raise ValueError("needs past_ticks or ticks above 0")
-        return self
 
 
 class Benches:
@@ -105,7 +83,9 @@ class Benches:
         """Return a bench, or refuse with 404."""
         session = self._sessions.get(bench_id)
         if session is None:
-            raise not_found("bench", bench_id, "list the live ones at /api/v1/benches")
+            raise not_found(
+                "bench", bench_id, "list the live ones at /api/v1/benches; one that was let go comes back by /reopen"
+            )
         return session
 
     async def create(
@@ -127,30 +107,16 @@ class Benches:
         ApiError
             If there are too many benches.
         """
-        self._check_room()
-        self._coming += 1
-        try:
-            scenario, board = await asyncio.to_thread(prepare, source, values, seed)
-            if own_scale:
-                time_scale = usual_scale(board)
-            session = Session(scenario, board, time_scale, self._kept(board), self._metrics, self._engine.clock)
-            await self._engine.call(self._open, session, not paused)
-        finally:
-            self._coming -= 1
-        self._sessions[session.id] = session
-        return session
+
+        def made() -> Session:
+            scenario, board = prepare(source, values, seed)
+            return self._session(scenario, board, usual_scale(board) if own_scale else time_scale)
+
+        return await self._admit(asyncio.to_thread(made), not paused)
 
     async def fork(self, session: Session, snapshot_id: str | None) -> Session:
         """Make a second bench that goes on from a moment of another."""
-        self._check_room()
-        self._coming += 1
-        try:
-            twin = await self._engine.call(session.fork, snapshot_id)
-            await self._engine.call(self._open, twin, session.is_started)
-        finally:
-            self._coming -= 1
-        self._sessions[twin.id] = twin
-        return twin
+        return await self._admit(self._engine.call(session.fork, snapshot_id), session.is_started)
 
     async def variant(self, session: Session, values: dict[str, Any]) -> Session:
         """Make a second bench that begins as this one is set now, with values written over it.
@@ -174,11 +140,51 @@ class Benches:
         ApiError
             If there are too many benches, or this version cannot read its scenario.
         """
-        self._check_room()
+        return await self._admit(asyncio.to_thread(self._play, recording, path, speed), not paused)
+
+    async def repeat(self, experiment: Experiment, opened: Opened, bench_id: str | None = None) -> Session:
+        """Make a bench that has done what an experiment has, and goes on or stands as it did.
+
+        Parameters
+        ----------
+        experiment : Experiment
+            What to repeat.
+        opened : Opened
+            What the bench says of where it comes from.
+        bench_id : str, optional
+            The id of the bench it was.
+
+        Raises
+        ------
+        ApiError
+            If there are too many benches, or the experiment cannot be repeated.
+        """
+
+        def made() -> Session:
+            scenario, board = rebuilt(experiment, self._settings.max_run_ticks)
+            session = self._session(scenario, board, experiment.time_scale)
+            session.id = bench_id or session.id
+            same = repeat(session, experiment)
+            session.opened = opened.model_copy(update={"same_bits": same})
+            return session
+
+        return await self._admit(asyncio.to_thread(made), experiment.running)
+
+    def _session(self, scenario: Scenario, board: Board, time_scale: float | None) -> Session:
+        """Put a bench around a board."""
+        return Session(scenario, board, time_scale, self._kept(board), self._metrics, self._engine.clock)
+
+    async def _admit(self, coming: Coroutine[Any, Any, Session], start: bool) -> Session:
+        """Take in a bench that is being made, if there is room."""
+        try:
+            self._check_room()
+        except ApiError:
+            coming.close()
+            raise
         self._coming += 1
         try:
-            session = await asyncio.to_thread(self._play, recording, path, speed)
-            await self._engine.call(self._open, session, not paused)
+            session = await coming
+            await self._engine.call(self._open, session, start and session.board.trip is None)
         finally:
             self._coming -= 1
         self._sessions[session.id] = session
@@ -329,11 +335,17 @@ class Benches:
     def _check_room(self) -> None:
         """Refuse a new bench if the limit is reached."""
         if len(self) + self._coming >= self._settings.max_benches:
+            most, minutes = self._settings.max_benches, self._settings.idle_minutes
+            wait = (
+                f"; one that nobody watches is let go after {format_count(math.ceil(minutes), 'minute')}"
+                if minutes
+                else ""
+            )
             raise ApiError(
                 409,
                 "too_many_benches",
-                f"{self._settings.max_benches} benches are live, the limit (max_benches)",
-                hint="close one first",
+                f"the server is full: {most} of {most} benches are live (max_benches)",
+                hint=f"join one that runs, or close one{wait}",
             )
 
     def _open(self, session: Session, start: bool) -> None:

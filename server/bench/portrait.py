@@ -14,7 +14,7 @@ from server.bench.commands import MAX_PENDING
 from server.bench.live_bench import LiveBench
 from server.bench.pacing import Pacer
 from server.bench.recordings import Recordings
-from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
+from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Opened, Pending, State
 
 
 class ShownBench(LiveBench, Protocol):
@@ -29,6 +29,8 @@ class ShownBench(LiveBench, Protocol):
     changes: Changes
     replay_of: str
     recorded_scale: float | None
+    opened: Opened | None
+    keep: bool
 
     @property
     def dt_ms(self) -> float:
@@ -130,6 +132,8 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
         view3d=view3d,
         replay_of=bench.replay_of or None,
         recorded_scale=bench.recorded_scale,
+        opened=bench.opened,
+        keep=bench.keep,
     )
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated, Any, Self
 
 import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from core.board.condition import Condition
 from core.board.rows import Rows
@@ -50,6 +53,39 @@ class Armed:
     condition: Condition
     past: int
     ticks: int | None
+
+
+MOST_LAYOUT = 200_000
+"""Most characters of a layout as JSON; the page writes far fewer."""
+
+
+def _fits(layout: dict[str, Any] | None) -> dict[str, Any] | None:
+    """Refuse a layout that is too large."""
+    if (size := len(json.dumps(layout))) > MOST_LAYOUT:
+        raise ValueError(f"has {size} characters as JSON, at most {MOST_LAYOUT}")
+    return layout
+
+
+Layout = Annotated[dict[str, Any] | None, AfterValidator(_fits)]
+"""A layout as the page writes it."""
+
+
+class Wanted(BaseModel):
+    """A recording to make: from now or from a condition on, with some of the past."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    name: str = Field("recording", min_length=1, max_length=100)
+    past_ticks: int = Field(0, ge=0, le=5_000_000, description="Ticks of the past it takes along, as far as kept")
+    ticks: int | None = Field(None, ge=0, description="Ends by itself so many ticks after its beginning")
+    when: str | None = Field(None, max_length=200, description="Waits for '<signal> > <value>'")
+    layout: Layout = Field(None, description="Layout of the page, kept with it")
+
+    @model_validator(mode="after")
+    def _has_something(self) -> Self:
+        if self.ticks == 0 and self.past_ticks == 0:
+            raise ValueError("needs past_ticks or ticks above 0")
+        return self
 
 
 class Recordings:

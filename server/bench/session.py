@@ -27,6 +27,7 @@ from server.bench.portrait import status_of
 from server.bench.recorder import Recorder
 from server.bench.recordings import Recordings
 from server.bench.snapshots import Snapshots
+from server.bench.status import Opened
 from server.bench.steps import Steps
 from server.bench.tick_source import TickSource
 from server.bench.timeline import Timeline
@@ -34,7 +35,6 @@ from server.errors import not_found
 from server.metrics import Metrics
 
 RunsBench = Undo | Redo | Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
-RUN = get_args(RunsBench)
 STATUS_S = 0.2
 
 
@@ -61,6 +61,10 @@ class Session(Timeline):
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
     """Device seconds per wall second of the recording."""
+    opened: Opened | None = None
+    """The experiment it was opened from, if it was."""
+    keep = False
+    """Whether it is never let go."""
 
     def __init__(
         self,
@@ -87,8 +91,6 @@ class Session(Timeline):
         self._counted = (0, 0.0)
         self._status_due = 0.0
         self.refresh_status()
-
-    # ---- calls of the engine
 
     @property
     def is_running(self) -> bool:
@@ -139,14 +141,14 @@ class Session(Timeline):
         self.note("board", "failed", f"stopped by an internal error: {error}")
         self.refresh_status()
 
-    # ---- actions of people; the engine runs all of them as jobs
-
     def begin(self, start: bool) -> None:
         """Begin, running or paused."""
         self._running = start
+        if self._ends_at is not None and self.board.tick >= self._ends_at:
+            self._ends_at = None
         self.pacer.anchor(self.board.tick, self._clock())
         self._share_log()
-        self.note("board", "opened", "running" if start else "paused at the first tick")
+        self.note("board", "opened", "running" if start else f"paused at tick {self.board.tick}")
         self.refresh_status()
 
     def execute(self, command: Any, actor: str) -> Event | Future[Event]:
@@ -158,7 +160,7 @@ class Session(Timeline):
             If the command cannot be carried out; nothing has changed then.
         """
         self.must_be_open()
-        if isinstance(command, RUN):
+        if isinstance(command, get_args(RunsBench)):
             event = self._run_command(command, actor)
             if isinstance(event, Future):  # its end refreshes the status
                 return event
@@ -229,8 +231,6 @@ class Session(Timeline):
         self._running, self._closed = False, True
         self.steps.end()
         return self.recordings.close()
-
-    # ---- inside
 
     def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
         """Carry out a command that runs the bench."""

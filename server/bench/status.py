@@ -76,6 +76,16 @@ class BenchStatus(BaseModel):
     wake_late_ms: float = Field(0.0, description="99th percentile of the engine's lateness, last minute")
 
 
+class Opened(BaseModel):
+    """How a bench came from an experiment that was kept."""
+
+    link: str | None = Field(description="The link it was opened by; null: it had been let go and came back")
+    note: str
+    version: str = Field(description="Version of the program and hash of the code the experiment was made with")
+    version_now: str
+    same_bits: bool = Field(description="Whether repeating it has given the bits it had then")
+
+
 class DiagnoserInfo(BaseModel):
     """The hypotheses of a diagnoser, in the order of its indices."""
 
@@ -105,3 +115,8 @@ class Bench(BenchStatus):
     view3d: str | None = Field(description="Path of the 3D page, if there is one")
     replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")
     recorded_scale: float | None = Field(None, description="Device seconds per wall second it was recorded at")
+    opened: Opened | None = Field(None, description="The experiment it was opened from, if it was")
+    keep: bool = Field(False, description="It is never let go")
+    let_go_in_s: float | None = Field(
+        None, description="Until it is let go if nobody watches it or asks for it; null: it stays"
+    )

@@ -1,4 +1,4 @@
-"""Tables: headless runs, campaigns, their results, recordings. Bulk data is in files; a row says which."""
+"""Tables: headless runs, campaigns, their results, recordings, links. Bulk data is in files; a row says which."""
 
 from __future__ import annotations
 
@@ -128,3 +128,21 @@ class ParameterSetRow(Base):
     scenario: Mapped[str] = mapped_column(String(200))
     values: Mapped[dict[str, Any]]
     created: Mapped[datetime] = mapped_column(default=now)
+
+
+class LinkRow(Base):
+    """An experiment or a layout by a short id, or a bench that was let go by its own."""
+
+    __tablename__ = "links"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    kind: Mapped[str] = mapped_column(String(16), index=True)
+    title: Mapped[str] = mapped_column(String(200))
+    note: Mapped[str] = mapped_column(String(2000))
+    scenario_id: Mapped[str | None] = mapped_column(String(200))
+    tick: Mapped[int | None] = mapped_column(BigInteger)
+    digest: Mapped[str | None] = mapped_column(String(64))
+    version: Mapped[str] = mapped_column(String(64))
+    content: Mapped[dict[str, Any]]
+    bytes: Mapped[int] = mapped_column(BigInteger)
+    created: Mapped[datetime] = mapped_column(default=now, index=True)

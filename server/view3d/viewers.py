@@ -120,6 +120,10 @@ class Viewers:
             self._shows[session.id] = Show(session)
         return self._shows[session.id]
 
+    def watchers(self, bench_id: str) -> int:
+        """Count the pages that watch the scene of a bench."""
+        return self._shows[bench_id].watchers if bench_id in self._shows else 0
+
     async def drop(self, bench_id: str) -> None:
         """Close the show of a bench that is gone."""
         show = self._shows.pop(bench_id, None)

@@ -2,6 +2,8 @@ import { test as base, expect, type Locator, type Page } from "@playwright/test"
 import { LabServer } from "./lab-server";
 
 interface LabFixtures {
+  /** Closes what a test has opened, for the next one to find the server empty. */
+  tidy: undefined;
   /** Open a fresh bench of the first-look scenario in a layout, with values written over; closed after the test. */
   openBench(layout?: "lecture" | "lab" | "research", set?: Record<string, unknown>): Promise<void>;
   /** Open a fresh bench of a document in the lab layout; closed after the test. Its id. */
@@ -19,21 +21,21 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
     },
     { scope: "worker", timeout: 150_000 },
   ],
+  tidy: [
+    async ({ server }, use) => {
+      await use(undefined);
+      const { benches } = await server.ask<{ benches: { id: string }[] }>("GET", "/benches");
+      for (const { id } of benches) await server.ask("DELETE", `/benches/${id}`);
+    },
+    { auto: true },
+  ],
   openBench: async ({ page, server }, use) => {
-    const opened: string[] = [];
     await use(async (layout = "lab", set = {}) => {
-      opened.push(await open(page, server, { scenario: "first-look", set }, layout));
+      await open(page, server, { scenario: "first-look", set }, layout);
     });
-    for (const id of opened) await server.ask("DELETE", `/benches/${id}`);
   },
   openDocument: async ({ page, server }, use) => {
-    const opened: string[] = [];
-    await use(async (scenario) => {
-      const id = await open(page, server, { scenario }, "lab");
-      opened.push(id);
-      return id;
-    });
-    for (const id of opened) await server.ask("DELETE", `/benches/${id}`);
+    await use((scenario) => open(page, server, { scenario }, "lab"));
   },
 });
 

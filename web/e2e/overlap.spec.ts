@@ -8,11 +8,15 @@ const SIZES = [
   { width: 390, height: 844 },
 ];
 const LAYOUTS = ["lecture", "lab", "research"] as const;
+const SHEETS = [
+  { key: "S", title: "Share this experiment" },
+  { key: "n", title: "Mine" },
+];
 const PAGES = ["Gallery", "Runs", "Design", "Theory"];
 
 /** What is cut, lies over something else, or makes the page wider than its window. */
-const faults = (page: Page): Promise<string[]> =>
-  page.evaluate(() => {
+const faults = (page: Page, within = "body"): Promise<string[]> =>
+  page.evaluate((within) => {
     const found: string[] = [];
     const name = (e: Element) =>
       `${e.tagName.toLowerCase()} "${(e.getAttribute("aria-label") ?? e.textContent ?? "").trim().slice(0, 40)}"`;
@@ -32,7 +36,9 @@ const faults = (page: Page): Promise<string[]> =>
       }
       return { left, top, right, bottom };
     };
-    for (const e of Array.from(document.querySelectorAll("button, a, input, select, [role=tab]"))) {
+    for (const e of Array.from(
+      document.querySelectorAll(`${within} :is(button, a, input, select, textarea, [role=tab])`),
+    )) {
       if (!e.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true }) || e.closest("[aria-hidden=true]"))
         continue;
       const box = e.getBoundingClientRect();
@@ -48,9 +54,8 @@ const faults = (page: Page): Promise<string[]> =>
       if (middle && !e.contains(middle) && !middle.contains(e) && !middle.closest("label")?.contains(e))
         found.push(`${name(middle)} lies over ${name(e)}`);
     }
-    for (const e of Array.from(
-      document.querySelectorAll("button, button span, h1, h2, h3, label, dt, dd, th, td, p, figcaption, strong"),
-    )) {
+    const words = "button, button span, h1, h2, h3, label, dt, dd, th, td, p, figcaption, strong";
+    for (const e of Array.from(document.querySelectorAll(`${within} :is(${words})`))) {
       if (!e.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true })) continue;
       const style = getComputedStyle(e);
       const size = Number.parseFloat(style.fontSize);
@@ -64,18 +69,28 @@ const faults = (page: Page): Promise<string[]> =>
     function* ancestors(e: Element) {
       for (let up = e.parentElement; up; up = up.parentElement) yield up;
     }
-  });
+  }, within);
 
 for (const { width, height } of SIZES)
   test(`nothing overlaps or is cut at ${width} x ${height}`, async ({ page, openBench }) => {
     await page.setViewportSize({ width, height });
     await page.emulateMedia({ colorScheme: width > 1000 ? "light" : "dark" });
     // what comes or goes may lie over something for a moment
-    const clean = (where: string) => expect.poll(() => faults(page), { message: where }).toEqual([]);
+    const clean = (where: string, within?: string) =>
+      expect.poll(() => faults(page, within), { message: where }).toEqual([]);
     for (const layout of LAYOUTS) {
       await openBench(layout);
       await expect(page.locator("canvas").first()).toBeVisible();
       await clean(layout);
+    }
+    for (const { key, title } of SHEETS) {
+      await page.keyboard.press(key);
+      if (title === "Mine") await page.getByRole("button", { name: "Open a scenario from disk" }).click();
+      const sheet = page.getByRole("dialog", { name: title });
+      await expect(sheet.getByRole("button").nth(1)).toBeVisible();
+      await clean(title, "[role=dialog]");
+      await sheet.getByRole("button", { name: "Close" }).click();
+      await expect(sheet).toBeHidden();
     }
     for (const name of PAGES) {
       await page.getByRole("button", { name, exact: true }).click();

@@ -37,6 +37,12 @@ for (const prefix of ["", "/bench"]) {
       const first = await drawn();
       await expect.poll(drawn, { timeout: 60_000 }).not.toBe(first);
 
+      await page.getByRole("button", { name: "Share this experiment" }).click();
+      await expect(page.getByRole("textbox", { name: "Link", exact: true })).toHaveValue(
+        new RegExp(`^${base}\\?link=[2-9a-z]{8}$`),
+      );
+      await expect(page.getByText("Others cannot reach")).toHaveCount(0);
+
       expect(
         await page.locator("img[src='./comb.svg']").evaluate((img) => (img as HTMLImageElement).naturalWidth),
       ).toBeGreaterThan(0);

@@ -6,8 +6,10 @@ import type {
   Design,
   Document,
   ExcitationSource,
+  LinkWords,
   MapSource,
   NewBench,
+  NewLink,
   NewRun,
   SweptSine,
   Trace,
@@ -18,6 +20,7 @@ const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
 const run = (run_id: string) => ({ params: { path: { run_id } } });
 const recording = (recording_id: string) => ({ params: { path: { recording_id } } });
 const parameterSet = (set_id: string) => ({ params: { path: { set_id } } });
+const link = (link_id: string) => ({ params: { path: { link_id } } });
 const sweep = (sweep_id: string) => ({ params: { path: { sweep_id } } });
 
 /** The REST calls of the page. */
@@ -98,6 +101,14 @@ export const api = {
   benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
+  reopenBench: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/reopen", bench(id))),
+  links: async (kind: "experiment" | "layout") =>
+    (await data(client.GET("/api/v1/links", { params: { query: { kind } } }))).links,
+  link: (id: string) => data(client.GET("/api/v1/links/{link_id}", link(id))),
+  makeLink: (body: NewLink) => data(client.POST("/api/v1/links", { body })),
+  changeLink: (id: string, body: LinkWords) => data(client.PATCH("/api/v1/links/{link_id}", { ...link(id), body })),
+  removeLink: (id: string) => data(client.DELETE("/api/v1/links/{link_id}", link(id))),
+  openLink: (id: string) => data(client.POST("/api/v1/links/{link_id}/open", link(id))),
   removeBench: (id: string) => data(client.DELETE("/api/v1/benches/{bench_id}", bench(id))),
   fork: (id: string, snapshot: string | null = null) =>
     data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body: { snapshot } })),

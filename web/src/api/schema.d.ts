@@ -236,6 +236,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/reopen": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Reopen Bench
+         * @description Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running.
+         */
+        post: operations["reopen_bench_api_v1_benches__bench_id__reopen_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/commands": {
         parameters: {
             query?: never;
@@ -1237,6 +1257,80 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/links": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Links
+         * @description List the links.
+         */
+        get: operations["list_links_api_v1_links_get"];
+        put?: never;
+        /**
+         * Make Link
+         * @description Keep an experiment or a layout; it stays when the bench goes.
+         */
+        post: operations["make_link_api_v1_links_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/links/{link_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Link
+         * @description Return a link and what it leads to.
+         */
+        get: operations["get_link_api_v1_links__link_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Link
+         * @description Delete a link; benches opened by it stay.
+         */
+        delete: operations["delete_link_api_v1_links__link_id__delete"];
+        options?: never;
+        head?: never;
+        /**
+         * Change Link
+         * @description Change the title or the note of a link.
+         */
+        patch: operations["change_link_api_v1_links__link_id__patch"];
+        trace?: never;
+    };
+    "/api/v1/links/{link_id}/open": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Open Link
+         * @description Open a fresh bench that repeats an experiment to its tick, and goes on or stands as it did.
+         *
+         *     `opened` says whether its bits are those of then.
+         */
+        post: operations["open_link_api_v1_links__link_id__open_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/health/live": {
         parameters: {
             query?: never;
@@ -1603,6 +1697,19 @@ export interface components {
              * @description Device seconds per wall second it was recorded at
              */
             recorded_scale?: number | null;
+            /** @description The experiment it was opened from, if it was */
+            opened?: components["schemas"]["Opened"] | null;
+            /**
+             * Keep
+             * @description It is never let go
+             * @default false
+             */
+            keep?: boolean;
+            /**
+             * Let Go In S
+             * @description Until it is let go if nobody watches it or asks for it; null: it stays
+             */
+            let_go_in_s?: number | null;
         };
         /**
          * BenchList
@@ -1819,6 +1926,17 @@ export interface components {
             only_in_first: string[];
             /** Only In Second */
             only_in_second: string[];
+        };
+        /**
+         * Content
+         * @description What a link leads to: an experiment, a layout of the page, or both.
+         */
+        Content: {
+            experiment?: components["schemas"]["Experiment"] | null;
+            /** Layout */
+            layout?: {
+                [key: string]: unknown;
+            } | null;
         };
         /**
          * Curve
@@ -2163,6 +2281,30 @@ export interface components {
              * @description Null until it has been run
              */
             ok?: boolean | null;
+        };
+        /**
+         * Experiment
+         * @description What a bench was made from, what was done to it, and how it stood.
+         */
+        Experiment: {
+            /** Scenario */
+            scenario: {
+                [key: string]: unknown;
+            };
+            /** Events */
+            events: {
+                [key: string]: unknown;
+            }[];
+            /** Tick */
+            tick: number;
+            /** Digest */
+            digest: string;
+            /** Version */
+            version: string;
+            /** Running */
+            running: boolean;
+            /** Time Scale */
+            time_scale: number | null;
         };
         /**
          * Extremes
@@ -2516,6 +2658,79 @@ export interface components {
             frequency: number;
         };
         /**
+         * Link
+         * @description A link as lists show it.
+         */
+        Link: {
+            /** Id */
+            id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "experiment" | "layout" | "bench";
+            /** Title */
+            title: string;
+            /** Note */
+            note: string;
+            /** Scenario Id */
+            scenario_id: string | null;
+            /** Tick */
+            tick: number | null;
+            /** Digest */
+            digest: string | null;
+            /** Version */
+            version: string;
+            /** Bytes */
+            bytes: number;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+        };
+        /**
+         * LinkDetail
+         * @description A link with what it leads to.
+         */
+        LinkDetail: {
+            /** Id */
+            id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "experiment" | "layout" | "bench";
+            /** Title */
+            title: string;
+            /** Note */
+            note: string;
+            /** Scenario Id */
+            scenario_id: string | null;
+            /** Tick */
+            tick: number | null;
+            /** Digest */
+            digest: string | null;
+            /** Version */
+            version: string;
+            /** Bytes */
+            bytes: number;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            content: components["schemas"]["Content"];
+        };
+        /**
+         * LinkList
+         * @description Links, newest first.
+         */
+        LinkList: {
+            /** Links */
+            links: components["schemas"]["Link"][];
+        };
+        /**
          * Load
          * @description Load of a board by one diagnoser.
          *
@@ -2754,11 +2969,53 @@ export interface components {
              */
             paused?: boolean;
             /**
+             * Keep
+             * @description Never let it go, however long nobody watches it or asks for it
+             * @default false
+             */
+            keep?: boolean;
+            /**
              * Time Scale
              * @description Device seconds per wall second; null: as fast as possible. Unless given, that of the device
              * @default 0.002
              */
             time_scale?: number | null;
+        };
+        /**
+         * NewLink
+         * @description What a link is to lead to: a bench as it is now, a scenario, or a layout of the page alone.
+         */
+        NewLink: {
+            /**
+             * Bench
+             * @description Id of a live bench; what was done to it is kept
+             */
+            bench?: string | null;
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             */
+            scenario?: string | {
+                [key: string]: unknown;
+            } | null;
+            /**
+             * Layout
+             * @description Layout of the page, its cursors in it
+             */
+            layout?: {
+                [key: string]: unknown;
+            } | null;
+            /**
+             * Title
+             * @description That of the scenario unless given
+             * @default
+             */
+            title?: string;
+            /**
+             * Note
+             * @default
+             */
+            note?: string;
         };
         /**
          * NewRun
@@ -2855,6 +3112,31 @@ export interface components {
             deviation_deg_h: number;
             /** Pairs */
             pairs: number;
+        };
+        /**
+         * Opened
+         * @description How a bench came from an experiment that was kept.
+         */
+        Opened: {
+            /**
+             * Link
+             * @description The link it was opened by; null: it had been let go and came back
+             */
+            link: string | null;
+            /** Note */
+            note: string;
+            /**
+             * Version
+             * @description Version of the program and hash of the code the experiment was made with
+             */
+            version: string;
+            /** Version Now */
+            version_now: string;
+            /**
+             * Same Bits
+             * @description Whether repeating it has given the bits it had then
+             */
+            same_bits: boolean;
         };
         /**
          * Pair
@@ -4016,6 +4298,16 @@ export interface components {
             } | null;
         };
         /**
+         * Words
+         * @description What can be changed of a link.
+         */
+        Words: {
+            /** Title */
+            title?: string | null;
+            /** Note */
+            note?: string | null;
+        };
+        /**
          * Ack
          * @description The client has drawn (or taken) every frame up to this one.
          */
@@ -4869,6 +5161,37 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    reopen_bench_api_v1_benches__bench_id__reopen_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
             };
             /** @description Refused or failed */
             default: {
@@ -6757,6 +7080,196 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["InstabilityMap"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_links_api_v1_links_get: {
+        parameters: {
+            query?: {
+                kind?: ("experiment" | "layout") | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LinkList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    make_link_api_v1_links_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLink"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LinkDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_link_api_v1_links__link_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                link_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LinkDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    delete_link_api_v1_links__link_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                link_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    change_link_api_v1_links__link_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                link_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Words"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LinkDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    open_link_api_v1_links__link_id__open_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                link_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
                 };
             };
             /** @description Refused or failed */

@@ -1,8 +1,8 @@
-import { Button } from "@mantine/core";
+import { Button, Group } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/api-error";
-import { benchInAddress, showBench } from "../bench/open-bench";
+import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
 import { pageInAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
 import { useBench } from "../stream/bench-store";
@@ -10,18 +10,24 @@ import { closeReason } from "../stream/close-reason";
 import { EmptyState } from "../ui/empty-state";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
-import { openFirstBench } from "./first-bench";
+import { comeBack, openFirstBench } from "./first-bench";
+import { FullServer } from "./full-server";
 import { Header } from "./header/header";
 import { KeySheet } from "./key-sheet";
+import { LayoutSheet } from "./layout-sheet";
+import { MineSheet } from "./mine-sheet";
 import { NewBench } from "./new-bench";
+import { OpenedLine } from "./opened-line";
 import { PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
+import { ShareSheet } from "./share-sheet";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
 
 interface Failure {
+  code: string;
   title: string;
   advice: string;
 }
@@ -30,6 +36,7 @@ interface Failure {
 export function App() {
   const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
   const page = useView((s) => s.page);
+  const noted = useBench((s) => Boolean(s.bench?.opened?.note));
   const silent = useBench((s) => s.connection.staleSince !== undefined);
   const stale = useLasting(silent, 700);
   const Page = PAGES[page].component;
@@ -40,6 +47,11 @@ export function App() {
     setFailure(undefined);
     openFirstBench().catch((error: unknown) => setFailure(explain(error)));
   }, []);
+
+  const gone = useBench((s) => s.connection.phase === "closed" && s.connection.reason?.offer === "bench");
+  useEffect(() => {
+    if (gone) comeBack().catch((error: unknown) => setFailure(explain(error)));
+  }, [gone]);
 
   useEffect(() => {
     start();
@@ -54,11 +66,20 @@ export function App() {
 
   return (
     <div className="page" data-stale={stale}>
-      {phone ? null : <Header />}
+      {phone || failure ? null : <Header />}
       <ReplayBar />
-      <Banner hints={!phone && page === "bench"} />
-      {failure ? (
-        <EmptyState title={failure.title} action={<Button onClick={start}>Try again</Button>}>
+      <Banner hints={!phone && page === "bench" && !noted} />
+      <OpenedLine />
+      {failure?.code === "too_many_benches" ? (
+        <FullServer
+          onRetry={start}
+          onJoin={(id) => {
+            setFailure(undefined);
+            openBench(id, true);
+          }}
+        />
+      ) : failure ? (
+        <EmptyState title={failure.title} action={<Again onRetry={start} />}>
           {failure.advice}
         </EmptyState>
       ) : (
@@ -70,17 +91,39 @@ export function App() {
       )}
       <KeySheet />
       <NewBench />
+      <MineSheet />
+      <ShareSheet />
+      <LayoutSheet />
       <Announcer />
     </div>
   );
 }
 
+/** Try again, or leave the link that led nowhere. */
+function Again({ onRetry }: { onRetry(): void }) {
+  const ownInstead = () => {
+    window.history.replaceState(null, "", "./");
+    onRetry();
+  };
+  return (
+    <Group justify="center">
+      <Button onClick={onRetry}>Try again</Button>
+      {inAddress("link") && (
+        <Button variant="default" onClick={ownInstead}>
+          Open my own bench
+        </Button>
+      )}
+    </Group>
+  );
+}
+
 function explain(error: unknown): Failure {
-  if (error instanceof ApiError && error.status === 401) return closeReason(4401);
+  if (error instanceof ApiError && error.status === 401) return { code: "unauthorised", ...closeReason(4401) };
   if (error instanceof ApiError)
     return {
+      code: error.body.code,
       title: error.body.message,
       advice: error.body.hint || "Is the server running? Start it with: combbench serve",
     };
-  return { title: "The page could not start", advice: String(error) };
+  return { code: "", title: "The page could not start", advice: String(error) };
 }

@@ -7,7 +7,7 @@ import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
 import styles from "./banner.module.css";
-import { openAnyBench, startAgain } from "./first-bench";
+import { openOwnBench, startAgain } from "./first-bench";
 import { tryThis } from "./try-this";
 import { useLasting } from "./use-lasting";
 
@@ -131,9 +131,9 @@ function NewStart() {
       <Button
         size="compact-sm"
         variant={scenario ? "default" : "filled"}
-        onClick={() => openAnyBench().catch(showError)}
+        onClick={() => openOwnBench().catch(showError)}
       >
-        Open another
+        Open my own
       </Button>
     </>
   );

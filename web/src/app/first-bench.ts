@@ -1,29 +1,89 @@
+import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
-import { benchInAddress, lastBench, openBench } from "../bench/open-bench";
+import { ApiError } from "../api/api-error";
+import type { Bench } from "../api/types";
+import type { SharedLayout } from "../bench/dock";
+import { benchInAddress, inAddress, openBench, openOwn, ownBench, showBench } from "../bench/open-bench";
+import { formatTick } from "../ui/format";
+import { showShared } from "./layouts";
 
 /** Worth seeing at first sight: the first of these that the library has. */
 const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
 
-/** Open the bench of the address, else one that is running, else start the showpiece. */
+/** Longer than this takes about a second to repeat. */
+const LONG_TICKS = 300_000;
+
+/** Open what the address names: an experiment by its link, or a bench to join; else the bench of this browser. */
 export async function openFirstBench(): Promise<void> {
+  const link = inAddress("link");
+  if (link) return openLink(link, true);
   const named = benchInAddress();
-  if (named) return openBench(named, true);
-  await openAnyBench();
+  if (!named) return openOwnBench();
+  await broughtBack(named);
+  openBench(named, true); // one that is gone says so
+}
+
+/** Open the experiment of a link on a fresh bench, with its layout. */
+export async function openLink(id: string, replace = false): Promise<void> {
+  const { content, title, tick } = await api.link(id);
+  const notice = `link-${id}`;
+  if ((tick ?? 0) > LONG_TICKS)
+    notifications.show({
+      id: notice,
+      loading: true,
+      autoClose: false,
+      title: "Repeating what was done",
+      message: `${title}, to ${formatTick(tick ?? 0)}.`,
+    });
+  const bench = await api.openLink(id).finally(() => notifications.hide(notice));
+  openOwn(bench.id, replace);
+  if (content.layout) showShared(content.layout as unknown as SharedLayout);
 }
 
 /** Start a bench of a library scenario in place of the one shown. */
 export async function startAgain(scenario: string): Promise<void> {
-  openBench((await api.createBench({ scenario, paused: false })).id, true);
+  openOwn((await api.createBench({ scenario, paused: false })).id, true);
 }
 
-/** Open the bench this browser had last, else one that runs, or start the showpiece. */
-export async function openAnyBench(): Promise<void> {
-  const benches = (await api.benches()).filter((b) => !b.replay_of);
-  const mine = benches.find((b) => b.id === lastBench() && b.state !== "tripped");
-  const running = mine ?? benches.find((b) => b.state === "running");
-  if (running) return openBench(running.id, true);
+/** Open the bench of this browser, or a fresh one. */
+export async function openOwnBench(): Promise<void> {
+  const own = ownBench();
+  if (own && (await broughtBack(own))) return openOwn(own, true);
   const library = await api.scenarios();
   const id = SHOWPIECES.find((name) => library.some((s) => s.id === name)) ?? library[0]?.id;
   if (!id) throw new Error("The library holds no scenario to start from.");
-  openBench((await api.createBench({ scenario: id, paused: false })).id, true);
+  await startAgain(id);
+  if (own)
+    notifications.show({ title: "A fresh bench", message: "Yours of before was closed, or let go too long ago." });
+}
+
+/** Show the bench again that the server has closed, if it was only let go; nobody watched it then. */
+export async function comeBack(): Promise<void> {
+  const id = benchInAddress();
+  if (id && (await broughtBack(id))) showBench(id);
+}
+
+/** Whether a bench is live, now that it has been opened again if it was let go. */
+async function broughtBack(id: string): Promise<boolean> {
+  const live = await unlessGone(api.bench(id));
+  if (live) return true;
+  const back = await unlessGone(api.reopenBench(id));
+  if (back)
+    notifications.show({
+      title: "Opened again as it was",
+      message: `Nobody watched ${back.title} for a while, so the server let it go. It is back at ${formatTick(back.tick)}.`,
+    });
+  return back !== undefined;
+}
+
+/** What the server answers; nothing when there is no such bench, or it cannot be repeated. */
+async function unlessGone(answer: Promise<Bench>): Promise<Bench | undefined> {
+  try {
+    return await answer;
+  } catch (error) {
+    if (!(error instanceof ApiError) || error.body.code === "too_many_benches") throw error;
+    if (error.status === 409) notifications.show({ title: "This bench was let go", message: error.body.message });
+    else if (error.status !== 404) throw error;
+    return undefined;
+  }
 }

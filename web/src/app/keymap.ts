@@ -29,6 +29,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "h", shown: "H", does: "heal all faults", group: "Bench", run: actions.healAll },
   { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
   { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
+  { key: "S", shown: "Shift S", does: "share by a link", group: "Bench", run: actions.share },
   { key: "v", shown: "V", does: "record, and stop", group: "Bench", run: actions.record },
   { key: "f", shown: "F", does: "fork", group: "Bench", run: actions.fork },
   { key: "k", shown: "K", does: "keep this moment", group: "Bench", run: actions.keep },
@@ -57,6 +58,7 @@ export const KEYMAP: KeyBinding[] = [
 
 /** Keys that belong to the thing in focus. */
 export const LOCAL_KEYS: { shown: string; does: string }[] = [
+  { shown: "Delete", does: "on a tab: close the panel" },
   { shown: "← →", does: "on a scope: move through the past" },
   { shown: "+ −", does: "on a scope: zoom" },
   { shown: "drag, wheel", does: "on a scope: look at the past; double click returns to live" },

@@ -1,14 +1,14 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
-import { type LayoutName, useView } from "../bench/view-store";
+import { useView } from "../bench/view-store";
 
 /** A layout as it stood, and when it was left. */
 interface Kept {
-  name: LayoutName;
+  name: string;
   layout: SerializedDockview;
   at: number;
 }
 
-type Arrange = (name: LayoutName, layout: SerializedDockview) => void;
+type Arrange = (name: string, layout: SerializedDockview) => void;
 
 const MOST = 50;
 const SETTLES_MS = 250;

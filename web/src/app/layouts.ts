@@ -1,6 +1,9 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
+import { api } from "../api/api";
 import { hasAxes } from "../api/fits";
-import { dockNow, holdDock, restoreLayout } from "../bench/dock";
+import { dockNow, forgetClosed, holdDock, restoreLayout, type SharedLayout } from "../bench/dock";
+import { inAddress } from "../bench/open-bench";
+import { showError } from "../bench/send";
 import { type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
 import { BUILT_IN } from "./built-in-layouts";
@@ -8,17 +11,43 @@ import { layoutHistory } from "./layout-history";
 import { PANELS } from "./panels";
 import { BUILT_IN_AXES } from "./two-axis-layouts";
 
+/** A layout of one's own: its name, and whether it is in large type. */
+export interface OwnLayout {
+  name: string;
+  large: boolean;
+}
+
+/** The layout that came with a link; the next one takes its place unless it is saved under a name. */
+export const FROM_LINK = "from a link";
+const LONGEST_NAME = 40;
+/** The id of a link. */
+const LINK = /^[2-9a-z]{8}$/;
+
 /** Whether the panels stand as for a bench with axes. */
 let axes = false;
+/** A layout that came before there was a dock to show it in. */
+let coming: SharedLayout | undefined;
 
-const storageKey = (name: LayoutName) => `combbench.layout.4.${axes ? "axes." : ""}${name}`;
+const kind = () => (axes ? "axes." : "");
+const LIST = () => `combbench.layouts.${kind()}own`;
+const storageKey = (name: string) => `combbench.layout.4.${kind()}${isBuiltIn(name) ? "" : "own."}${name}`;
+
+export const isBuiltIn = (name: string): name is LayoutName => name in BUILT_IN;
+
+/** The layouts of one's own for the kind of bench on the page. */
+export const ownLayouts = (): OwnLayout[] => JSON.parse(localStorage.getItem(LIST()) ?? "[]") as OwnLayout[];
+
+/** A name, if there is such a layout for the kind of bench on the page. */
+const known = (name: string | undefined): string | undefined =>
+  name && (isBuiltIn(name) || ownLayouts().some((own) => own.name === name) || stored(name)) ? name : undefined;
+
+const keepList = (layouts: OwnLayout[]) => localStorage.setItem(LIST(), JSON.stringify(layouts));
 
 /** Lay the panels out for the benches of a kind; within one kind they stay where they are. */
 export function layOutFor(withAxes: boolean): void {
   if (withAxes === axes) return;
   axes = withAxes;
-  const name = useView.getState().layout;
-  arrange(name, stored(name));
+  arrange(known(inAddress("layout")) ?? known(useView.getState().layout) ?? "lab");
   layoutHistory.forget();
 }
 
@@ -29,37 +58,135 @@ export function attachDock(api: DockviewApi): void {
     if (!panel.title || panel.title === panel.id) panel.api.setTitle(PANELS[panel.view.contentComponent].title);
   });
   axes = hasAxes(useBench.getState().bench);
-  const asked = new URLSearchParams(window.location.search).get("layout");
-  const name = asked && asked in BUILT_IN ? (asked as LayoutName) : useView.getState().layout;
-  arrange(name, stored(name));
+  const asked = inAddress("layout");
+  arrange(known(asked) ?? useView.getState().layout);
   layoutHistory.watch(api);
-  api.onDidLayoutChange(() =>
-    localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(api.toJSON())),
-  );
+  api.onDidLayoutChange(keepLayout);
+  if (coming) showShared(coming);
+  else if (asked && !known(asked) && LINK.test(asked)) fetchLayout(asked).catch(showError);
 }
 
-/** Choose a built-in layout afresh; what was rearranged in it is forgotten. The address names it. */
-export function setLayout(name: LayoutName): void {
+/** Remember how the panels stand, what each shows included. */
+export function keepLayout(): void {
+  const dock = dockNow();
+  if (dock) localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(dock.toJSON()));
+}
+
+/** Choose a layout as it was left. The address names it. */
+export function setLayout(name: string): void {
+  arrange(name);
+  nameInAddress(name);
+}
+
+/** Bring a built-in layout back to what it was at first. */
+export function resetLayout(): void {
+  const name = useView.getState().layout;
   localStorage.removeItem(storageKey(name));
+  arrange(name);
+}
+
+/** Why a layout cannot have a name; nothing if it can. */
+export function refusal(name: string): string | undefined {
+  const plain = name.trim().toLowerCase();
+  if (!plain) return "Give it a name.";
+  if (plain.length > LONGEST_NAME) return `A name has at most ${LONGEST_NAME} characters.`;
+  if (
+    [...Object.keys(BUILT_IN), FROM_LINK, ...ownLayouts().map((own) => own.name)].some((n) => n.toLowerCase() === plain)
+  )
+    return "There is a layout of this name.";
+  return undefined;
+}
+
+/** Keep the panels as they stand under a name; what is moved from now on is kept there. */
+export function saveLayout(name: string, large = useView.getState().large): void {
+  keepList([...ownLayouts(), { name, large }]);
+  useView.setState({ layout: name });
+  keepLayout();
+  nameInAddress(name);
+}
+
+export function renameLayout(name: string, next: string): void {
+  const kept = localStorage.getItem(storageKey(name));
+  keepList(ownLayouts().map((own) => (own.name === name ? { ...own, name: next } : own)));
+  if (kept) localStorage.setItem(storageKey(next), kept);
+  localStorage.removeItem(storageKey(name));
+  if (useView.getState().layout !== name) return;
+  useView.setState({ layout: next });
+  nameInAddress(next);
+}
+
+export function deleteLayout(name: string): void {
+  if (useView.getState().layout === name) setLayout("lab");
+  keepList(ownLayouts().filter((own) => own.name !== name));
+  localStorage.removeItem(storageKey(name));
+}
+
+/** The panels as they stand, to be passed on. */
+export function sharedLayout(): SharedLayout | undefined {
+  const dock = dockNow()?.toJSON();
+  return dock && { dock, large: useView.getState().large, axes };
+}
+
+/** Show a layout that came with a link. */
+export function showShared(shared: SharedLayout): void {
+  if (!dockNow()) {
+    coming = shared;
+    return;
+  }
+  coming = undefined;
+  show(shared, FROM_LINK);
+}
+
+/** Show the layout of a link, and keep it under its name, or one beside it if there is such a layout. */
+async function fetchLayout(link: string): Promise<void> {
+  const { title, content } = await api.link(link);
+  if (!content.layout) return;
+  const shared = content.layout as unknown as SharedLayout;
+  axes = shared.axes;
+  let name = title.slice(0, LONGEST_NAME - 4);
+  for (let n = 2; refusal(name); n += 1) name = `${title.slice(0, LONGEST_NAME - 4)} ${n}`;
+  show(shared, name);
+  saveLayout(name, shared.large);
+}
+
+/** Put the panels as they stood in a layout. */
+export function putLayout(name: string, dock: SerializedDockview): void {
+  localStorage.setItem(storageKey(name), JSON.stringify(dock));
+  arrange(name);
+  nameInAddress(name);
+}
+
+function show(shared: SharedLayout, name: string): void {
+  axes = shared.axes;
+  localStorage.setItem(storageKey(name), JSON.stringify(shared.dock));
+  arrange(name, shared.large);
+  nameInAddress(name);
+}
+
+function nameInAddress(name: string): void {
   const url = new URL(window.location.href);
   url.searchParams.set("layout", name);
   window.history.replaceState(null, "", url);
-  arrange(name, undefined);
 }
 
-function stored(name: LayoutName): SerializedDockview | undefined {
+function stored(name: string): SerializedDockview | undefined {
   const text = localStorage.getItem(storageKey(name));
   return text ? (JSON.parse(text) as SerializedDockview) : undefined;
 }
 
-/** Put a layout there: as it was stored, or as it is built in. */
-export function arrange(name: LayoutName, saved: SerializedDockview | undefined): void {
+function arrange(
+  name: string,
+  large = ownLayouts().find((own) => own.name === name)?.large ?? name === "lecture",
+): void {
   const api = dockNow();
-  useView.setState({ layout: name, large: name === "lecture" });
-  document.documentElement.dataset.size = name === "lecture" ? "large" : "normal";
+  useView.setState({ layout: name, large });
+  document.documentElement.dataset.size = large ? "large" : "normal";
   if (!api) return;
+  forgetClosed();
+  const saved = stored(name);
   if (saved && restoreLayout(saved)) return;
   localStorage.removeItem(storageKey(name));
   api.clear();
-  (axes ? BUILT_IN_AXES : BUILT_IN)[name](api, api.width || window.innerWidth, api.height || window.innerHeight);
+  const builtIn = (axes ? BUILT_IN_AXES : BUILT_IN)[isBuiltIn(name) ? name : "lab"];
+  builtIn(api, api.width || window.innerWidth, api.height || window.innerHeight);
 }

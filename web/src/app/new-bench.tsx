@@ -1,9 +1,9 @@
 import { Button, NativeSelect, Switch, Text, TextInput } from "@mantine/core";
-import { IconRulerMeasure } from "@tabler/icons-react";
+import { IconFolderOpen, IconRulerMeasure } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { Device, ScenarioSummary } from "../api/types";
-import { openBench } from "../bench/open-bench";
+import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
@@ -40,7 +40,7 @@ function Gallery() {
     setBusy(scenario);
     try {
       const bench = await api.createBench({ scenario, paused, ...(device ? { set: { "device.id": device } } : {}) });
-      openBench(bench.id);
+      openOwn(bench.id);
       useView.setState({ dialog: "none" });
     } catch (error) {
       showError(error);
@@ -70,6 +70,16 @@ function Gallery() {
         }}
       >
         Design a device of your own
+      </Button>
+      <Button
+        fullWidth
+        size="xs"
+        variant="default"
+        mb="sm"
+        leftSection={<IconFolderOpen size={16} />}
+        onClick={() => useView.setState({ dialog: "mine" })}
+      >
+        Open a scenario from disk, or one of mine
       </Button>
       <div className={styles.filters}>
         <TextInput

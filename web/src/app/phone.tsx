@@ -1,5 +1,5 @@
 import { ActionIcon, Button, NativeSelect } from "@mantine/core";
-import { IconPlayerPauseFilled, IconPlayerPlayFilled, IconX } from "@tabler/icons-react";
+import { IconPlayerPauseFilled, IconPlayerPlayFilled, IconShare2, IconX } from "@tabler/icons-react";
 import { useEffect, useRef, useState } from "react";
 import { hasAxes } from "../api/fits";
 import type { Bench } from "../api/types";
@@ -38,6 +38,9 @@ export function Phone() {
             <StateBadge />
           </div>
           <DeviceClock />
+          <ActionIcon size={34} variant="subtle" aria-label="Share this experiment by a link" onClick={actions.share}>
+            <IconShare2 size={19} />
+          </ActionIcon>
         </header>
         <main className={styles.panels}>
           <div className={styles.scope}>

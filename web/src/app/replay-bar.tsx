@@ -11,7 +11,7 @@ import { send, showError } from "../bench/send";
 import { REPLAY_SPEEDS, speedItems } from "../bench/time-scale";
 import { useBench } from "../stream/bench-store";
 import { formatMoment } from "../ui/format";
-import { openAnyBench } from "./first-bench";
+import { openOwnBench } from "./first-bench";
 import styles from "./replay-bar.module.css";
 
 /** While the page plays a recording: where it is, how fast, which span again and again, and the way back. */
@@ -48,7 +48,7 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
     try {
       const id = benchBefore();
       if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
-      else await openAnyBench();
+      else await openOwnBench();
       await api.removeBench(bench.id);
     } catch (error) {
       showError(error);

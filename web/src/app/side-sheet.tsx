@@ -3,7 +3,7 @@ import type { ReactNode } from "react";
 import { useView } from "../bench/view-store";
 
 interface SideSheetProps {
-  name: "keys" | "bench";
+  name: Exclude<ReturnType<typeof useView.getState>["dialog"], "none">;
   title: string;
   size: number;
   children: ReactNode;

@@ -2,7 +2,7 @@ import { notifications } from "@mantine/notifications";
 import { announce } from "../bench/announce";
 import { benchChange, changeBench, type Way } from "../bench/undo";
 import { layoutHistory } from "./layout-history";
-import { arrange } from "./layouts";
+import { putLayout } from "./layouts";
 
 /** Take back what was done last, to the bench or to the layout; or make again what was taken back last. */
 export function takeBack(way: Way): void {
@@ -10,7 +10,7 @@ export function takeBack(way: Way): void {
   const layout = layoutHistory.lastAt(way);
   const sign = way === "undo" ? 1 : -1;
   if (layout !== undefined && (!bench || sign * layout > sign * bench.at)) {
-    layoutHistory.go(way, arrange);
+    layoutHistory.go(way, putLayout);
     announce(way === "undo" ? "Layout as it was before" : "Layout changed again");
   } else if (bench) void changeBench(way);
   else notifications.show({ id: "undoable", message: `There is nothing to ${way}.`, autoClose: 3000 });

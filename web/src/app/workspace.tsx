@@ -1,6 +1,6 @@
 import "dockview-react/dist/styles/dockview.css";
 import { Menu } from "@mantine/core";
-import { IconMaximize, IconMinimize, IconPlus } from "@tabler/icons-react";
+import { IconMaximize, IconMinimize, IconPlus, IconX } from "@tabler/icons-react";
 import {
   DockviewDefaultTab,
   DockviewReact,
@@ -8,15 +8,15 @@ import {
   type IDockviewPanelHeaderProps,
   type IDockviewPanelProps,
 } from "dockview-react";
-import { type FunctionComponent, useEffect, useState } from "react";
+import { type FunctionComponent, type KeyboardEvent, useEffect, useState } from "react";
 import { hasAxes } from "../api/fits";
 import { usePageVisible } from "../api/use-page-visible";
 import { useBench } from "../stream/bench-store";
 import { PanelVisible } from "../ui/panel-visible";
 import "./dock.css";
-import { addPanel, addScope } from "../bench/dock";
+import { addPanel, addScope, closePanel, dockNow } from "../bench/dock";
 import { DOCK_GAP } from "../bench/dock-gap";
-import { attachDock, layOutFor } from "./layouts";
+import { attachDock, keepLayout, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind, suits } from "./panels";
 import { SCOPE_PRESETS } from "./scope-presets";
@@ -32,7 +32,7 @@ export function Workspace() {
     if (axes !== undefined) layOutFor(axes);
   }, [axes]);
   return (
-    <main className="workspace">
+    <main className="workspace" onKeyDownCapture={closeByKey}>
       <DockviewReact
         components={components}
         defaultTabComponent={Tab}
@@ -55,15 +55,52 @@ function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
     }, [api]);
     return (
       <PanelVisible value={shown && page}>
-        <PanelBody kind={kind} params={params} setParams={(next) => api.updateParameters(next)} />
+        <PanelBody
+          kind={kind}
+          params={params}
+          setParams={(next) => {
+            api.updateParameters(next);
+            keepLayout();
+          }}
+        />
       </PanelVisible>
     );
   };
 }
 
-/** A tab is one control; closing a panel is in the menu beside it. */
+/** A tab is one control, so its cross is for the pointer alone; the keyboard closes by Delete, or in the menu. */
 function Tab(props: IDockviewPanelHeaderProps) {
-  return <DockviewDefaultTab hideClose {...props} />;
+  const panel = () => props.containerApi.getPanel(props.api.id);
+  return (
+    <>
+      <DockviewDefaultTab hideClose {...props} />
+      <span
+        className="dock-close"
+        aria-hidden="true"
+        title="Close"
+        onPointerDown={(event) => event.stopPropagation()}
+        onClick={() => {
+          const closing = panel();
+          if (closing) closePanel(closing);
+        }}
+      >
+        <IconX size={12} />
+      </span>
+    </>
+  );
+}
+
+/** Close the panel whose tab has the keyboard, before the dock does it for good; the next tab has it then. */
+function closeByKey(event: KeyboardEvent<HTMLElement>): void {
+  const tab = event.target as HTMLElement;
+  if ((event.key !== "Delete" && event.key !== "Backspace") || !tab.matches("[role=tab]")) return;
+  const panel = dockNow()?.getPanel(tab.dataset.tabPanelId ?? "");
+  if (!panel) return;
+  event.preventDefault();
+  event.stopPropagation();
+  const strip = tab.closest("[role=tablist]");
+  closePanel(panel);
+  strip?.querySelector<HTMLElement>("[role=tab][aria-selected=true]")?.focus();
 }
 
 function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActionsProps) {
@@ -109,7 +146,7 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
           {activePanel && (
             <>
               <Menu.Divider />
-              <Menu.Item onClick={() => activePanel.api.close()}>Close {activePanel.title}</Menu.Item>
+              <Menu.Item onClick={() => closePanel(activePanel)}>Close {activePanel.title}</Menu.Item>
             </>
           )}
         </Menu.Dropdown>

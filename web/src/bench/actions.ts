@@ -5,7 +5,7 @@ import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/jump";
 import { saveFile } from "../ui/save-file";
 import { layoutNow } from "./dock";
-import { openBench } from "./open-bench";
+import { openOwn } from "./open-bench";
 import { send, showError } from "./send";
 import { sendAndTell } from "./tell";
 import { stepTimeScale } from "./time-scale";
@@ -39,6 +39,7 @@ export const actions = {
   },
   keys: () => useView.setState({ dialog: "keys" }),
   newBench: () => useView.setState({ dialog: "bench" }),
+  share: () => useView.setState({ dialog: "share" }),
   /** To a page, and back to the bench from there. */
   page: (name: PageName) => setPage(useView.getState().page === name ? "bench" : name),
   fork: () => void fork(),
@@ -57,7 +58,7 @@ async function fork(snapshot: string | null = null): Promise<void> {
   if (!from) return;
   try {
     const made = await api.fork(from.id, snapshot);
-    openBench(made.id);
+    openOwn(made.id);
     notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
   } catch (error) {
     showError(error);

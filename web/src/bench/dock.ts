@@ -1,10 +1,33 @@
-import type { DockviewApi, SerializedDockview } from "dockview-react";
+import { Button } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
+import type { DockviewApi, IDockviewPanel, SerializedDockview } from "dockview-react";
+import { createElement } from "react";
 import type { Document } from "../api/types";
 import { scopeConfig } from "../stream/scope-config";
 import { withGaps } from "./dock-gap";
 import { useView } from "./view-store";
 
+/** A layout as it is passed on: the panels, whether they are in large type, and for which kind of bench. */
+export interface SharedLayout {
+  dock: SerializedDockview;
+  large: boolean;
+  axes: boolean;
+}
+
+/** A panel that was closed, how all panels stood with it, and how without. */
+interface Closed {
+  panel: SerializedDockview["panels"][string];
+  group: string;
+  index: number;
+  before: SerializedDockview;
+  after: string;
+}
+
+const MOST_CLOSED = 20;
+const CLOSED_NOTICE = "panel-closed";
+
 let current: DockviewApi | undefined;
+let closed: Closed[] = [];
 
 /** The dock, once the page has one; a phone has none. */
 export const dockNow = (): DockviewApi | undefined => current;
@@ -20,6 +43,7 @@ export const layoutNow = () => current?.toJSON() as Document | undefined;
 /** Put the panels as they stood; returns whether this version knows them all. */
 export function restoreLayout(layout: Document | SerializedDockview): boolean {
   try {
+    forgetClosed();
     current?.fromJSON(withGaps(layout as unknown as SerializedDockview));
     requestAnimationFrame(revealActiveTabs);
     return true;
@@ -27,6 +51,54 @@ export function restoreLayout(layout: Document | SerializedDockview): boolean {
     console.warn("the stored layout does not fit this version", error);
     return false;
   }
+}
+
+/** Close a panel; it can be brought back. */
+export function closePanel(panel: IDockviewPanel): void {
+  if (!current) return;
+  const { group, title } = panel;
+  const before = current.toJSON();
+  const index = group.panels.indexOf(panel);
+  panel.api.close();
+  const after = JSON.stringify(current.toJSON().grid);
+  closed = [...closed, { panel: before.panels[panel.id], group: group.id, index, before, after }].slice(-MOST_CLOSED);
+  notifications.hide(CLOSED_NOTICE);
+  notifications.show({ id: CLOSED_NOTICE, title: `${title} closed.`, message: undoButton() });
+}
+
+const undoButton = () =>
+  createElement(
+    Button<"button">,
+    { size: "compact-sm", variant: "default", onClick: () => void reopenClosed() },
+    "Undo",
+  );
+
+/** Another layout is about to stand: what was closed in this one does not belong there. */
+export function forgetClosed(): void {
+  closed = [];
+  notifications.hide(CLOSED_NOTICE);
+}
+
+/** Bring the panel closed last back to its place; false when there is none. */
+export function reopenClosed(): boolean {
+  const last = closed.at(-1);
+  if (!current || !last) return false;
+  closed = closed.slice(0, -1);
+  notifications.hide(CLOSED_NOTICE);
+  const { panel, group, index, before, after } = last;
+  if (current.getPanel(panel.id)) return reopenClosed();
+  if (JSON.stringify(current.toJSON().grid) === after)
+    current.fromJSON(withGaps(before), { reuseExistingPanels: true }); // nothing else has moved
+  else
+    current.addPanel({
+      id: panel.id,
+      component: panel.contentComponent ?? "scope",
+      ...(panel.title ? { title: panel.title } : {}),
+      params: panel.params ?? {},
+      ...(current.getGroup(group) ? { position: { referenceGroup: group, index } } : {}),
+    });
+  current.getPanel(panel.id)?.api.setActive();
+  return true;
 }
 
 /** Open another panel of a kind beside the active one. */

@@ -3,26 +3,42 @@ import { alarm } from "./announce";
 import { useView } from "./view-store";
 
 const PARAMETER = "bench";
-const LAST = "combbench.bench";
+const OWN = "combbench.own";
+const MINE = "combbench.mine";
 
-/** The bench named in the address, if any. */
-export function benchInAddress(): string | undefined {
+/** What the address names, if it does. */
+export function inAddress(name: "bench" | "link" | "layout"): string | undefined {
   const hash = new URLSearchParams(window.location.hash.replace(/^#/, ""));
   const query = new URLSearchParams(window.location.search);
-  return hash.get(PARAMETER) ?? query.get(PARAMETER) ?? undefined;
+  return hash.get(name) ?? query.get(name) ?? undefined;
 }
 
-/** The bench this browser showed last. */
-export const lastBench = (): string | undefined => localStorage.getItem(LAST) ?? undefined;
+/** The bench named in the address, if any. */
+export const benchInAddress = (): string | undefined => inAddress(PARAMETER);
 
-/** Show a bench and put it into the address, so that the link can be shared and back works. */
+/** The bench this browser made last, to come back to. */
+export const ownBench = (): string | undefined => localStorage.getItem(OWN) ?? undefined;
+
+/** The links made in this browser. */
+export const ownLinks = (): string[] => JSON.parse(localStorage.getItem(MINE) ?? "[]") as string[];
+
+/** Remember a link as made here. */
+export const noteOwnLink = (id: string): void => localStorage.setItem(MINE, JSON.stringify([...ownLinks(), id]));
+
+/** Show a bench made from this page, and come back to it from now on. */
+export function openOwn(id: string, replace = false): void {
+  localStorage.setItem(OWN, id);
+  openBench(id, replace);
+}
+
+/** Show a bench and put it into the address, so that others can join it and back works. */
 export function openBench(id: string, replace = false): void {
   const url = new URL(window.location.href);
+  url.searchParams.delete("link");
   url.searchParams.set(PARAMETER, id);
   url.hash = "";
   if (replace) window.history.replaceState(null, "", url);
   else window.history.pushState(null, "", url);
-  localStorage.setItem(LAST, id);
   showBench(id);
 }
 

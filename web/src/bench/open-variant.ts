@@ -1,7 +1,7 @@
 import { api } from "../api/api";
 import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
-import { openBench } from "./open-bench";
+import { openOwn } from "./open-bench";
 import { send } from "./send";
 
 /**
@@ -14,6 +14,6 @@ export async function openVariant(set: Record<string, unknown>, said: string): P
   if (!bench) return;
   const made = await api.variant(bench.id, set);
   if (bench.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
-  openBench(made.id);
+  openOwn(made.id);
   announce(said);
 }

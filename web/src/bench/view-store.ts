@@ -12,11 +12,12 @@ export type PageName = (typeof PAGE_NAMES)[number];
 
 interface ViewStore {
   page: PageName;
-  layout: LayoutName;
+  /** A built-in one, or the name of one of one's own. */
+  layout: string;
   card: CardId;
   /** The sample of a diagnoser that was clicked, to be explained. */
   sample: { diagnoser: string; tick: number } | undefined;
-  dialog: "none" | "keys" | "bench";
+  dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts";
   /** On a phone: the panel shown beside those it always has. */
   extra: string;
   /** Reading size: lectures are read from the last row. */

@@ -3,7 +3,7 @@ import { IconDice5, IconPlayerPlay } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { DeviceCatalogue, Evaluation, ProcessSpread } from "../api/types";
-import { openBench } from "../bench/open-bench";
+import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
@@ -56,7 +56,7 @@ export function Designer() {
     setBusy(true);
     try {
       const wanted = isGyroscope(device) ? gyroscopeBenchOf : benchOf;
-      openBench((await api.createBench(wanted(design, evaluation.title, evaluation.metrics))).id);
+      openOwn((await api.createBench(wanted(design, evaluation.title, evaluation.metrics))).id);
       setPage("bench");
     } catch (error) {
       showError(error);

@@ -3,7 +3,7 @@ import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons
 import { useState } from "react";
 import { api } from "../api/api";
 import type { GalleryCard } from "../api/types";
-import { openBench } from "../bench/open-bench";
+import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
 import { Verdict } from "../ui/verdict";
@@ -18,7 +18,7 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
   const live = async () => {
     setStarting(true);
     try {
-      openBench((await api.createBench({ scenario: card.id, paused: false })).id);
+      openOwn((await api.createBench({ scenario: card.id, paused: false })).id);
       setPage("bench");
     } catch (error) {
       showError(error);

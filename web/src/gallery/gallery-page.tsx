@@ -1,9 +1,10 @@
 import { Button, NativeSelect, TextInput } from "@mantine/core";
-import { IconPlayerTrackNext } from "@tabler/icons-react";
+import { IconFolderOpen, IconPlayerTrackNext } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/use-answer";
 import { showError } from "../bench/send";
+import { useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { Stale } from "../ui/stale";
 import { chapterName, chaptersOf, chosen, EVERYTHING, VERDICTS } from "./chapters";
@@ -79,6 +80,14 @@ export function GalleryPage() {
             {busy > 0 && `, ${busy} under way`}
           </output>
         )}
+        <Button
+          size="xs"
+          variant="default"
+          leftSection={<IconFolderOpen size={16} />}
+          onClick={() => useView.setState({ dialog: "mine" })}
+        >
+          Mine, or from disk
+        </Button>
         <Stale error={error} since={since} onRetry={again} />
         {missing.length > 0 && (
           <Button

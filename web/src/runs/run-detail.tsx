@@ -2,7 +2,7 @@ import { Button } from "@mantine/core";
 import { IconPlayerPlay } from "@tabler/icons-react";
 import { api } from "../api/api";
 import type { GalleryCard, Run } from "../api/types";
-import { openBench } from "../bench/open-bench";
+import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
 import { ExpectationTable } from "../gallery/expectation-table";
@@ -45,7 +45,7 @@ export function RunDetail({ run }: { run: Run }) {
     );
   const live = () =>
     api.createBench({ scenario: run.scenario_id, seed: run.seeds[0], paused: false }).then(({ id }) => {
-      openBench(id);
+      openOwn(id);
       setPage("bench");
     }, showError);
   const hasTrace = summary.ticks > 0;

@@ -8,6 +8,8 @@ export interface ScopeConfig {
   trigger: Trigger;
   /** Whether cursors and figures are shown. */
   measure?: boolean;
+  /** Where cursors A and B stand, as shares of the width. */
+  cursors?: [number, number];
 }
 
 export const DEFAULT_TRIGGER: Trigger = {

@@ -4,7 +4,7 @@ import { useState } from "react";
 import { api } from "../../api/api";
 import type { Bench } from "../../api/types";
 import { actions } from "../../bench/actions";
-import { openBench } from "../../bench/open-bench";
+import { openBench, ownBench } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { formatShort } from "../../ui/format";
@@ -50,6 +50,7 @@ export function BenchMenu() {
           >
             {b.title}
             <small className={styles.menuNote}>
+              {b.id === ownBench() && "yours · "}
               {b.state} · {b.controller.replaceAll("_", " ")} · {b.watchers} watching
             </small>
           </Menu.Item>

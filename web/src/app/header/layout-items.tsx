@@ -1,26 +1,42 @@
 import { Menu } from "@mantine/core";
 import { type LayoutName, useView } from "../../bench/view-store";
-import { setLayout } from "../layouts";
+import { FROM_LINK, isBuiltIn, ownLayouts, resetLayout, setLayout } from "../layouts";
 import styles from "./header.module.css";
 
-const LAYOUTS: [LayoutName, string][] = [
+const BUILT_IN: [LayoutName, string][] = [
   ["lecture", "Scope, lanes, faults and 3D in large type (1)"],
   ["lab", "Bench and faults beside the scopes (2)"],
   ["research", "Everything (3)"],
 ];
 
-/** The built-in layouts, as items of a menu. */
+/** The layouts, built in and of one's own, as items of a menu. */
 export function LayoutItems() {
   const layout = useView((s) => s.layout);
-  return LAYOUTS.map(([name, what]) => (
-    <Menu.Item
-      key={name}
-      aria-current={name === layout}
-      fw={name === layout ? 650 : undefined}
-      onClick={() => setLayout(name)}
-    >
-      {name.charAt(0).toUpperCase() + name.slice(1)} layout
+  const own = ownLayouts().map(({ name }) => name);
+  return (
+    <>
+      {BUILT_IN.map(([name, what]) => (
+        <Item key={name} name={name} title={`${name.charAt(0).toUpperCase() + name.slice(1)} layout`} what={what} />
+      ))}
+      {own.map((name) => (
+        <Item key={name} name={name} title={name} what="yours" />
+      ))}
+      {layout === FROM_LINK && (
+        <Item name={FROM_LINK} title="Layout of the link" what="until you save it or choose another" />
+      )}
+      <Menu.Divider />
+      {isBuiltIn(layout) && <Menu.Item onClick={resetLayout}>Reset the {layout} layout</Menu.Item>}
+      <Menu.Item onClick={() => useView.setState({ dialog: "layouts" })}>Save, rename or share a layout…</Menu.Item>
+    </>
+  );
+}
+
+function Item({ name, title, what }: { name: string; title: string; what: string }) {
+  const isHere = useView((s) => s.layout === name);
+  return (
+    <Menu.Item aria-current={isHere} fw={isHere ? 650 : undefined} onClick={() => !isHere && setLayout(name)}>
+      {title}
       <small className={styles.menuNote}>{what}</small>
     </Menu.Item>
-  ));
+  );
 }

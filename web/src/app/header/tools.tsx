@@ -12,6 +12,7 @@ import {
   IconMoon,
   IconPlayerRecord,
   IconPlayerRecordFilled,
+  IconShare2,
   IconSun,
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
@@ -56,6 +57,7 @@ export function Tools() {
     { label: "Save what happened as a scenario (S)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
     { label: "Fork: a copy of this bench from now on (F)", icon: <IconGitFork size={19} />, run: actions.fork },
     { label: "Keep this moment, to fork from later (K)", icon: <IconBookmark size={19} />, run: actions.keep },
+    { label: "Share this experiment by a link (Shift S)", icon: <IconShare2 size={19} />, run: actions.share },
   ];
   const page: Tool[] = [
     {

@@ -17,12 +17,14 @@ interface ScopeCursorsProps {
   /** Time at a share of the width, in words. */
   say(share: number): string;
   onMove(at: CursorPair): void;
+  /** They have been let go of. */
+  onRest(): void;
 }
 
 const NAMES = ["A", "B"] as const;
 
 /** Two upright lines to be dragged, or moved with the arrow keys; they stay where they are on the screen. */
-export function ScopeCursors({ area, at, say, onMove }: ScopeCursorsProps) {
+export function ScopeCursors({ area, at, say, onMove, onRest }: ScopeCursorsProps) {
   const move = (which: number, share: number) => {
     const next: CursorPair = [...at];
     next[which] = Math.min(1, Math.max(0, share));
@@ -58,7 +60,9 @@ export function ScopeCursors({ area, at, say, onMove }: ScopeCursorsProps) {
           aria-valuetext={say(at[which])}
           onPointerDown={drag(which)}
           onPointerMove={drag(which)}
+          onPointerUp={onRest}
           onKeyDown={key(which)}
+          onKeyUp={onRest}
         >
           <b>{name}</b>
         </div>

@@ -46,7 +46,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   );
   const [pixels, setPixels] = useState(0);
   const [area, setArea] = useState<PlotArea | undefined>(undefined);
-  const [cursors, setCursors] = useState<CursorPair>([0.25, 0.75]);
+  const [cursors, setCursors] = useState<CursorPair>(kept.cursors ?? [0.25, 0.75]);
   const [trigger, setTrigger] = useState<TriggerState>("none");
 
   const subscription = useMemo(() => {
@@ -141,7 +141,15 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
               aria-label="Plot. Arrow keys move, plus and minus zoom, L returns to live."
             />
             <EnvelopeNote traces={traces} plot={plot} />
-            {config.measure && area && <ScopeCursors area={area} at={cursors} say={sayTime} onMove={setCursors} />}
+            {config.measure && area && (
+              <ScopeCursors
+                area={area}
+                at={cursors}
+                say={sayTime}
+                onMove={setCursors}
+                onRest={() => onChange({ ...kept, cursors })}
+              />
+            )}
           </div>
           {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}
         </>

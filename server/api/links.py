@@ -1,0 +1,104 @@
+"""Links: an experiment or a layout of the page by a short id, for ever."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any, Literal
+
+from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field
+
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import RateLimited, ServiceDep
+from server.bench.benches import prepare, usual_scale
+from server.bench.experiment import beginning_of, experiment_of
+from server.bench.recordings import Layout
+from server.bench.status import Bench
+from server.errors import ApiError
+from server.store.links import Content, Link, LinkDetail
+
+router = APIRouter(prefix="/links", tags=["links"], route_class=StrictRoute)
+
+LONGEST_TITLE, LONGEST_NOTE = 200, 2000
+
+
+class NewLink(Body):
+    """What a link is to lead to: a bench as it is now, a scenario, or a layout of the page alone."""
+
+    bench: str | None = Field(None, description="Id of a live bench; what was done to it is kept")
+    scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
+    layout: Layout = Field(None, description="Layout of the page, its cursors in it")
+    title: str = Field("", max_length=LONGEST_TITLE, description="That of the scenario unless given")
+    note: str = Field("", max_length=LONGEST_NOTE)
+
+
+class Words(Body):
+    """What can be changed of a link."""
+
+    title: str | None = Field(None, min_length=1, max_length=LONGEST_TITLE)
+    note: str | None = Field(None, max_length=LONGEST_NOTE)
+
+
+class LinkList(BaseModel):
+    """Links, newest first."""
+
+    links: list[Link]
+
+
+@router.post("", status_code=201, dependencies=[RateLimited])
+async def make_link(body: NewLink, service: ServiceDep, response: Response) -> LinkDetail:
+    """Keep an experiment or a layout; it stays when the bench goes."""
+    if body.bench is not None and body.scenario is not None:
+        raise ApiError(422, "invalid", "give a bench or a scenario, not both", "scenario")
+    if body.bench is None and body.scenario is None and body.layout is None:
+        raise ApiError(422, "invalid", "needs a bench, a scenario or a layout", "bench")
+    await service.keeping.room()
+    experiment, title = None, body.title
+    if body.bench is not None:
+        session = service.benches.get(body.bench)
+        experiment = await service.engine.call(experiment_of, session)
+        title = title or session.scenario.head.title or session.scenario.id
+    elif body.scenario is not None:
+        scenario, board = await asyncio.to_thread(prepare, body.scenario, {}, None)
+        experiment = beginning_of(scenario, board, usual_scale(board))
+        title = title or scenario.head.title or scenario.id
+    content = Content(experiment=experiment, layout=body.layout)
+    link = await service.links.keep(content, title[:LONGEST_TITLE] or "Layout", body.note)
+    response.headers["Location"] = f"/api/v1/links/{link.id}"
+    return link
+
+
+@router.get("")
+async def list_links(service: ServiceDep, kind: Literal["experiment", "layout"] | None = None) -> LinkList:
+    """List the links."""
+    return LinkList(links=await service.links.all(kind))
+
+
+@router.get("/{link_id}")
+async def get_link(link_id: str, service: ServiceDep) -> LinkDetail:
+    """Return a link and what it leads to."""
+    return await service.links.get(link_id)
+
+
+@router.patch("/{link_id}", dependencies=[RateLimited])
+async def change_link(link_id: str, body: Words, service: ServiceDep) -> LinkDetail:
+    """Change the title or the note of a link."""
+    return await service.links.change(link_id, **body.model_dump(exclude_none=True))
+
+
+@router.delete("/{link_id}", status_code=204, dependencies=[RateLimited])
+async def delete_link(link_id: str, service: ServiceDep) -> None:
+    """Delete a link; benches opened by it stay."""
+    await service.links.get(link_id)
+    await service.links.delete(link_id)
+
+
+@router.post("/{link_id}/open", status_code=201, dependencies=[RateLimited])
+async def open_link(link_id: str, service: ServiceDep, response: Response) -> Bench:
+    """Open a fresh bench that repeats an experiment to its tick, and goes on or stands as it did.
+
+    `opened` says whether its bits are those of then.
+    """
+    session = await service.open_link(await service.links.get(link_id))
+    response.headers["Location"] = f"/api/v1/benches/{session.id}"
+    return await service.opened(session)

@@ -1,0 +1,97 @@
+"""An experiment: a scenario and what was done on its bench up to a tick, from which the same bits come again."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from pydantic import BaseModel
+
+from core.board.board import Board
+from core.errors import InputError
+from scenarios.key import code_version
+from scenarios.run import build
+from scenarios.schema import Scenario
+from server.bench.session import Session
+from server.errors import ApiError
+from server.version import VERSION
+
+THIS_VERSION = f"{VERSION} {code_version()}"
+
+
+class Experiment(BaseModel):
+    """What a bench was made from, what was done to it, and how it stood."""
+
+    scenario: dict[str, Any]
+    events: list[dict[str, Any]]
+    tick: int
+    digest: str
+    version: str
+    running: bool
+    time_scale: float | None
+
+
+def experiment_of(session: Session) -> Experiment:
+    """Return what happened on a bench (a job of the engine).
+
+    Raises
+    ------
+    ApiError
+        For a recording that is played: it is kept already.
+    """
+    if session.replay_of:
+        raise ApiError(409, "conflict", "a recording that is played is no experiment", hint="share the bench it is of")
+    board = session.board
+    document = {**session.scenario.document, **board.base}
+    events = board.save()["events"]
+    plain = json.loads(json.dumps({"scenario": document, "events": events}, default=str))
+    return Experiment(
+        **plain,
+        tick=board.tick,
+        digest=board.digest(),
+        version=THIS_VERSION,
+        running=session.is_started,
+        time_scale=session.pacer.scale,
+    )
+
+
+def beginning_of(scenario: Scenario, board: Board, time_scale: float | None) -> Experiment:
+    """Return the experiment that a scenario is before anything has been done."""
+    return Experiment(
+        scenario=json.loads(json.dumps(scenario.document, default=str)),
+        events=board.save()["events"],
+        tick=0,
+        digest=board.digest(),
+        version=THIS_VERSION,
+        running=True,
+        time_scale=time_scale,
+    )
+
+
+def rebuilt(experiment: Experiment, most_ticks: int) -> tuple[Scenario, Board]:
+    """Return the scenario of an experiment, and its board at tick 0 with all that was done waiting.
+
+    Raises
+    ------
+    ApiError
+        If it is longer than may be repeated, or this version cannot read it.
+    """
+    if experiment.tick > most_ticks:
+        text = f"it has run for {experiment.tick} ticks; at most {most_ticks} are repeated (max_run_ticks)"
+        raise ApiError(409, "too_long", text, hint="open its scenario instead, from tick 0")
+    try:
+        scenario = Scenario.load(experiment.scenario)
+        return scenario, build(Scenario.load({**experiment.scenario, "events": experiment.events}))
+    except InputError as error:
+        text = f"this version cannot repeat it: {error}"
+        raise ApiError(409, "conflict", text, hint=f"it was made with {experiment.version}") from None
+
+
+def repeat(session: Session, experiment: Experiment) -> bool:
+    """Bring a bench that nobody has yet to the tick of an experiment; return whether its bits are those of then."""
+    board = session.board
+    while board.tick < experiment.tick and session.advance(experiment.tick - board.tick):
+        pass
+    if isinstance(board, Board) and board.tick == experiment.tick:
+        board.apply_due()
+    return board.tick == experiment.tick and board.digest() == experiment.digest

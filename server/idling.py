@@ -1,0 +1,68 @@
+"""Who has been at each bench, and when: benches that nobody needs are found here."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from server.bench.session import Session
+
+EVERY_S = 5.0
+"""Between two looks at the benches."""
+
+
+class Idling:
+    """Notes when each bench was last watched or asked for.
+
+    Parameters
+    ----------
+    watchers : callable
+        Counts the pages that watch a bench.
+    idle_minutes : float
+        How long a bench stays without anybody; 0 is for ever.
+    clock : callable
+        Monotonic seconds.
+    """
+
+    def __init__(
+        self, watchers: Callable[[str], int], idle_minutes: float, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._watchers, self._patience_s, self.clock = watchers, 60.0 * idle_minutes, clock
+        self._seen: dict[str, float] = {}
+
+    def saw(self, bench_id: str) -> None:
+        """Note that somebody is at a bench now."""
+        self._seen[bench_id] = self.clock()
+
+    def forget(self, bench_id: str) -> None:
+        """Forget a bench that is gone."""
+        self._seen.pop(bench_id, None)
+
+    def left_s(self, session: Session) -> float | None:
+        """Return how long a bench still stays if nobody comes; none if it is needed."""
+        if not self._patience_s or self._is_needed(session):
+            return None
+        seen = self._seen.setdefault(session.id, self.clock())
+        return max(0.0, seen + self._patience_s - self.clock())
+
+    def due(self, sessions: list[Session]) -> list[Session]:
+        """Return the benches that may go now; of those that are needed, note that they are."""
+        for session in sessions:
+            if self._is_needed(session):
+                self.saw(session.id)
+        return [session for session in sessions if self.left_s(session) == 0.0]
+
+    def _is_needed(self, session: Session) -> bool:
+        """Say whether a bench has a watcher, is to be kept, or has something to come or to lose.
+
+        Commands that wait on a bench that stands still are kept with it; on one that runs their moment comes.
+        Moments that were kept of a bench would be lost.
+        """
+        recordings = session.recordings
+        return (
+            session.keep
+            or self._watchers(session.id) > 0
+            or bool(recordings.under_way or recordings.armed or session.snapshots.all())
+            or (session.is_running and len(session.board.pending) > 0)
+            or bool(session.steps)
+        )

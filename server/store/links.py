@@ -1,0 +1,148 @@
+"""Links: experiments and layouts by a short id for ever, and benches that were let go until they come back."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict
+from sqlalchemy import delete, func, select, update
+
+from server.bench.experiment import THIS_VERSION, Experiment
+from server.errors import ApiError, not_found
+from server.store.database import Database
+from server.store.models import LinkRow
+
+Kind = Literal["experiment", "layout", "bench"]
+LETTERS = "23456789abcdefghjkmnpqrstuvwxyz"
+"""Those of an id that is read aloud or copied from a board: none that looks like another."""
+ID_LENGTH = 8
+MOST_CONTENT = 2_000_000
+"""Most characters of what a link leads to, as JSON."""
+MOST_LET_GO = 500
+"""Benches that were let go and can come back; beyond, the oldest is forgotten."""
+SHOWN = ("id", "kind", "title", "note", "scenario_id", "tick", "digest", "version", "bytes", "created")
+
+
+class Link(BaseModel):
+    """A link as lists show it."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: str
+    kind: Kind
+    title: str
+    note: str
+    scenario_id: str | None
+    tick: int | None
+    digest: str | None
+    version: str
+    bytes: int
+    created: datetime
+
+
+class Content(BaseModel):
+    """What a link leads to: an experiment, a layout of the page, or both."""
+
+    experiment: Experiment | None = None
+    layout: dict[str, Any] | None = None
+
+
+class LinkDetail(Link):
+    """A link with what it leads to."""
+
+    content: Content
+
+
+class Links:
+    """Keeps links and finds them.
+
+    Parameters
+    ----------
+    database : Database
+        Where the rows are.
+    most : int
+        How many links there may be, benches that were let go apart.
+    """
+
+    def __init__(self, database: Database, most: int) -> None:
+        self._database, self._most = database, most
+
+    async def keep(self, content: Content, title: str, note: str = "", bench_id: str | None = None) -> LinkDetail:
+        """Keep an experiment or a layout by a new id, or a bench that is let go by its own.
+
+        Raises
+        ------
+        ApiError
+            If it is too large, or there are too many.
+        """
+        plain = content.model_dump(mode="json")
+        size = len(json.dumps(plain))
+        if size > MOST_CONTENT:
+            text = f"what was done and how it looked take {size} characters, at most {MOST_CONTENT}"
+            raise ApiError(413, "too_large", text, hint="save it as a scenario instead")
+        done = content.experiment
+        row = LinkRow(
+            id=bench_id or "".join(secrets.choice(LETTERS) for _ in range(ID_LENGTH)),
+            kind="bench" if bench_id else "experiment" if done else "layout",
+            title=title,
+            note=note,
+            scenario_id=done and str(done.scenario.get("id", ""))[:200],
+            tick=done and done.tick,
+            digest=done and done.digest,
+            version=done.version if done else THIS_VERSION,
+            content=plain,
+            bytes=size,
+        )
+        if bench_id is None:
+            count = select(func.count()).select_from(LinkRow).where(LinkRow.kind != "bench")
+            if await self._database.run(lambda session: session.scalar(count) or 0) >= self._most:
+                text = f"{self._most} links are kept, the limit (max_links)"
+                raise ApiError(409, "too_many_links", text, hint="delete some first")
+        await self._database.run(lambda session: session.merge(row))
+        if bench_id is not None:
+            await self._forget_oldest()
+        return await self.get(row.id)
+
+    async def all(self, kind: Kind | None = None) -> list[Link]:
+        """List links, newest first; benches that were let go are none."""
+        columns = [getattr(LinkRow, name) for name in SHOWN]
+        query = select(*columns).where(LinkRow.kind != "bench").order_by(LinkRow.created.desc())
+        if kind is not None:
+            query = query.where(LinkRow.kind == kind)
+        rows = await self._database.run(lambda session: list(session.execute(query)))
+        return [Link.model_validate(row) for row in rows]
+
+    async def get(self, link_id: str) -> LinkDetail:
+        """Return a link and what it leads to, or refuse with 404."""
+        row = await self._database.run(lambda session: session.get(LinkRow, link_id[:64]))
+        if row is None:
+            raise not_found("link", link_id, "it may have been deleted")
+        return LinkDetail.model_validate(row)
+
+    async def let_go(self, bench_id: str) -> LinkDetail | None:
+        """Return the bench that was let go by this id, if there is one."""
+        row = await self._database.run(lambda session: session.get(LinkRow, bench_id[:64]))
+        return LinkDetail.model_validate(row) if row is not None and row.kind == "bench" else None
+
+    async def change(self, link_id: str, **values: Any) -> LinkDetail:
+        """Change the title or the note of a link; what it leads to stays."""
+        await self.get(link_id)
+        if values:
+            statement = update(LinkRow).where(LinkRow.id == link_id).values(**values)
+            await self._database.run(lambda session: session.execute(statement))
+        return await self.get(link_id)
+
+    async def delete(self, link_id: str) -> None:
+        """Delete a link, or forget a bench that was let go."""
+        await self._database.run(lambda session: session.execute(delete(LinkRow).where(LinkRow.id == link_id)))
+
+    async def _forget_oldest(self) -> None:
+        """Keep the benches that were let go within their number."""
+        newest = select(LinkRow.id).where(LinkRow.kind == "bench").order_by(LinkRow.created.desc())
+        beyond = newest.offset(MOST_LET_GO)
+        ids = await self._database.run(lambda session: list(session.scalars(beyond)))
+        if ids:
+            await self._database.run(lambda session: session.execute(delete(LinkRow).where(LinkRow.id.in_(ids))))

@@ -1,0 +1,129 @@
+import { ActionIcon, Button, TextInput } from "@mantine/core";
+import { IconCheck, IconLink, IconPencil, IconTrash } from "@tabler/icons-react";
+import { type FormEvent, useState } from "react";
+import { api } from "../api/api";
+import { showError } from "../bench/send";
+import { useView } from "../bench/view-store";
+import styles from "./dialogs.module.css";
+import { deleteLayout, ownLayouts, refusal, renameLayout, saveLayout, setLayout, sharedLayout } from "./layouts";
+import { LinkBox } from "./link-box";
+import { SideSheet } from "./side-sheet";
+
+/** Layouts of one's own: save, rename, delete, share. */
+export function LayoutSheet() {
+  return (
+    <SideSheet name="layouts" title="Layouts" size={440}>
+      <Layouts />
+    </SideSheet>
+  );
+}
+
+function Layouts() {
+  const layout = useView((s) => s.layout);
+  const [renaming, setRenaming] = useState<string | undefined>(undefined);
+  const [link, setLink] = useState<{ id: string; name: string } | undefined>(undefined);
+  const [, setRound] = useState(0);
+  const again = () => setRound((n) => n + 1);
+  const own = ownLayouts();
+
+  const share = async () => {
+    try {
+      const made = await api.makeLink({ layout: { ...sharedLayout() }, title: layout, note: "" });
+      setLink({ id: made.id, name: layout });
+    } catch (error) {
+      showError(error);
+    }
+  };
+
+  return (
+    <>
+      <Name label="Save the panels as they stand" button="Save" onName={(name) => saveLayout(name)} />
+      <p className={styles.remark}>A saved layout keeps what you move in it from then on. It stays in this browser.</p>
+      {own.length > 0 && (
+        <ul className={styles.gallery} aria-label="Your layouts">
+          {own.map(({ name }) => (
+            <li key={name}>
+              {renaming === name ? (
+                <Name
+                  label={`New name of ${name}`}
+                  button="Rename"
+                  first={name}
+                  onName={(next) => {
+                    renameLayout(name, next);
+                    setRenaming(undefined);
+                  }}
+                />
+              ) : (
+                <>
+                  <h3>{name}</h3>
+                  <div className={styles.buttons}>
+                    <Button size="xs" variant="light" disabled={layout === name} onClick={() => setLayout(name)}>
+                      {layout === name ? "Shown" : "Show"}
+                    </Button>
+                    <ActionIcon variant="subtle" aria-label={`Rename ${name}`} onClick={() => setRenaming(name)}>
+                      <IconPencil size={16} />
+                    </ActionIcon>
+                    <ActionIcon
+                      variant="subtle"
+                      aria-label={`Delete ${name}`}
+                      onClick={() => {
+                        if (!window.confirm(`Delete the layout ${name} for good?`)) return;
+                        deleteLayout(name);
+                        again();
+                      }}
+                    >
+                      <IconTrash size={16} />
+                    </ActionIcon>
+                  </div>
+                </>
+              )}
+            </li>
+          ))}
+        </ul>
+      )}
+      <h3 className={styles.heading}>Share</h3>
+      {link && link.name === layout ? (
+        <LinkBox query={`layout=${link.id}`} what={`Link of the layout ${link.name}`} />
+      ) : (
+        <Button variant="default" leftSection={<IconLink size={16} />} onClick={share}>
+          Make a link of the {layout} layout
+        </Button>
+      )}
+    </>
+  );
+}
+
+interface NameProps {
+  label: string;
+  button: string;
+  first?: string;
+  onName(name: string): void;
+}
+
+/** A name to be given to a layout, refused where it stands. */
+function Name({ label, button, first = "", onName }: NameProps) {
+  const [name, setName] = useState(first);
+  const [error, setError] = useState<string | undefined>(undefined);
+  const give = (event: FormEvent) => {
+    event.preventDefault();
+    const wrong = name.trim() === first && first ? undefined : refusal(name);
+    setError(wrong);
+    if (wrong) return;
+    onName(name.trim());
+    setName("");
+  };
+  return (
+    <form className={styles.name} onSubmit={give}>
+      <TextInput
+        label={label}
+        value={name}
+        error={error}
+        autoFocus={first !== ""}
+        onChange={(e) => setName(e.currentTarget.value)}
+      />
+      <Button type="submit" variant="light" leftSection={<IconCheck size={16} />}>
+        {button}
+      </Button>
+    </form>
+  );
+}

@@ -1,0 +1,78 @@
+import { Textarea } from "@mantine/core";
+import { useEffect, useRef, useState } from "react";
+import { api } from "../api/api";
+import { ApiError } from "../api/api-error";
+import { noteOwnLink } from "../bench/open-bench";
+import { showError } from "../bench/send";
+import { useBench } from "../stream/bench-store";
+import { EmptyState } from "../ui/empty-state";
+import { formatTick } from "../ui/format";
+import styles from "./dialogs.module.css";
+import { sharedLayout } from "./layouts";
+import { LinkBox } from "./link-box";
+import { SideSheet } from "./side-sheet";
+
+const LONGEST_NOTE = 2000;
+
+/** Share the experiment: a link to this very moment, with how the page looks and a note. */
+export function ShareSheet() {
+  return (
+    <SideSheet name="share" title="Share this experiment" size={440}>
+      <Share />
+    </SideSheet>
+  );
+}
+
+interface Made {
+  id: string;
+  tick: number;
+}
+
+function Share() {
+  const bench = useBench((s) => s.bench?.id);
+  const [made, setMade] = useState<Made | undefined>(undefined);
+  const [error, setError] = useState<ApiError | undefined>(undefined);
+  const [note, setNote] = useState("");
+  const kept = useRef("");
+  const asked = useRef<string | undefined>(undefined);
+
+  useEffect(() => {
+    if (!bench || asked.current === bench) return;
+    asked.current = bench; // the moment shared is that of the click
+    const layout = sharedLayout();
+    api.makeLink({ bench, title: "", note: "", layout: layout ? { ...layout } : null }).then(
+      ({ id, tick }) => {
+        noteOwnLink(id);
+        setMade({ id, tick: tick ?? 0 });
+      },
+      (refused: unknown) => (refused instanceof ApiError ? setError(refused) : Promise.reject(refused)),
+    );
+  }, [bench]);
+
+  const keepNote = () => {
+    if (!made || note === kept.current) return;
+    kept.current = note;
+    api.changeLink(made.id, { note }).catch(showError);
+  };
+
+  if (error) return <EmptyState title={error.body.message}>{error.body.hint}</EmptyState>;
+  if (!made) return <EmptyState title="Making the link">What was done on this bench is being kept.</EmptyState>;
+  return (
+    <>
+      <p className={styles.remark}>
+        It opens a bench of its own at {formatTick(made.tick)}: the same bits, the layout, the cursors and the note.
+        What you do here afterwards is not in it.
+      </p>
+      <LinkBox query={`link=${made.id}`} what="Link" onCopy={keepNote} />
+      <Textarea
+        label="Note, read above the bench by whoever opens the link"
+        maxLength={LONGEST_NOTE}
+        autosize
+        minRows={2}
+        value={note}
+        onChange={(e) => setNote(e.currentTarget.value)}
+        onBlur={keepNote}
+      />
+    </>
+  );
+}
