@@ -1,4 +1,5 @@
 import { expect, it } from "vitest";
+import cases from "./metric-cases.json";
 import { metricName, metricTitle } from "./metric-name";
 
 it("says a metric in words and keeps whose it is", () => {
@@ -8,10 +9,5 @@ it("says a metric in words and keeps whose it is", () => {
   expect(metricName("beam_width.softer_5_um_pct")).toBe("beam width softer 5 µm %");
 });
 
-it("titles an axis with the unit its name ends in", () => {
-  expect(metricTitle("noise_um")).toBe("noise, µm");
-  expect(metricTitle("device.force_n_per_v")).toBe("force, N/V");
-  expect(metricTitle("integral_v_um_ms")).toBe("integral, V/(µm·ms)");
-  expect(metricTitle("diagnosis.kalman.mean_delay_samples")).toBe("kalman mean delay, samples");
-  expect(metricTitle("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
-});
+it.each(Object.entries(cases))("titles %s as reports do: %s", (metric, title) =>
+  expect(metricTitle(metric)).toBe(title));
