@@ -18,6 +18,7 @@ from server.bench.status import Bench
 from server.kernels import Kernels
 from server.lag import Lateness, probe
 from server.metrics import Metrics
+from server.runs.figures import Figures
 from server.runs.jobs import Jobs
 from server.runs.sweeps import Sweeps
 from server.security.limits import Buckets
@@ -53,6 +54,7 @@ class Service:
         self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
         self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
         self.jobs = Jobs(self.database, settings, self.metrics)
+        self.figures = Figures(self.jobs, settings)
         self.keeping = Keeping(self.database, settings)
         self.sweeps = Sweeps(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
@@ -74,6 +76,7 @@ class Service:
         await self.sweeps.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run()))
+        self.figures.start(self.kernels.compiled)
         self.is_ready = True
         try:
             yield
@@ -85,6 +88,7 @@ class Service:
             await self.kernels.stop()
             if self.viewers is not None:
                 await self.viewers.close()
+            await self.figures.stop()
             await self.sweeps.close()
             await self.jobs.close()
             await self.benches.close()

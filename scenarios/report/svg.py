@@ -111,8 +111,13 @@ def thin(x: FloatArray, y: FloatArray, columns: int = 400) -> tuple[list[float],
 
 
 def picture_file(chart: Chart, size: Size = CARD) -> str:
-    """Return a picture as a file of its own, with its style; no background, so that it suits light and dark."""
-    return paint(chart, size).replace(">", f"><style>{style()}</style>", 1) + "\n"
+    """Return a picture as a file of its own; no background, so that it suits light and dark."""
+    return with_style(paint(chart, size))
+
+
+def with_style(svg: str) -> str:
+    """Return a painted chart with its style, as a file needs it."""
+    return svg.replace(">", f"><style>{style()}</style>", 1) + "\n"
 
 
 def paint(chart: Chart, size: Size = REPORT) -> str:

@@ -12,14 +12,12 @@ from pydantic import BaseModel, Field
 from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, CutDep, file_name, report_response, stored_trace
+from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
 from server.bench.benches import prepare
 from server.runs.jobs import Run
 from server.store.traces import Format
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=StrictRoute)
-
-SVG = "image/svg+xml"
 
 
 class NewRun(Body):

@@ -12,11 +12,12 @@ import json
 import logging
 import multiprocessing
 import shutil
+from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import select, update
@@ -40,6 +41,7 @@ ACTIVE = ("queued", "running")
 MAX_ATTEMPTS = 3
 """Most starts of one run: a run that so often was under way when the server or its worker ended is the likely cause."""
 CANCEL_S = 5.0
+T = TypeVar("T")
 
 
 class Run(BaseModel):
@@ -171,6 +173,22 @@ class Jobs:
             await asyncio.to_thread((place / CANCEL).touch)
         await asyncio.wait([task], timeout=CANCEL_S)
         return await self.get(run_id)
+
+    async def apart(self, function: Callable[..., T], *arguments: object) -> T:
+        """Call a function in a worker process, in turn with the runs.
+
+        Raises
+        ------
+        RuntimeError
+            When the worker died.
+        """
+        async with self._turn:
+            pool = self._executor()
+            try:
+                return await asyncio.wrap_future(pool.submit(function, *arguments))
+            except BrokenProcessPool:
+                self._pool = None if self._pool is pool else self._pool
+                raise RuntimeError("its worker process died") from None
 
     async def file(self, run_id: str, ending: str) -> tuple[Run, Path]:
         """Return a run that is done, and one of its files."""

@@ -978,9 +978,29 @@ export interface paths {
         };
         /**
          * Get Gallery
-         * @description Show every library scenario: claim, expectations, and the result of its run.
+         * @description Show every library scenario: claim, expectations, figure, and what was measured.
          */
         get: operations["get_gallery_api_v1_gallery_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/gallery/{scenario_id}/figure": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Figure
+         * @description Return the figure of a library scenario: what it is about, small, with axes and units.
+         */
+        get: operations["get_figure_api_v1_gallery__scenario_id__figure_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2015,6 +2035,23 @@ export interface components {
             equation: components["schemas"]["EquationCard"];
         };
         /**
+         * FigureProgress
+         * @description How many figures are there.
+         */
+        FigureProgress: {
+            /** Made */
+            made: number;
+            /** Total */
+            total: number;
+            /** Is Making */
+            is_making: boolean;
+            /**
+             * Problem
+             * @description What went wrong last, in one line
+             */
+            problem: string;
+        };
+        /**
          * FittedCurve
          * @description The response of the device found, and that of the nominal one.
          */
@@ -2060,10 +2097,11 @@ export interface components {
         Gallery: {
             /** Cards */
             cards: components["schemas"]["GalleryCard"][];
+            figures: components["schemas"]["FigureProgress"];
         };
         /**
          * GalleryCard
-         * @description A scenario of the library and its run, if there has been one with this version of the code.
+         * @description A scenario of the library, its figure, and its run if there has been one with this version of the code.
          */
         GalleryCard: {
             /** Id */
@@ -2078,6 +2116,26 @@ export interface components {
             claim: string;
             /** Verdict */
             verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /**
+             * Demo
+             * @description Made for first visits and lectures
+             */
+            demo: boolean;
+            /**
+             * Topics
+             * @description Device, controllers, diagnosers and faults it is about
+             */
+            topics: string[];
+            /**
+             * Figure
+             * @description Key of its figure at /gallery/{id}/figure; null until it is made
+             */
+            figure: string | null;
+            /**
+             * Problem
+             * @description Why it has no figure, if it cannot be made
+             */
+            problem: string;
             /**
              * Study
              * @description Kind of the study; null for a scenario that runs on a bench
@@ -2101,7 +2159,7 @@ export interface components {
             digest: string;
             /**
              * Ok
-             * @description Whether all expectations hold; null until it has been run
+             * @description Whether all expectations hold; null until they have been measured
              */
             ok: boolean | null;
             /** Expectations */
@@ -5987,6 +6045,37 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_figure_api_v1_gallery__scenario_id__figure_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scenario_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
                 };
             };
             /** @description Refused or failed */
