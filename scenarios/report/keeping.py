@@ -37,7 +37,9 @@ def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) 
     columns: dict[str, np.ndarray[Any, Any]] = dict(zip(CLOCK, (ticks, ticks * result.board.dt_ms), strict=True))
     for signal in result.kept:
         columns[signal.name] = result.signal(signal.name)
-    write_parquet(stem.with_suffix(".parquet"), columns, {"scenario": document, "seed": result.seed})
+    about = {"scenario": document, "seed": result.seed}
+    units = {signal.name: signal.unit for signal in result.kept}
+    write_parquet(stem.with_suffix(".parquet"), columns, about, units)
     write_text(stem.with_suffix(".html"), run_report(result, summary))
     write_text(stem.with_suffix(".svg"), picture_file(figure(result)))
     write_text(stem.with_suffix(".py"), script(document, seeds, summary["digest"], stem.name + ".py"))

@@ -21,7 +21,7 @@ from server.api.deps import RateLimited, ServiceDep
 from server.api.files import SVG
 from server.errors import not_found
 from server.runs.figures import Figure, Figures
-from server.runs.jobs import Run
+from server.runs.listing import Run
 
 router = APIRouter(prefix="/gallery", tags=["gallery"], route_class=StrictRoute)
 

@@ -722,7 +722,7 @@ export interface paths {
         };
         /**
          * List Runs
-         * @description List runs.
+         * @description List runs, newest first; text, state and scenario choose among them.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
@@ -731,6 +731,66 @@ export interface paths {
          * @description Queue a headless run; it does not disturb the live benches.
          */
         post: operations["start_run_api_v1_runs_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/remove": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Remove Runs
+         * @description Remove runs that have ended, and their files; all that have ended if none is named.
+         */
+        post: operations["remove_runs_api_v1_runs_remove_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/compare": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Compare Finished Runs
+         * @description Put finished runs side by side: figures, differences from the first run, and the signals that all have.
+         */
+        get: operations["compare_finished_runs_api_v1_runs_compare_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/compare/trace": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Compare Traces
+         * @description Return one signal of several finished runs, to be laid over each other.
+         */
+        get: operations["compare_traces_api_v1_runs_compare_trace_get"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -758,7 +818,11 @@ export interface paths {
         delete: operations["cancel_run_api_v1_runs__run_id__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Rename Run
+         * @description Give a run a name.
+         */
+        patch: operations["rename_run_api_v1_runs__run_id__patch"];
         trace?: never;
     };
     "/api/v1/runs/{run_id}/trace": {
@@ -850,7 +914,7 @@ export interface paths {
         };
         /**
          * List Sweeps
-         * @description List campaigns.
+         * @description List campaigns, newest first; text, state and scenario choose among them.
          */
         get: operations["list_sweeps_api_v1_sweeps_get"];
         put?: never;
@@ -859,6 +923,26 @@ export interface paths {
          * @description Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one.
          */
         post: operations["start_sweep_api_v1_sweeps_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/remove": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Remove Sweeps
+         * @description Remove campaigns that have ended; all that have ended if none is named.
+         */
+        post: operations["remove_sweeps_api_v1_sweeps_remove_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -886,7 +970,11 @@ export interface paths {
         delete: operations["cancel_sweep_api_v1_sweeps__sweep_id__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Rename Sweep
+         * @description Give a campaign a name.
+         */
+        patch: operations["rename_sweep_api_v1_sweeps__sweep_id__patch"];
         trace?: never;
     };
     "/api/v1/sweeps/{sweep_id}/points": {
@@ -1829,6 +1917,17 @@ export interface components {
             amplitude_v: number;
         };
         /**
+         * Ended
+         * @description Runs or campaigns that have ended.
+         */
+        Ended: {
+            /**
+             * Ids
+             * @description All that have ended when left out
+             */
+            ids?: string[] | null;
+        };
+        /**
          * EquationCard
          * @description An equation, with its erratum when the printed one is wrong.
          */
@@ -2050,6 +2149,24 @@ export interface components {
              * @description What went wrong last, in one line
              */
             problem: string;
+        };
+        /**
+         * FigureRow
+         * @description One figure of all runs.
+         */
+        FigureRow: {
+            /** Metric */
+            metric: string;
+            /**
+             * Values
+             * @description In the order of the runs; null where a run has no such figure
+             */
+            values: (number | null)[];
+            /**
+             * Differences
+             * @description Each value less that of the first run
+             */
+            differences: (number | null)[];
         };
         /**
          * FittedCurve
@@ -2634,6 +2751,17 @@ export interface components {
             time_scale?: number | null;
         };
         /**
+         * NewLabel
+         * @description A name for a run or a campaign.
+         */
+        NewLabel: {
+            /**
+             * Label
+             * @description At most 120 characters; empty takes the name away
+             */
+            label: string;
+        };
+        /**
          * NewRun
          * @description A scenario to run.
          */
@@ -2655,6 +2783,12 @@ export interface components {
             };
             /** Seed */
             seed?: number | null;
+            /**
+             * Label
+             * @description Name for the run, at most 120 characters
+             * @default
+             */
+            label?: string;
             /**
              * Seeds
              * @description First seed and the one behind the last
@@ -2684,6 +2818,12 @@ export interface components {
             sweep: string | {
                 [key: string]: unknown;
             };
+            /**
+             * Label
+             * @description Name for the campaign, at most 120 characters
+             * @default
+             */
+            label?: string;
         };
         /**
          * NoiseFigure
@@ -3083,6 +3223,14 @@ export interface components {
             recordings: components["schemas"]["Recording"][];
         };
         /**
+         * Removed
+         * @description How many were removed.
+         */
+        Removed: {
+            /** Removed */
+            removed: number;
+        };
+        /**
          * Replay
          * @description The speed of a replay.
          */
@@ -3190,6 +3338,12 @@ export interface components {
             scenario_id: string;
             /** Title */
             title: string;
+            /**
+             * Label
+             * @description Name that somebody gave it
+             * @default
+             */
+            label?: string;
             /** Seeds */
             seeds: number[];
             /**
@@ -3211,12 +3365,58 @@ export interface components {
             } | null;
         };
         /**
+         * RunComparison
+         * @description Runs side by side.
+         */
+        RunComparison: {
+            /** Runs */
+            runs: components["schemas"]["Run"][];
+            /** Figures */
+            figures: components["schemas"]["FigureRow"][];
+            /** Signals */
+            signals: components["schemas"]["RunSignal"][];
+        };
+        /**
          * RunList
          * @description Runs, newest first.
          */
         RunList: {
             /** Runs */
             runs: components["schemas"]["Run"][];
+        };
+        /**
+         * RunSignal
+         * @description A signal whose trace all runs have.
+         */
+        RunSignal: {
+            /** Name */
+            name: string;
+            /** Unit */
+            unit: string;
+        };
+        /**
+         * RunTrace
+         * @description One signal of one run, thinned to the smallest and largest value of each column.
+         */
+        RunTrace: {
+            /** Id */
+            id: string;
+            /** Time Ms */
+            time_ms: number[];
+            /** Values */
+            values: number[];
+        };
+        /**
+         * RunTraces
+         * @description One signal of several runs, to be laid over each other.
+         */
+        RunTraces: {
+            /** Signal */
+            signal: string;
+            /** Unit */
+            unit: string;
+            /** Runs */
+            runs: components["schemas"]["RunTrace"][];
         };
         /**
          * SafeBoundary
@@ -3566,6 +3766,12 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+            /**
+             * Label
+             * @description Name that somebody gave it
+             * @default
+             */
+            label?: string;
             /** Version */
             version: string;
             /**
@@ -5503,7 +5709,14 @@ export interface operations {
     };
     list_runs_api_v1_runs_get: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Words in the name, the title or the id of the scenario */
+                text?: string;
+                /** @description Only those in this state */
+                state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
+                /** @description Only those of this scenario */
+                scenario?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -5572,6 +5785,105 @@ export interface operations {
             };
         };
     };
+    remove_runs_api_v1_runs_remove_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Ended"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Removed"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    compare_finished_runs_api_v1_runs_compare_get: {
+        parameters: {
+            query: {
+                /** @description Runs, the one to compare with first */
+                ids: string[];
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunComparison"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    compare_traces_api_v1_runs_compare_trace_get: {
+        parameters: {
+            query: {
+                /** @description Runs, the one to compare with first */
+                ids: string[];
+                signal: string;
+                columns?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunTraces"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     get_run_api_v1_runs__run_id__get: {
         parameters: {
             query?: never;
@@ -5613,6 +5925,41 @@ export interface operations {
             cookie?: never;
         };
         requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Run"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    rename_run_api_v1_runs__run_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLabel"];
+            };
+        };
         responses: {
             /** @description Successful Response */
             200: {
@@ -5771,7 +6118,14 @@ export interface operations {
     };
     list_sweeps_api_v1_sweeps_get: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Words in the name, the title or the id of the scenario */
+                text?: string;
+                /** @description Only those in this state */
+                state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
+                /** @description Only those of this scenario */
+                scenario?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -5840,6 +6194,39 @@ export interface operations {
             };
         };
     };
+    remove_sweeps_api_v1_sweeps_remove_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Ended"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Removed"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     get_sweep_api_v1_sweeps__sweep_id__get: {
         parameters: {
             query?: never;
@@ -5881,6 +6268,41 @@ export interface operations {
             cookie?: never;
         };
         requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    rename_sweep_api_v1_sweeps__sweep_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLabel"];
+            };
+        };
         responses: {
             /** @description Successful Response */
             200: {

@@ -1,7 +1,7 @@
 import type { DiagnosisTally, PointTally } from "../api/types";
 import type { ChartLine } from "../picture/line-field";
 import { formatShort } from "../ui/format";
-import { metricName } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 
 /** Figures shown before anybody chooses. */
 const USUAL = [/\.correct_fraction$/, /\.mean_delay_samples$/, /\.false_switches$/, /^control\.rms_error_um$/];
@@ -12,7 +12,7 @@ export const labelText = (value: string | number) => (typeof value === "number" 
 /** What a point is called: the values it differs by. */
 export function pointName(labels: PointTally["labels"]): string {
   const parts = Object.entries(labels).map(([path, value]) =>
-    path === "variant" ? labelText(value) : `${metricName(path.split(".").at(-1) ?? path)} ${labelText(value)}`,
+    path === "variant" ? labelText(value) : `${metricTitle(path.split(".").at(-1) ?? path)} ${labelText(value)}`,
   );
   return parts.join(", ") || "all runs";
 }

@@ -41,6 +41,12 @@ export function metricTitle(metric: string): string {
   return unit ? `${name}, ${unitText(unit)}` : name;
 }
 
+/** The unit that the name of a metric ends in; empty if it has none. */
+export const metricUnit = (metric: string): string => metricTitle(metric).split(", ")[1] ?? "";
+
+/** A text of the library with its units as they are printed: "20 us" reads "20 µs". */
+export const micro = (text: string): string => text.replace(/(\d)\s?u([msNVg])\b/g, "$1\u00a0µ$2");
+
 /** The words of a piece, and the unit its longest ending names: V/µm before µm. */
 function withoutUnit(piece: string): { words: string; unit: string } {
   const parts = piece.split("_");
