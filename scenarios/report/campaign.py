@@ -23,7 +23,11 @@ SHARE = (0.0, 1.0)
 
 def name_of(labels: dict[str, str | float]) -> str:
     """Name a point."""
-    return ", ".join(f"{_axis(key)} {say(value)}" for key, value in labels.items()) or "all runs"
+    parts = []
+    for path, value in labels.items():
+        name, _, unit = _axis(path).partition(", ")
+        parts.append(f"{name} {say(value)}" + (f"\u00a0{unit}" if unit else ""))
+    return ", ".join(parts) or "all runs"
 
 
 def _axis(path: str) -> str:

@@ -22,7 +22,7 @@ from core.format import format_figure
 from core.theory.rate_noise import LEAST_TIMES, averaging_times
 from core.units import DEG_H_PER_DEG_S
 from scenarios.report.axis import Axis
-from scenarios.report.metric_name import metric_title
+from scenarios.report.metric_name import metric_title, micro
 from scenarios.report.palette import Look, hypothesis, signal
 from scenarios.report.svg import Bar, Chart, Lane, Mark, Series, thin
 from scenarios.run import Result
@@ -63,7 +63,7 @@ def marks(result: Result) -> list[Mark]:
 
 
 def _title(result: Result) -> str:
-    return result.scenario.head.title or result.scenario.id
+    return micro(result.scenario.head.title) or result.scenario.id
 
 
 def _names(result: Result) -> set[str]:
@@ -224,7 +224,7 @@ def _sensed(result: Result) -> Chart:
     """Show how far the sensor is from the truth over some periods."""
     at = _last_periods(result.signal("plant.displacement"))
     error = (result.signal("sensor.displacement") - result.signal("plant.displacement"))[at]
-    line = Series("error", *thin(_time(result, at), error, COLUMNS), look=signal("sensor.displacement", 0))
+    line = Series("error", *thin(_time(result, at), error, COLUMNS), look=Look(3))
     return Chart(_title(result), Axis(TIME, "ms"), Axis("measured less true", "um"), [line])
 
 

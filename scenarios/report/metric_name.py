@@ -6,6 +6,7 @@ The page has the same rules; ``web/src/ui/metric-cases.json`` holds both to the 
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,11 @@ def metric_title(metric: str) -> str:
         said.append(words)
     name = ": ".join([*whose, *said])
     return f"{name}, {unit_text(unit)}" if unit else name
+
+
+def micro(text: str) -> str:
+    """Return a text of the library with its units as they are printed: "20 us" is "20 µs"."""
+    return re.sub(r"(\d)\s?u([msNVg])\b", "\\1\u00a0µ\\2", text)
 
 
 def _without_unit(piece: str) -> tuple[str, str]:

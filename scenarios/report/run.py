@@ -11,7 +11,7 @@ from core.format import format_count, format_figure, format_in, format_number, f
 from scenarios.report.axis import Axis
 from scenarios.report.figure import TIME, figure, marks
 from scenarios.report.html import as_toml, page
-from scenarios.report.metric_name import metric_title
+from scenarios.report.metric_name import metric_title, micro
 from scenarios.report.palette import hypothesis, signal
 from scenarios.report.svg import Chart, Series, thin
 from scenarios.run import Result
@@ -42,7 +42,7 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
     entries = [entry for entry in result.board.log if entry.kind != "scheduled"]
     return page(
         "run.html",
-        head.title or result.scenario.id,
+        micro(head.title) or result.scenario.id,
         head=head,
         seeds=f"seeds {seeds[0]} to {seeds[-1]}, charts of the first" if seeds else f"seed {summary['seed']}",
         ticks=ticks if summary["ticks"] else "",
@@ -70,12 +70,12 @@ def _expectation(entry: dict[str, Any]) -> list[str]:
     """Return a row of the expectations."""
     return [
         metric_title(entry["metric"]),
-        entry["published"],
-        entry["expected"],
+        micro(entry["published"]),
+        entry["expected"].replace(">=", "≥").replace("<=", "≤"),
         format_figure(entry["metric"], entry["measured"], 6),
         "holds" if entry["ok"] else "does not hold",
         entry["verdict"] or "",
-        entry["note"],
+        micro(entry["note"]),
     ]
 
 

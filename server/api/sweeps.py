@@ -14,7 +14,7 @@ from scenarios.report.script import campaign_script
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, table_response
-from server.api.runs import Ended, NewLabel, Removed, FilterDep
+from server.api.runs import Ended, FilterDep, NewLabel, Removed
 from server.errors import ApiError
 from server.runs import apart
 from server.runs.listing import clean_label

@@ -47,12 +47,14 @@ const PLACES: readonly [number, (card: GalleryCard) => string][] = [
 ];
 
 /** How well a card fits a word: the best place it stands in, twice as well at the start of a word; 0 if nowhere. */
-function fit(card: GalleryCard, word: string): number {
+function weightOf(card: GalleryCard, word: string): number {
+  const start = new RegExp(`(?:^|[\\s(-])${word.replaceAll(/[\\^$.*+?()[\]{}|]/g, "\\$&")}`);
+  const isNumber = /^\d+$/.test(word); // which is no part of another number
   let best = 0;
   for (const [weight, of] of PLACES) {
-    const text = ` ${of(card).toLowerCase()}`;
-    const at = text.indexOf(word);
-    if (at > 0) best = Math.max(best, /[\s(]/.test(text[at - 1]) || text.includes(` ${word}`) ? 2 * weight : weight);
+    const text = of(card).toLowerCase();
+    if (start.test(text)) best = Math.max(best, 2 * weight);
+    else if (!isNumber && text.includes(word)) best = Math.max(best, weight);
   }
   return best;
 }
@@ -66,7 +68,7 @@ export function chosen(cards: readonly GalleryCard[], filter: GalleryFilter): Ga
       if (filter.verdict === "open") return card.ok !== true;
       return filter.verdict === "all" || card.verdict === filter.verdict;
     })
-    .map((card) => ({ card, fits: words.map((word) => fit(card, word)) }))
+    .map((card) => ({ card, fits: words.map((word) => weightOf(card, word)) }))
     .filter(({ fits }) => fits.every((one) => one > 0))
     .map(({ card, fits }) => ({ card, total: fits.reduce((sum, one) => sum + one, 0) }))
     .sort((a, b) => b.total - a.total || Number(b.card.demo) - Number(a.card.demo) || byChapter(a.card, b.card))

@@ -75,7 +75,11 @@ export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
       <footer>
         <Verdict verdict={card.verdict} borneOut={card.ok === true} />
         <span className={styles.ok} data-ok={card.ok}>
-          {card.ok === null ? "" : card.ok ? "measured as expected" : "other than expected"}
+          {card.ok === null || card.expectations.length === 0
+            ? ""
+            : card.ok
+              ? "measured as expected"
+              : "other than expected"}
         </span>
         <div className={styles.buttons}>
           {card.state === "done" && card.run && (

@@ -55,6 +55,7 @@ export function GalleryPage() {
           type="search"
           placeholder="Title, device, controller, fault"
           aria-label="Search the gallery"
+          w={240}
           value={filter.words}
           onChange={(e) => set({ words: e.currentTarget.value })}
         />

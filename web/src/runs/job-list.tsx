@@ -99,7 +99,7 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
                 {stateText(job)}
               </span>
               <time dateTime={job.created} title={new Date(job.created).toLocaleString()}>
-                {new Date(job.created).toLocaleTimeString([], { timeStyle: "short" })}
+                {whenText(new Date(job.created))}
               </time>
               {job.state === "running" && (
                 <Progress value={job.progress * 100} size="sm" w="100%" aria-label={`Progress of ${job.title}`} />
@@ -123,3 +123,9 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
     </>
   );
 }
+
+/** The time of day, or the date of another day. */
+const whenText = (moment: Date) =>
+  moment.toDateString() === new Date().toDateString()
+    ? moment.toLocaleTimeString([], { timeStyle: "short" })
+    : moment.toLocaleDateString([], { dateStyle: "short" });

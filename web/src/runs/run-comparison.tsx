@@ -1,11 +1,11 @@
-import { Select } from "@mantine/core";
+import { Checkbox, Select } from "@mantine/core";
 import { useCallback, useState } from "react";
 import { api } from "../api/api";
 import type { RunComparison as Comparison } from "../api/types";
 import { useAnswer } from "../api/use-answer";
 import { LineChart } from "../picture/line-chart";
 import { EmptyState } from "../ui/empty-state";
-import { formatFigure, formatSi } from "../ui/format";
+import { formatCount, formatFigure, formatSi } from "../ui/format";
 import { metricTitle } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { unitText } from "../ui/unit-scale";
@@ -19,7 +19,7 @@ const never = () => undefined;
 export function RunComparison({ ids }: { ids: string }) {
   const ask = useCallback(() => api.compareRuns(ids.split(",")), [ids]);
   const { value, error, since, again } = useAnswer(ask, never);
-  const [onlyDifferent, setOnlyDifferent] = useState(false);
+  const [onlyDifferent, setOnlyDifferent] = useState(true);
   if (!value)
     return error ? (
       <Stale error={error} since={since} onRetry={again} />
@@ -27,15 +27,18 @@ export function RunComparison({ ids }: { ids: string }) {
       <EmptyState title="Comparing">Figures and traces come from the server.</EmptyState>
     );
   const names = namesOf(value);
-  const rows = value.figures.filter((row) => !onlyDifferent || row.differences.some((one) => one !== 0));
+  const different = value.figures.filter((row) => row.differences.some((one) => one !== 0));
+  const rows = onlyDifferent ? different : value.figures;
   return (
     <article className={styles.result} aria-label="Comparison">
-      <h2>{value.runs.length} runs side by side</h2>
+      <h2>{formatCount(value.runs.length, "run")} side by side</h2>
       <Traces ids={ids} comparison={value} names={names} />
-      <label className={styles.note}>
-        <input type="checkbox" checked={onlyDifferent} onChange={(e) => setOnlyDifferent(e.currentTarget.checked)} />{" "}
-        Only figures that differ
-      </label>
+      <Checkbox
+        size="xs"
+        label={`Only the ${formatCount(different.length, "figure")} that differ`}
+        checked={onlyDifferent}
+        onChange={(e) => setOnlyDifferent(e.currentTarget.checked)}
+      />
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: a table that scrolls is reached by the keyboard */}
       <section className={styles.wide} tabIndex={0} aria-label="Figures of the runs">
         <table className={styles.table}>
