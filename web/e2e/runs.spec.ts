@@ -43,7 +43,7 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   await page.getByRole("button", { name: "Start 4000 runs" }).click();
   await page.getByRole("button", { name: "Cancel Campaign ch5-seven-step" }).click({ timeout: 30_000 });
   const jobs = page.getByRole("region", { name: "Runs and campaigns" });
-  await expect(jobs.getByText("cancelled")).toBeVisible({ timeout: 30_000 });
+  await expect(jobs.getByRole("listitem").getByText("cancelled")).toBeVisible({ timeout: 30_000 });
 
   await page.getByRole("textbox", { name: "Seeds", exact: true }).fill("3");
   await page.getByRole("button", { name: "Start 6 runs" }).click();
