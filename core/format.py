@@ -106,8 +106,10 @@ def format_share(share: float, decimals: int = 4) -> str:
     return _part(share, 1.0, "", decimals)
 
 
-def format_figure(metric: str, value: float, digits: int = 4) -> str:
-    """Write a measured figure by the name of its metric; what is whole, such as a count, is written whole."""
+def format_figure(metric: str, value: float | None, digits: int = 4) -> str:
+    """Write a measured figure by the name of its metric, none as a dash; what is whole, as a count is, whole."""
+    if value is None:
+        return NOTHING
     if metric.endswith("_fraction"):
         return format_share(value, digits)
     return format_number(value, 0) if float(value).is_integer() else format_si(value, "", digits)
@@ -120,7 +122,11 @@ def format_count(count: float, noun: str) -> str:
 
 def tick_labels(ticks: Sequence[float]) -> list[str]:
     """Label the ticks of an axis with as many decimals as its steps need."""
-    scale = unit_scale("", max(map(abs, ticks), default=0.0))
+    return labels_on(unit_scale("", max(map(abs, ticks), default=0.0)), ticks)
+
+
+def labels_on(scale: UnitScale, ticks: Sequence[float]) -> list[str]:
+    """Label the ticks of an axis whose title says the unit of its scale."""
     shown = [round_to(tick * scale.factor, 12) for tick in ticks]
     decimals = max((_decimals_of(tick, 9) for tick in shown), default=0)
     return [format_number(tick, decimals) + (scale.exponent if tick else "") for tick in shown]

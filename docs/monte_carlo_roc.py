@@ -14,7 +14,8 @@ import math
 import subprocess
 from pathlib import Path
 
-from scenarios.report.svg import Series, chart
+from scenarios.report.axis import Axis
+from scenarios.report.svg import REPORT, Chart, Series, picture_file
 
 RUNS = 100
 FOLDER = Path("monte-carlo-roc")
@@ -53,15 +54,16 @@ for point in points:
     best = gain.index(max(gain))
     odds = 10.0 ** roc["log10_odds"][best]
     print(
-        f"noise {point['labels']['sensor.noise_um']} um: act above a probability of {odds / (1.0 + odds):.3f}, "
+        f"noise {point['labels']['sensor.noise_um']} µm: act above a probability of {odds / (1.0 + odds):.3f}, "
         f"detect {roc['detection'][best + 1]:.3f} with {roc['false_alarm'][best + 1]:.3f} false alarms"
     )
 
 # %% The curves as a drawing; the whole report is monte-carlo-roc/report.html
 curves = [
-    Series(f"{point['labels']['sensor.noise_um']} um", roc["false_alarm"], roc["detection"])
+    Series(f"{point['labels']['sensor.noise_um']} µm", roc["false_alarm"], roc["detection"])
     for point in points
     for roc in [point["diagnosis"]["kalman"]["roc"]]
 ]
-drawing = chart("Faults told from noise", "false alarms", "detections", curves, (0.0, 1.0), (0.0, 1.0))
-(FOLDER / "roc.html").write_text(f"<!doctype html><meta charset=utf-8>{drawing}")
+whole = (0.0, 1.0)
+chart = Chart("Faults told from noise", Axis("false alarms", "", whole), Axis("detections", "", whole), curves)
+(FOLDER / "roc.svg").write_text(picture_file(chart, REPORT), "utf-8")

@@ -112,7 +112,7 @@ def show_run(summary: dict[str, Any]) -> None:
         spread = summary.get("metrics_std", {}).get(name)
         say(f"  {name:<44} {format_figure(name, value, 6)}" + (f" ± {format_short(spread, '', 2)}" if spread else ""))
     for entry in summary["expectations"]:
-        measured = "-" if entry["measured"] is None else format_figure(entry["metric"], entry["measured"], 6)
+        measured = format_figure(entry["metric"], entry["measured"], 6)
         say(f"  {'ok  ' if entry['ok'] else 'MISS'} {entry['metric']} {entry['expected']}: {measured}")
 
 
@@ -173,7 +173,7 @@ def gallery(
             for text in summary["warnings"]:
                 say(f"       warning: {text}")
             for entry in summary["expectations"]:
-                measured = "-" if entry["measured"] is None else format_figure(entry["metric"], entry["measured"], 6)
+                measured = format_figure(entry["metric"], entry["measured"], 6)
                 say(f"       {entry['metric']:<44} {entry['expected']:<18} {measured}")
     raise typer.Exit(0 if all(summary["ok"] for summary in summaries) else 1)
 

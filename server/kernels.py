@@ -64,6 +64,11 @@ class Kernels:
                     process.terminate()
             await process.wait()
 
+    async def compiled(self) -> None:
+        """Wait until all kernels are compiled, or cannot be."""
+        if self._task is not None:
+            await asyncio.wait([self._task])
+
     async def stop(self) -> None:
         """End the compiler."""
         if self._task is not None:

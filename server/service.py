@@ -21,6 +21,7 @@ from server.idling import EVERY_S, Idling
 from server.kernels import Kernels
 from server.lag import Lateness, probe
 from server.metrics import Metrics
+from server.runs.figures import Figures
 from server.runs.jobs import Jobs
 from server.runs.sweeps import Sweeps
 from server.security.limits import Buckets
@@ -61,6 +62,7 @@ class Service:
         self.links = Links(self.database, settings.max_links)
         self.idling = Idling(self._present, settings.idle_minutes)
         self.jobs = Jobs(self.database, settings, self.metrics)
+        self.figures = Figures(self.jobs, settings)
         self.keeping = Keeping(self.database, settings)
         self.sweeps = Sweeps(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
@@ -84,6 +86,7 @@ class Service:
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run()))
         tasks.append(asyncio.create_task(self._watch_idle()))
+        self.figures.start(self.kernels.compiled)
         self.is_ready = True
         try:
             yield
@@ -95,6 +98,7 @@ class Service:
             await self.kernels.stop()
             if self.viewers is not None:
                 await self.viewers.close()
+            await self.figures.stop()
             await self.sweeps.close()
             await self.jobs.close()
             await self.benches.close()

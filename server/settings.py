@@ -81,6 +81,9 @@ class Settings(BaseSettings):
     run_workers: int = Field(
         1, ge=0, le=64, description="Processes for headless runs, and as many for campaigns; 0 refuses them."
     )
+    figures: bool = Field(
+        True, description="Make the figures of the gallery that are missing after a start, at low priority."
+    )
     scheduler: str = Field("", description="Dask scheduler for campaigns; processes of this machine if unset.")
     log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
     log_level: str = Field("INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe line logged.")

@@ -23,6 +23,11 @@ def library() -> tuple[Scenario, ...]:
     return tuple(_read(name) for name in ids())
 
 
+def is_demo(name: str) -> bool:
+    """Return whether a scenario is made for first visits and lectures; its id says so."""
+    return name.endswith("first-look") or name.startswith("demo-")
+
+
 def get(name: str) -> Scenario:
     """Return one scenario of the library; no other is read.
 

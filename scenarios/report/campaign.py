@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
 from typing import Any
 
 import pyarrow as pa
@@ -12,16 +11,28 @@ from core.format import format_count, format_figure, format_share, format_short
 from scenarios.campaign.outcome import Outcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import DiagnosisTally, PointTally
-from scenarios.report.html import as_toml, page, say, table
-from scenarios.report.svg import Series, chart
+from scenarios.report.axis import Axis
+from scenarios.report.html import as_toml, page, say
+from scenarios.report.metric_name import metric_title
+from scenarios.report.svg import Chart, Series
 
 USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
 MOST_CURVES = 16
+SHARE = (0.0, 1.0)
 
 
 def name_of(labels: dict[str, str | float]) -> str:
     """Name a point."""
-    return ", ".join(f"{key.rsplit('.', 1)[-1]} {say(value)}" for key, value in labels.items()) or "all runs"
+    parts = []
+    for path, value in labels.items():
+        name, _, unit = _axis(path).partition(", ")
+        parts.append(f"{name} {say(value)}" + (f"\u00a0{unit}" if unit else ""))
+    return ", ".join(parts) or "all runs"
+
+
+def _axis(path: str) -> str:
+    """Name a number that was varied, by the end of its path."""
+    return metric_title(path.rsplit(".", 1)[-1])
 
 
 def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
@@ -36,40 +47,34 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
     """
     head = sweep.base.head
     done = sum(point.runs for point in points)
-    body = [
-        f"<p>{escape(head.title or sweep.base.id)}: {done} of {len(sweep)} runs, "
-        f"{format_count(len(sweep.points), 'point')} with {format_count(len(sweep.seeds), 'seed')} each "
-        f"({sweep.seeds[0]} to {sweep.seeds[-1]}).</p>"
-    ]
     measured = {name for point in points for name in point.metrics}
     shown = [entry.metric for entry in head.expect if entry.metric in measured]
     shown += [name for name in sorted(measured) if name.endswith(USUAL) and name not in shown]
     shown = list(dict.fromkeys(shown))
     axes = list(dict.fromkeys(name for point in points for name in point.labels))
-    body.append("<h2>Points</h2>")
-    body.append(
-        table(
-            [*axes, "runs", "expectations hold", "tripped", *(f"{name} (mean ± std)" for name in shown)],
-            (
-                [
-                    *(point.labels.get(axis, "") for axis in axes),
-                    *(point.runs, point.ok, point.tripped),
-                    *(_mean(point, name) for name in shown),
-                ]
-                for point in points
-            ),
-        )
+    means = [f"{metric_title(name)} (mean ± std)" for name in shown]
+    return page(
+        "campaign.html",
+        sweep.head.title or sweep.head.id,
+        scenario=head.title or sweep.base.id,
+        progress=f"{say(done)} of {say(len(sweep))} runs, {format_count(len(sweep.points), 'point')} with "
+        f"{format_count(len(sweep.seeds), 'seed')} each ({sweep.seeds[0]} to {sweep.seeds[-1]}).",
+        head=[*map(_axis, axes), "runs", "expectations hold", "tripped", *means],
+        points=[
+            [
+                *(point.labels.get(axis, "") for axis in axes),
+                *(point.runs, point.ok, point.tripped),
+                *(_mean(point, name) for name in shown),
+            ]
+            for point in points
+        ],
+        errors=[f"{name_of(point.labels)}: {text}" for point in points for text in point.errors],
+        trends=_trends(points, axes, shown),
+        diagnosers=[
+            _diagnoser(name, points) for name in dict.fromkeys(name for point in points for name in point.diagnosis)
+        ],
+        document=as_toml(sweep.document),
     )
-    errors = [f"{name_of(point.labels)}: {text}" for point in points for text in point.errors]
-    if errors:
-        body.append("<h2>Runs that could not be carried out</h2><ul class='miss'>")
-        body += [f"<li>{escape(text)}</li>" for text in errors]
-        body.append("</ul>")
-    body.append(_trends(points, axes, shown))
-    for diagnoser in dict.fromkeys(name for point in points for name in point.diagnosis):
-        body.append(_diagnoser(diagnoser, points))
-    body.append(f"<h2>Campaign</h2><pre>{escape(as_toml(sweep.document))}</pre>")
-    return page(sweep.head.title or sweep.head.id, "".join(body))
 
 
 def _mean(point: PointTally, name: str) -> str:
@@ -77,7 +82,7 @@ def _mean(point: PointTally, name: str) -> str:
     return "" if spread is None else f"{format_figure(name, spread.mean)} ± {format_short(spread.std, '', 2)}"
 
 
-def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[str]) -> str:
+def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[str]) -> list[Chart]:
     """Draw every figure shown over every number that was varied, one line for each combination of the rest."""
     charts = []
     for axis in axes:
@@ -100,12 +105,12 @@ def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[s
                 )
                 for rest, group in groups.items()
             ]
-            charts.append(f"<div>{chart(name, axis, 'mean ± std', lines)}</div>")
-    return f'<h2>Figures</h2><div class="side">{"".join(charts)}</div>' if charts else ""
+            charts.append(Chart(metric_title(name), Axis(_axis(axis)), Axis("mean ± std"), lines))
+    return charts
 
 
-def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
-    """Show one diagnoser: curves of all points, then confusion point by point."""
+def _diagnoser(name: str, points: Sequence[PointTally]) -> dict[str, Any]:
+    """Return one diagnoser: curves of all points, then confusion point by point."""
     entries = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
     drawn = entries[:MOST_CURVES]
     curves = [
@@ -113,28 +118,23 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> str:
         for label, entry in drawn
         if entry.roc is not None
     ]
-    parts = [f'<h2>Diagnoser {escape(name)}</h2><div class="side">']
+    charts = []
     if curves:
         title = "Receiver operating characteristic, sample by sample"
-        parts.append(f"<div>{chart(title, 'false alarms', 'detections', curves, (0.0, 1.0), (0.0, 1.0))}</div>")
+        charts.append(Chart(title, Axis("false alarms", "", SHARE), Axis("detections", "", SHARE), curves))
     delays = [_delay_curve(label, entry) for label, entry in drawn if entry.delays]
     if delays:
-        longest = max(curve.x[-1] for curve in delays)
-        drawing = chart("Detection delay", "samples", "share entries by then", delays, (0.0, longest), (0.0, 1.0))
-        parts.append(f"<div>{drawing}</div>")
-    parts.append("</div>")
-    if len(entries) > MOST_CURVES:
-        parts.append(f"<p>Of {len(entries)} points the first {MOST_CURVES} are drawn; the table of runs has all.</p>")
+        x = Axis("samples", "", (0.0, max(curve.x[-1] for curve in delays)))
+        charts.append(Chart("Detection delay", x, Axis("share entries by then", "", SHARE), delays))
+    tables = []
     for label, entry in drawn:
         total = [max(1, sum(row)) for row in entry.confusion]
         rows = [
             [truth, *(format_share(count / all_of) for count in row), sum(row)]
             for truth, row, all_of in zip(entry.names, entry.confusion, total, strict=True)
         ]
-        missed = f"; {entry.missed} changes were never found" if entry.missed else ""
-        parts.append(f"<h3>{escape(label)}: truth (rows) and verdict (columns), shares of samples{missed}</h3>")
-        parts.append(table(["truth", *entry.names, "samples"], rows))
-    return "".join(parts)
+        tables.append({"name": label, "names": list(entry.names), "rows": rows, "missed": entry.missed})
+    return {"name": name, "charts": charts, "points": len(entries), "tables": tables}
 
 
 def _delay_curve(label: str, entry: DiagnosisTally) -> Series:

@@ -1,53 +1,44 @@
-"""Reports as one HTML file that needs nothing else: its style, its tables."""
+"""Reports as one HTML file that needs nothing else: templates, filled in with every text escaped."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
-from html import escape
+from pathlib import Path
 from typing import Any
 
 import tomlkit
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from core.format import format_short
+from core.format import format_number, format_short
 from scenarios.key import code_version
+from scenarios.report.metric_name import micro
+from scenarios.report.palette import style
+from scenarios.report.svg import paint
 
-STYLE = """
-:root { color-scheme: light dark }
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 70rem; padding: 0 1rem }
-table { border-collapse: collapse; margin: .5rem 0 1.5rem; font-variant-numeric: tabular-nums }
-th, td { padding: .15rem .6rem; text-align: right; border-bottom: 1px solid #8884 }
-th:first-child, td:first-child { text-align: left }
-.wide { overflow-x: auto } .side { display: flex; flex-wrap: wrap; gap: 1.5rem; align-items: start }
-svg text { font: 11px system-ui, sans-serif; fill: currentColor } svg .title { font-weight: 600 }
-svg .x { text-anchor: middle } svg .y { text-anchor: end } svg .grid { stroke: #8884; fill: none }
-svg .mark { stroke: #888; stroke-dasharray: 2 2 }
-.keys { font-size: 13px } .key { margin-right: 1rem; white-space: nowrap } pre { overflow-x: auto }
-.miss { color: #c33 } footer { opacity: .7; margin-top: 3rem }
-"""
+TEMPLATES = Environment(
+    loader=FileSystemLoader(Path(__file__).parent / "templates"),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
 
 
-def page(title: str, body: str) -> str:
-    """Wrap a body into an HTML document that loads nothing."""
+def page(template: str, title: str, **values: Any) -> str:
+    """Fill in a template; each of its values must be given."""
     now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width"><style>{STYLE}</style></head>'
-        f"<body><h1>{escape(title)}</h1>"
-        f"{body}<footer>CombBench, code {code_version()}, written {now}</footer></body></html>\n"
-    )
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Write a table; numbers with six digits."""
-    titles = "".join(f"<th>{escape(name)}</th>" for name in head)
-    body = "".join("<tr>" + "".join(f"<td>{escape(say(cell))}</td>" for cell in row) + "</tr>" for row in rows)
-    return f'<div class="wide"><table><thead><tr>{titles}</tr></thead><tbody>{body}</tbody></table></div>'
+    common = {"title": title, "style": style(), "version": code_version(), "written": now}
+    return TEMPLATES.get_template(template).render(**common, **values)
 
 
 def say(value: Any) -> str:
-    """Write a cell of a table."""
-    return format_short(value, "", 6) if isinstance(value, float) else str(value)
+    """Write a cell of a table: counts whole, other numbers with six digits."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value)
+    return format_number(value, 0) if isinstance(value, int) else format_short(value, "", 6)
+
+
+TEMPLATES.filters |= {"say": say, "micro": micro, "paint": paint}  # the painter escapes the texts in a chart
 
 
 def as_toml(document: dict[str, Any]) -> str:

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from core.signals import CLOCK
+from scenarios.report.figure import figure
 from scenarios.report.run import run_report
 from scenarios.report.script import script
-from scenarios.report.thumbnail import thumbnail
+from scenarios.report.svg import picture_file
 from scenarios.report.traces import write_json, write_parquet, write_text
 from scenarios.run import Result
 
@@ -36,8 +37,10 @@ def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) 
     columns: dict[str, np.ndarray[Any, Any]] = dict(zip(CLOCK, (ticks, ticks * result.board.dt_ms), strict=True))
     for signal in result.kept:
         columns[signal.name] = result.signal(signal.name)
-    write_parquet(stem.with_suffix(".parquet"), columns, {"scenario": document, "seed": result.seed})
+    about = {"scenario": document, "seed": result.seed}
+    units = {signal.name: signal.unit for signal in result.kept}
+    write_parquet(stem.with_suffix(".parquet"), columns, about, units)
     write_text(stem.with_suffix(".html"), run_report(result, summary))
-    write_text(stem.with_suffix(".svg"), thumbnail(result))
+    write_text(stem.with_suffix(".svg"), picture_file(figure(result)))
     write_text(stem.with_suffix(".py"), script(document, seeds, summary["digest"], stem.name + ".py"))
     write_json(stem.with_suffix(".json"), summary)

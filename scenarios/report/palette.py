@@ -12,26 +12,55 @@ PALETTE: dict[str, Any] = json.loads(Path(__file__).with_suffix(".json").read_te
 
 The first colour is neutral; the pale ones are darkened in the light scheme, so that they stay visible on white.
 """
-COLOURS: list[str] = PALETTE["colours"]["light"]
+SLOTS = len(PALETTE["colours"]["light"])
 DASHES: list[list[int]] = PALETTE["dashes"]
 
 
 @dataclass(frozen=True)
 class Look:
-    """Colour and dash of a line."""
+    """Colour and dash of a line; the colour is a class of the style, which has one for each scheme."""
 
-    colour: str
-    dash: str
+    slot: int
+    dash: str = ""
 
     @staticmethod
     def of(slot: int, dash: int) -> Look:
         """Return the look of a place in the palette."""
-        return Look(COLOURS[slot], " ".join(map(str, DASHES[dash % len(DASHES)])))
+        return Look(slot, " ".join(map(str, DASHES[dash % len(DASHES)])))
+
+    @property
+    def stroke(self) -> str:
+        """Return the attributes of a line."""
+        return f'class="s{self.slot}"' + (f' stroke-dasharray="{self.dash}"' if self.dash else "")
+
+    @property
+    def fill(self) -> str:
+        """Return the attribute of an area."""
+        return f'class="f{self.slot}"'
+
+
+def style() -> str:
+    """Return the style of every chart: colours of the palette in the scheme of whoever looks at it."""
+    light, dark = (_colours(PALETTE["colours"][scheme]) for scheme in ("light", "dark"))
+    return f"{CHART_STYLE}{light}@media (prefers-color-scheme: dark) {{ svg {{ color: #e8ecf1 }} {dark}}}\n"
+
+
+CHART_STYLE = """
+svg { color: #1a1f26 } svg text { font: 11px system-ui, sans-serif; fill: currentColor }
+svg .title { font-weight: 600 } svg .x { text-anchor: middle } svg .y { text-anchor: end }
+svg .grid { stroke: #8884; fill: none } svg .mark { stroke: #888; stroke-dasharray: 2 2; fill: none }
+svg .line { fill: none; stroke-width: 1.7; stroke-linejoin: round } svg .bar { opacity: .6 } svg .area { opacity: .5 }
+"""
+
+
+def _colours(colours: list[str]) -> str:
+    """Return a class for the stroke and one for the fill of every colour."""
+    return "".join(f".s{slot} {{ stroke: {c} }} .f{slot} {{ fill: {c} }} " for slot, c in enumerate(colours))
 
 
 def line(number: int) -> Look:
     """Return the look of a line by its place among others."""
-    return Look.of(1 + number % (len(COLOURS) - 1), number)
+    return Look.of(1 + number % (SLOTS - 1), number)
 
 
 def hypothesis(index: int) -> Look:

@@ -1,21 +1,26 @@
-"""Charts as SVG text: lines over two axes, in colours and dashes that all people can tell apart."""
+"""The one painter of charts as SVG text: lines, lanes and bars over two axes, in colours all people can tell apart.
+
+A chart is described first and painted in the size of its place: large in a report, small on a card of the gallery.
+"""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
 
 import numpy as np
 
 from core.block import FloatArray
-from core.format import tick_labels
-from scenarios.report.palette import Look, line
+from scenarios.report.axis import Axis, Scale
+from scenarios.report.palette import Look, line, style
 
-WIDTH, HEIGHT = 460, 300
-LEFT, RIGHT, TOP, BOTTOM = 62, 12, 26, 44
+LETTER = 5.9
+"""Width of a letter, px; what decides where a legend goes on in the next row."""
+ROW = 15
+NOTHING = Axis("")
 
 
 @dataclass(frozen=True)
@@ -38,6 +43,53 @@ class Mark:
     text: str
 
 
+@dataclass(frozen=True)
+class Lane:
+    """A named row of areas: from, to, look, and whether it is the thin strip of what is true."""
+
+    name: str
+    areas: Sequence[tuple[float, float, Look, bool]]
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A measured figure beside what is expected of it, each row in a scale of its own."""
+
+    name: str
+    value: float
+    text: str
+    low: float | None
+    high: float | None
+    holds: bool
+
+
+@dataclass(frozen=True)
+class Chart:
+    """What a chart shows: lines over two axes, or lanes over the x axis, or bars."""
+
+    title: str
+    x: Axis = NOTHING
+    y: Axis = NOTHING
+    series: Sequence[Series] = ()
+    marks: Sequence[Mark] = ()
+    lanes: Sequence[Lane] = ()
+    bars: Sequence[Bar] = ()
+    keys: Sequence[tuple[str, Look]] = ()
+    """Names of a legend where it is not that of the lines."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """Width and height of a picture, and whether its title is in it."""
+
+    width: int
+    height: int
+    has_title: bool = True
+
+
+REPORT, CARD = Size(460, 300), Size(400, 180, has_title=False)
+
+
 def thin(x: FloatArray, y: FloatArray, columns: int = 400) -> tuple[list[float], list[float]]:
     """Return the smallest and the largest value of each of so many columns, in the order they came.
 
@@ -58,113 +110,153 @@ def thin(x: FloatArray, y: FloatArray, columns: int = 400) -> tuple[list[float],
     return x[kept].tolist(), y[kept].tolist()
 
 
-def ticks(low: float, high: float, most: int = 6) -> list[float]:
-    """Return round values over a range: steps of 1, 2 or 5 times a power of ten."""
-    raw = (high - low) / most
-    power = 10.0 ** math.floor(math.log10(raw))
-    step = next(m * power for m in (1.0, 2.0, 5.0, 10.0) if m * power >= raw * (1.0 - 1e-9))
-    first = math.ceil(low / step - 1e-9)
-    return [number * step for number in range(first, math.floor(high / step + 1e-9) + 1)]
+def picture_file(chart: Chart, size: Size = CARD) -> str:
+    """Return a picture as a file of its own; no background, so that it suits light and dark."""
+    return with_style(paint(chart, size))
 
 
-def chart(
-    title: str,
-    x_label: str,
-    y_label: str,
-    series: Sequence[Series],
-    x_range: tuple[float, float] | None = None,
-    y_range: tuple[float, float] | None = None,
-    marks: Sequence[Mark] = (),
-) -> str:
-    """Draw lines over two axes with titles; values that are not finite are left out.
+def with_style(svg: str) -> str:
+    """Return a painted chart with its style, as a file needs it."""
+    return svg.replace(">", f"><style>{style()}</style>", 1) + "\n"
 
-    Parameters
-    ----------
-    title, x_label, y_label : str
-        Texts of the chart and its axes, with units.
-    series : sequence of Series
-        The lines.
-    x_range, y_range : (float, float), optional
-        Ranges to show instead of those of the lines.
-    marks : sequence of Mark
-        Moments drawn as upright lines.
-    """
-    x_low, x_high = x_range or _range([value for one in series for value in one.x])
-    y_low, y_high = y_range or _range(_heights(series))
 
-    def place(x: float, y: float) -> tuple[float, float]:
-        across = LEFT + (x - x_low) / (x_high - x_low) * (WIDTH - LEFT - RIGHT)
-        down = HEIGHT - BOTTOM - (y - y_low) / (y_high - y_low) * (HEIGHT - TOP - BOTTOM)
-        return round(across, 1), round(down, 1)
-
+def paint(chart: Chart, size: Size = REPORT) -> str:
+    """Paint a chart; values that are not finite are left out."""
+    keys = list(chart.keys) or _keys(chart.series)
+    rows = _wrapped(keys, size.width - 20)
+    top = 8 + (18 if size.has_title else 0) + ROW * len(rows)
     parts = [
-        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" role="img" aria-label="{escape(title)}">',
-        f'<text x="{LEFT}" y="16" class="title">{escape(title)}</text>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size.width} {size.height}" '
+        f'width="{size.width}" role="img" aria-label="{escape(chart.title)}">'
     ]
-    columns, rows = ticks(x_low, x_high), ticks(y_low, y_high)
-    for value, label in zip(columns, tick_labels(columns), strict=True):
-        x, y = place(value, y_low)
-        parts.append(f'<path d="M{x} {TOP}V{y}" class="grid"/><text x="{x}" y="{y + 15}" class="x">{label}</text>')
-    for value, label in zip(rows, tick_labels(rows), strict=True):
-        x, y = place(x_low, value)
-        right = WIDTH - RIGHT
-        parts.append(f'<path d="M{x} {y}H{right}" class="grid"/><text x="{x - 5}" y="{y + 4}" class="y">{label}</text>')
-    for mark in marks:
-        if x_low <= mark.x <= x_high:
-            x, _ = place(mark.x, y_low)
-            upright = f'<path d="M{x} {TOP}V{HEIGHT - BOTTOM}" class="mark"/>'
+    if size.has_title:
+        parts.append(f'<text x="10" y="16" class="title">{escape(chart.title)}</text>')
+    parts += _legend(rows, top - ROW * len(rows) + 4)
+    parts += _bars(chart.bars, size, top) if chart.bars else _field(chart, size, top + 6)
+    return "".join([*parts, "</svg>"])
+
+
+def _field(chart: Chart, size: Size, top: int) -> list[str]:
+    """Paint axes, and lines or lanes between them."""
+    y = Scale(chart.y, [value for one in chart.series for value in _heights(one)])
+    ends = [edge for lane in chart.lanes for first, end, _, _ in lane.areas for edge in (first, end)]
+    x = Scale(chart.x, ends or [value for one in chart.series for value in one.x])
+    bottom, right = size.height - (38 if x.title else 20), size.width - 14
+    rows = [] if chart.lanes else y.ticks((bottom - top) / 34)
+    names = [label for _, label in rows] + [lane.name for lane in chart.lanes]
+    left = round(12 + (18 if y.title and not chart.lanes else 0) + LETTER * max(map(len, names), default=0))
+
+    def across(value: float) -> float:
+        return round(left + x.place(value) * (right - left), 1)
+
+    def down(value: float) -> float:
+        return round(bottom - y.place(value) * (bottom - top), 1)
+
+    parts = []
+    for value, label in x.ticks((right - left) / 70):
+        parts.append(f'<path d="M{across(value)} {top}V{bottom}" class="grid"/>')
+        parts.append(f'<text x="{across(value)}" y="{bottom + 15}" class="x">{label}</text>')
+    for value, label in rows:
+        parts.append(f'<path d="M{left} {down(value)}H{right}" class="grid"/>')
+        parts.append(f'<text x="{left - 5}" y="{down(value) + 4}" class="y">{label}</text>')
+    for mark in chart.marks:
+        if x.low <= mark.x <= x.high:
+            upright = f'<path d="M{across(mark.x)} {top}V{bottom}" class="mark"/>'
             parts.append(f"<g>{upright}<title>{escape(mark.text)}</title></g>")
-    for number, one in enumerate(series):
+    for number, one in enumerate(chart.series):
         look = one.look or line(number)
         spreads = one.spread or [0.0] * len(one.x)
         points = [
-            (*place(x, y), place(x, y - s)[1], place(x, y + s)[1])
-            for x, y, s in zip(one.x, one.y, spreads, strict=True)
-            if math.isfinite(x) and math.isfinite(y)
+            (across(at), down(value), down(value - s), down(value + s))
+            for at, value, s in zip(one.x, one.y, spreads, strict=True)
+            if math.isfinite(at) and math.isfinite(value)
         ]
-        path = " ".join(
-            (f"H{x} V{y}" if one.is_stepped and at else f"{'L' if at else 'M'}{x} {y}")
-            for at, (x, y, _, _) in enumerate(points)
+        path = "".join(
+            (f"H{px}V{py}" if one.is_stepped and at else f"{'L' if at else 'M'}{px} {py}")
+            for at, (px, py, _, _) in enumerate(points)
         )
-        bars = " ".join(f"M{x} {low}V{high}" for x, _, low, high in points if low != high)
-        name = f"<title>{escape(one.name)}</title>"
-        parts.append(f'<path d="{path}" fill="none" stroke-width="1.8" {_stroke(look)}>{name}</path>')
-        parts.append(f'<path d="{bars}" stroke="{look.colour}" opacity=".6"/>' if bars else "")
-    parts.append(f'<text x="{(LEFT + WIDTH) / 2}" y="{HEIGHT - 8}" class="x">{escape(x_label)}</text>')
-    middle = (TOP + HEIGHT - BOTTOM) / 2
-    parts.append(f'<text transform="translate(14 {middle}) rotate(-90)" class="x">{escape(y_label)}</text></svg>')
-    return "".join(parts) + (_legend(series) if len(series) > 1 else "")
+        bars = "".join(f"M{px} {low}V{high}" for px, _, low, high in points if low != high)
+        parts.append(f'<g {look.stroke}><path d="{path}" class="line"/><title>{escape(one.name)}</title></g>')
+        parts.append(f'<path d="{bars}" class="bar s{look.slot}"/>' if bars else "")
+    parts += _lanes(chart.lanes, across, left, top, bottom)
+    parts.append(f'<text x="{(left + right) / 2}" y="{size.height - 7}" class="x">{escape(x.title)}</text>')
+    if y.title and not chart.lanes:
+        middle = (top + bottom) / 2
+        parts.append(f'<text transform="translate(12 {middle}) rotate(-90)" class="x">{escape(y.title)}</text>')
+    return parts
 
 
-def _stroke(look: Look) -> str:
-    """Return colour and dash as attributes."""
-    return f'stroke="{look.colour}" stroke-dasharray="{look.dash}"'
+def _lanes(lanes: Sequence[Lane], across: Callable[[float], float], left: int, top: int, bottom: int) -> list[str]:
+    """Paint lanes below each other; the strip of the truth is thin and above what was concluded."""
+    parts: list[str] = []
+    height = (bottom - top) / max(1, len(lanes))
+    for number, lane in enumerate(lanes):
+        upper = top + number * height
+        parts.append(f'<text x="{left - 6}" y="{upper + height / 2 + 4:.1f}" class="y">{escape(lane.name)}</text>')
+        for first, end, look, is_truth in lane.areas:
+            y, tall = (upper + 3, 4.0) if is_truth else (upper + 9, max(4.0, height - 13))
+            box = f'x="{across(first)}" y="{y:.1f}" width="{across(end) - across(first):.1f}" height="{tall:.1f}"'
+            parts.append(f"<rect {box} {look.fill}/>")
+    return parts
 
 
-def _legend(series: Sequence[Series]) -> str:
-    """Name the lines."""
-    keys = []
-    for number, one in enumerate(series):
-        key = f'<path d="M0 6H26" stroke-width="2" {_stroke(one.look or line(number))}/>'
-        keys.append(f'<span class="key"><svg width="26" height="12">{key}</svg> {escape(one.name)}</span>')
-    return f'<div class="keys">{"".join(keys)}</div>'
+def _bars(bars: Sequence[Bar], size: Size, top: int) -> list[str]:
+    """Paint a row for each figure: its name, what is expected as a bar, what was measured as a dot, its number."""
+    left, right = round(0.45 * size.width), round(0.83 * size.width)
+    height = (size.height - top - 6) / max(1, len(bars))
+    parts = []
+    for row, bar in enumerate(bars):
+        y = round(top + (row + 0.5) * height, 1)
+        known = [value for value in (bar.low, bar.high, bar.value) if value is not None and math.isfinite(value)]
+        air = 0.25 * (max(known) - min(known)) or 0.5 * abs(known[0]) or 0.5
+        first, span = min(known) - air, max(known) - min(known) + 2 * air
+
+        def place(value: float | None, other: float, first: float = first, span: float = span) -> float:
+            return round(other if value is None else left + (value - first) / span * (right - left), 1)
+
+        low, high = place(bar.low, left), place(bar.high, right)
+        name = bar.name if len(bar.name) <= left / LETTER else bar.name[: int(left / LETTER) - 1] + "…"
+        parts.append(f'<text x="{left - 8}" y="{y + 4}" class="y">{escape(name)}</text>')
+        parts.append(f'<path d="M{left} {y}H{right}" class="grid"/>')
+        parts.append(f'<path d="M{low} {y}H{max(high, low + 2)}" class="area s3" stroke-width="7"/>')
+        dot = f'cx="{place(bar.value, left)}" cy="{y}" r="4"'
+        parts.append(f"<circle {dot} {Look(1 if bar.holds else 5).fill}><title>{escape(bar.name)}</title></circle>")
+        parts.append(f'<text x="{right + 8}" y="{y + 4}">{escape(bar.text)}</text>')
+    return parts
 
 
-def _heights(series: Sequence[Series]) -> list[float]:
-    """Return all heights that the y axis must show."""
-    return [
-        value
-        for one in series
-        for y, spread in zip(one.y, one.spread or [0.0] * len(one.y), strict=True)
-        for value in (y - spread, y + spread)
-    ]
+def _keys(series: Sequence[Series]) -> list[tuple[str, Look]]:
+    """Return name and look of every line, where there are several."""
+    named = [(one.name, one.look or line(number)) for number, one in enumerate(series) if one.name]
+    return named if len(series) > 1 else []
 
 
-def _range(values: Sequence[float]) -> tuple[float, float]:
-    """Return a range with some air around the values."""
-    finite = [value for value in values if math.isfinite(value)] or [0.0, 1.0]
-    low, high = float(np.min(finite)), float(np.max(finite))
-    if high - low <= 1e-9 * max(abs(low), abs(high)):
-        air = 0.5 * abs(high) or 0.5
-        return low - air, high + air
-    return low - 0.04 * (high - low), high + 0.04 * (high - low)
+def _wrapped(keys: Sequence[tuple[str, Look]], width: float) -> list[list[tuple[float, str, Look]]]:
+    """Put the names of a legend into rows, each with where it begins."""
+    rows: list[list[tuple[float, str, Look]]] = []
+    at = math.inf
+    for name, look in keys:
+        wide = 34 + LETTER * len(name) + 10
+        if at + wide > width:
+            rows.append([])
+            at = 10.0
+        rows[-1].append((round(at, 1), name, look))
+        at += wide
+    return rows
+
+
+def _legend(rows: Sequence[Sequence[tuple[float, str, Look]]], top: float) -> list[str]:
+    """Paint the names of the lines."""
+    parts = []
+    for row, entries in enumerate(rows):
+        y = top + ROW * row + 6
+        for x, name, look in entries:
+            parts.append(f'<g {look.stroke}><path d="M{x} {y}h26" class="line"/></g>')
+            parts.append(f'<text x="{x + 31}" y="{y + 4}">{escape(name)}</text>')
+    return parts
+
+
+def _heights(one: Series) -> list[float]:
+    """Return all heights that the y axis must show for a line."""
+    spread = one.spread or [0.0] * len(one.y)
+    return [value for y, s in zip(one.y, spread, strict=True) for value in (y - s, y + s)]

@@ -23,9 +23,14 @@ def packing(schema: pa.Schema) -> dict[str, Any]:
     return {"use_dictionary": False, "use_byte_stream_split": floats, "compression": "zstd"}
 
 
-def write_parquet(path: Path, columns: dict[str, np.ndarray[Any, Any]], metadata: dict[str, Any]) -> None:
+def write_parquet(
+    path: Path, columns: dict[str, np.ndarray[Any, Any]], metadata: dict[str, Any], units: dict[str, str]
+) -> None:
     """Write columns of one length with metadata under ``combbench``, piece by piece: no trace is in memory twice."""
-    fields = [pa.field(name, pa.from_numpy_dtype(values.dtype)) for name, values in columns.items()]
+    fields = [
+        pa.field(name, pa.from_numpy_dtype(values.dtype), metadata={"unit": units[name]} if name in units else None)
+        for name, values in columns.items()
+    ]
     schema = pa.schema(fields, metadata={"combbench": json.dumps(metadata)})
     temporary = path.with_name(path.name + ".part")
     length = max((len(values) for values in columns.values()), default=0)

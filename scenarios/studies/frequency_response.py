@@ -9,7 +9,7 @@ import numpy as np
 from core.block import BlockParams, parameter
 from core.device.catalogue import device as catalogued
 from core.device.frequency import figures, response, tolerance_band
-from scenarios.studies.study import Study
+from scenarios.studies.study import Picture, Study
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -50,7 +50,7 @@ class FrequencyResponse(Study):
             bode[f"bode.{word}_up.f0_pct"] = 100.0 * (moved["f0_hz"] / base["f0_hz"] - 1.0)
             bode[f"bode.{word}_up.quality_factor"] = moved["quality_factor"]
             bode[f"bode.{word}_up.peak_db"] = moved["peak_db"]
-        limits = [catalogued({"id": name}).resolved if name else nominal for name in (params.lower, params.upper)]
+        limits = cls._limits(nominal, params)
         for word, limit in zip(("low", "high"), limits, strict=True):
             for name in ("f0_hz", "f_peak_hz", "quality_factor", "peak_db"):
                 bode[f"bode.{word}.{name}"] = figures(**limit)[name]
@@ -60,3 +60,27 @@ class FrequencyResponse(Study):
         bode["bode.band_db"] = float(band.high_db[0] - band.low_db[0])
         bode["bode.band_deg"] = float(band.high_deg[0] - band.low_deg[0])
         return bode
+
+    @classmethod
+    def picture(cls, board: Board, params: Any) -> Picture:
+        """Return the magnitude of the device and of its two limits around their resonances."""
+        nominal = board.spec.device.resolved
+        devices = {"device": nominal}
+        devices |= {
+            name: limit
+            for name, limit in zip((params.lower, params.upper), cls._limits(nominal, params), strict=True)
+            if name
+        }
+        peaks = [figures(**device)["f0_hz"] for device in devices.values()]
+        hertz = np.geomspace(0.4 * min(peaks), 2.5 * max(peaks), 200)
+        at_rest = nominal["stiffness_n_m"]
+        curves = [
+            (name, hertz.tolist(), (20.0 * np.log10(abs(response(**device, frequency_hz=hertz)) * at_rest)).tolist())
+            for name, device in devices.items()
+        ]
+        return Picture(("frequency", "Hz"), ("magnitude", "dB"), curves, is_log_x=True)
+
+    @staticmethod
+    def _limits(nominal: dict[str, float], params: Any) -> list[dict[str, float]]:
+        """Return the two limiting devices."""
+        return [catalogued({"id": name}).resolved if name else nominal for name in (params.lower, params.upper)]

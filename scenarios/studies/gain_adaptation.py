@@ -10,7 +10,7 @@ from pydantic import Field
 from core.block import BlockParams, FloatArray, parameter
 from core.errors import InputError
 from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, growth
-from scenarios.studies.study import Study
+from scenarios.studies.study import Picture, Study
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -55,6 +55,14 @@ class GainAdaptation(Study):
                 results[f"adaptation.critical_gain_{name}"] = critical_gain(sine, rule, w, params.most)
         return results
 
+    @classmethod
+    def picture(cls, board: Board, params: Any) -> Picture:
+        """Return the error over the run."""
+        error = _error(board, params.duration_s)
+        every = max(1, len(error) // 600)
+        time_ms = np.arange(0, len(error), every) * board.dt_ms
+        return Picture(("time", "ms"), ("error", "um"), [("error", time_ms.tolist(), error[::every].tolist())])
+
 
 def rule_of(rule: str, form: str) -> int | None:
     """Return the rule of the theory, or None for a law that does not adapt."""
@@ -84,7 +92,8 @@ def loop_of(board: Board, b1: float | None = None) -> GainLoop:
     )
 
 
-def _simulated(board: Board, duration_s: float) -> dict[str, float]:
+def _error(board: Board, duration_s: float) -> FloatArray:
+    """Run the bench, and return the model's displacement less the true one."""
     model, plant = (board.signals.index(f"{name}.displacement") for name in ("model", "plant"))
     parts: list[FloatArray] = []
     ticks = round(duration_s * 1e3 / board.dt_ms)
@@ -93,7 +102,11 @@ def _simulated(board: Board, duration_s: float) -> dict[str, float]:
         if rows.count == 0:
             break
         parts.append(rows.outputs[:, model] - rows.outputs[:, plant])  # the true displacement, not the measured one
-    error = np.concatenate(parts)
+    return np.concatenate(parts)
+
+
+def _simulated(board: Board, duration_s: float) -> dict[str, float]:
+    error = _error(board, duration_s)
     quarter = len(error) // 4
     dt_s = board.dt_ms * 1e-3
     early, late = (float(np.max(np.abs(part))) for part in (error[quarter : 2 * quarter], error[-quarter:]))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from pydantic import Field
 
 from core.block import BlockParams
 from core.control.controller import normalised
 from core.theory.positive_real import positive_real
-from scenarios.studies.study import Study
+from scenarios.studies.study import Picture, Study
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -40,6 +41,26 @@ class PositiveReal(Study):
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return the verdicts, and the smallest real part on the axis where it is finite."""
+        results = {}
+        for name, numerator, denominator in cls._cases(board, params):
+            verdict = positive_real(numerator, denominator)
+            results[f"spr.{name}"] = 2.0 if verdict.strictly_positive_real else 1.0 if verdict.positive_real else 0.0
+            results[f"spr.{name}_relative_degree"] = float(verdict.relative_degree)
+        return results
+
+    @classmethod
+    def picture(cls, board: Board, params: Any) -> Picture:
+        """Return the real part on the imaginary axis, each over its largest size: below 0 it is not positive real."""
+        omega = np.geomspace(0.01, 100.0, 200)
+        curves = []
+        for name, numerator, denominator in cls._cases(board, params):
+            real = np.real(np.polyval(numerator, 1j * omega) / np.polyval(denominator, 1j * omega))
+            curves.append((name.replace("_", " "), omega.tolist(), (real / np.max(np.abs(real))).tolist()))
+        return Picture(("angular frequency", ""), ("real part", ""), curves, is_log_x=True)
+
+    @staticmethod
+    def _cases(board: Board, params: Any) -> list[tuple[str, list[float], list[float]]]:
+        """Return name, numerator and denominator of every transfer function."""
         device = board.spec.context().device
         cases = [(case.name, case.numerator, case.denominator) for case in params.cases]
         if device.mass > 0.0:
@@ -50,9 +71,4 @@ class PositiveReal(Study):
                 ("velocity", [1.0, 0.0], below),
                 ("with_velocity", [1.0, 0.9 * a1], below),
             ]
-        results = {}
-        for name, numerator, denominator in cases:
-            verdict = positive_real(numerator, denominator)
-            results[f"spr.{name}"] = 2.0 if verdict.strictly_positive_real else 1.0 if verdict.positive_real else 0.0
-            results[f"spr.{name}_relative_degree"] = float(verdict.relative_degree)
-        return results
+        return cases

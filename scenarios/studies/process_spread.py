@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from core.block import BlockParams, parameter
-from core.device.spread import CARRIERS, MISSING, PRINTED, Tolerances, draw, sensitivity
+from core.device.geometry import Geometry
+from core.device.spread import CARRIERS, MISSING, PRINTED, Spread, Tolerances, draw, sensitivity
 from core.errors import InputError
-from scenarios.studies.study import Study
+from scenarios.studies.study import Picture, Study
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -49,11 +52,7 @@ class ProcessSpread(Study):
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return spreads, percentiles, correlations and sensitivities."""
-        geometry = board.spec.device.drawn_resonator
-        if geometry is None:
-            raise InputError("has no drawing of a resonator to vary; choose lcr-350", "device.id")
-        tolerances = Tolerances(**params.model_dump(exclude={"draws", "cut"}))
-        spread = draw(geometry, tolerances, params.draws, board.spec.seed, params.cut)
+        geometry, spread = cls._drawn(board, params)
         results: dict[str, float] = {}
         for name in spread.found:
             results[f"spread.{name}.cv_pct"] = spread.variation_pct(name)
@@ -75,3 +74,19 @@ class ProcessSpread(Study):
         results["spread.dots_missing"] = float(len(demanded - printed))
         results["spread.dots_named"] = float(sum(len(steps) for steps in MISSING.values()))
         return results
+
+    @classmethod
+    def picture(cls, board: Board, params: Any) -> Picture:
+        """Return how many of the devices drawn have which resonance."""
+        counts, edges = np.histogram(cls._drawn(board, params)[1].found["f0_hz"], 60)
+        heights = [*counts.astype(float).tolist(), 0.0]
+        return Picture(("resonance", "Hz"), ("devices", ""), [("devices", edges.tolist(), heights)], is_stepped=True)
+
+    @staticmethod
+    def _drawn(board: Board, params: Any) -> tuple[Geometry, Spread]:
+        """Return the drawing, and the devices drawn from the process."""
+        geometry = board.spec.device.drawn_resonator
+        if geometry is None:
+            raise InputError("has no drawing of a resonator to vary; choose lcr-350", "device.id")
+        tolerances = Tolerances(**params.model_dump(exclude={"draws", "cut"}))
+        return geometry, draw(geometry, tolerances, params.draws, board.spec.seed, params.cut)

@@ -1,13 +1,26 @@
-"""Base of the studies: parameters, and figures from the bench of a scenario."""
+"""Base of the studies: parameters, figures from the bench of a scenario, and a picture where one says more."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from core.block import BlockParams
 
 if TYPE_CHECKING:
     from core.board.board import Board
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Curves over two axes, each axis with its title and the unit its values come in."""
+
+    x: tuple[str, str]
+    y: tuple[str, str]
+    curves: Sequence[tuple[str, Sequence[float], Sequence[float]]]
+    is_log_x: bool = False
+    is_stepped: bool = False
 
 
 class Study:
@@ -28,3 +41,8 @@ class Study:
             The parameters.
         """
         raise NotImplementedError
+
+    @classmethod
+    def picture(cls, board: Board, params: Any) -> Picture | None:  # noqa: ARG003
+        """Return what the figures were read from, or None where they say it all; it is made from a fresh bench."""
+        return None

@@ -24,7 +24,7 @@ FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 
 PIECE = 1 << 16
-HTML, PYTHON = "text/html", "text/x-python"
+HTML, PYTHON, SVG = "text/html", "text/x-python", "image/svg+xml"
 
 
 def file_name(name: str, kind: str) -> str:

@@ -6,15 +6,22 @@ import asyncio
 import fnmatch
 from functools import cache
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
+from core.board.commands import Inject, Switch
+from core.board.spec import Spec
 from core.errors import InputError
-from scenarios.library import library
+from core.registry import blocks
+from scenarios.library import ids, is_demo, library
+from scenarios.report.svg import with_style
 from scenarios.schema import Scenario, Verdict
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.runs.jobs import Run, identify
+from server.api.files import SVG
+from server.errors import not_found
+from server.runs.figures import Figure, Figures
+from server.runs.listing import Run
 
 router = APIRouter(prefix="/gallery", tags=["gallery"], route_class=StrictRoute)
 
@@ -32,7 +39,7 @@ class Expected(BaseModel):
 
 
 class GalleryCard(BaseModel):
-    """A scenario of the library and its run, if there has been one with this version of the code."""
+    """A scenario of the library, its figure, and its run if there has been one with this version of the code."""
 
     id: str
     title: str
@@ -40,20 +47,34 @@ class GalleryCard(BaseModel):
     summary: str
     claim: str
     verdict: Verdict | None
+    demo: bool = Field(description="Made for first visits and lectures")
+    topics: list[str] = Field(description="Device, controllers, diagnosers and faults it is about")
+    figure: str | None = Field(description="Key of its figure at /gallery/{id}/figure; null until it is made")
+    problem: str = Field(description="Why it has no figure, if it cannot be made")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
     run: str | None = Field(description="Its run: trace, report, thumbnail and script are at /runs/{id}/...")
     state: str = Field(description="new until it has been asked for, then as that of a run")
     progress: float
     elapsed_s: float | None
     digest: str
-    ok: bool | None = Field(description="Whether all expectations hold; null until it has been run")
+    ok: bool | None = Field(description="Whether all expectations hold; null until they have been measured")
     expectations: list[Expected]
+
+
+class FigureProgress(BaseModel):
+    """How many figures are there."""
+
+    made: int
+    total: int
+    is_making: bool
+    problem: str = Field(description="What went wrong last, in one line")
 
 
 class Gallery(BaseModel):
     """All cards, in the order of the text."""
 
     cards: list[GalleryCard]
+    figures: FigureProgress
 
 
 class Chosen(Body):
@@ -64,10 +85,27 @@ class Chosen(Body):
 
 @router.get("")
 async def get_gallery(service: ServiceDep) -> Gallery:
-    """Show every library scenario: claim, expectations, and the result of its run."""
-    ids = await asyncio.to_thread(_run_ids)
-    runs = await service.jobs.some(list(ids.values()))
-    return Gallery(cards=[_card(scenario, runs.get(ids[scenario.id])) for scenario in library()])
+    """Show every library scenario: claim, expectations, figure, and what was measured."""
+    figures = service.figures
+    run_ids = await asyncio.to_thread(lambda: figures.keys)
+    runs = await service.jobs.some(list(run_ids.values()))
+    return Gallery(
+        cards=[_card(scenario, runs.get(run_ids[scenario.id]), figures) for scenario in library()],
+        figures=FigureProgress(
+            made=len(figures.made), total=figures.total, is_making=figures.is_making, problem=figures.problem
+        ),
+    )
+
+
+@router.get("/{scenario_id}/figure", response_class=Response, responses={200: {"content": {SVG: {}}}})
+async def get_figure(scenario_id: str, service: ServiceDep) -> Response:
+    """Return the figure of a library scenario: what it is about, small, with axes and units."""
+    if scenario_id not in ids():
+        raise not_found("scenario", scenario_id)
+    figure = service.figures.made.get(scenario_id)
+    if figure is None:
+        raise not_found("figure of", scenario_id, "figures are made one after the other when the server has started")
+    return Response(with_style(figure.svg), media_type=SVG, headers={"Cache-Control": "private, max-age=3600"})
 
 
 @router.post("/run", status_code=202, dependencies=[RateLimited])
@@ -83,15 +121,29 @@ async def run_gallery(body: Chosen, service: ServiceDep) -> Gallery:
 
 
 @cache
-def _run_ids() -> dict[str, str]:
-    """Return the id of the run of each library scenario."""
-    return {scenario.id: identify(scenario, [scenario.spec.seed])[1][:32] for scenario in library()}
+def _topics(scenario: Scenario) -> list[str]:
+    """Return what a scenario is about, in the words of the catalogue."""
+    controllers, faults = blocks("control"), blocks("faults")
+    specs: list[Spec] = [scenario.spec, *scenario.twins.values()]
+    topics = [str(scenario.document.get("device", {}).get("id", ""))]
+    driving = [name for spec in specs for name in spec.driving.values()]
+    commands = [command for event in scenario.events for command in event]
+    driving += [command.switch for command in commands if isinstance(command, Switch)]
+    topics += [controllers[name].title if name in controllers else name for name in driving]
+    for spec in specs:
+        found = [*spec.diagnosers.values(), *spec.identifiers.values(), *spec.readouts.values()]
+        topics += [section.block.title for section in found]
+        topics.append(spec.sensors[spec.measuring].block.title)
+    injected = [command.fault for command in commands if isinstance(command, Inject)]
+    topics += [faults[name].title if name in faults else name for name in injected]
+    return list(dict.fromkeys(topic for topic in topics if topic))
 
 
-def _card(scenario: Scenario, run: Run | None) -> GalleryCard:
-    """Return the card of a scenario and its run."""
+def _card(scenario: Scenario, run: Run | None, figures: Figures) -> GalleryCard:
+    """Return the card of a scenario; a run and a figure have measured the same."""
     head = scenario.head
-    summary = (run.summary if run is not None else None) or {}
+    figure: Figure | None = figures.made.get(scenario.id)
+    summary = (run.summary if run is not None else None) or (figure.summary if figure is not None else {})
     measured = summary.get("expectations") or [{}] * len(head.expect)
     return GalleryCard(
         id=scenario.id,
@@ -100,6 +152,10 @@ def _card(scenario: Scenario, run: Run | None) -> GalleryCard:
         summary=head.summary,
         claim=head.claim,
         verdict=head.verdict,
+        demo=is_demo(scenario.id),
+        topics=_topics(scenario),
+        figure=figure.key if figure is not None else None,
+        problem=figures.failed.get(scenario.id, ""),
         study=str(head.study["kind"]) if head.study is not None else None,
         run=run.id if run is not None else None,
         state=run.state if run is not None else "new",

@@ -12,14 +12,16 @@ from pydantic import BaseModel, Field
 from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, CutDep, file_name, report_response, stored_trace
+from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
 from server.bench.benches import prepare
-from server.runs.jobs import Run
+from server.runs.compare import MOST, RunComparison, RunTraces, compare_runs, traces
+from server.runs.listing import Run, RunFilter, clean_label
 from server.store.traces import Format
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=StrictRoute)
 
-SVG = "image/svg+xml"
+FilterDep = Annotated[RunFilter, Query()]
+Ids = Annotated[list[str], Query(min_length=2, max_length=MOST, description="Runs, the one to compare with first")]
 
 
 class NewRun(Body):
@@ -28,9 +30,28 @@ class NewRun(Body):
     scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
     seed: int | None = Field(None, ge=0, le=2**53)
+    label: str = Field("", max_length=1000, description="Name for the run, at most 120 characters")
     seeds: list[int] | None = Field(
         None, min_length=2, max_length=2, description="First seed and the one behind the last"
     )
+
+
+class NewLabel(Body):
+    """A name for a run or a campaign."""
+
+    label: str = Field(max_length=1000, description="At most 120 characters; empty takes the name away")
+
+
+class Ended(Body):
+    """Runs or campaigns that have ended."""
+
+    ids: list[str] | None = Field(None, min_length=1, max_length=1000, description="All that have ended when left out")
+
+
+class Removed(BaseModel):
+    """How many were removed."""
+
+    removed: int
 
 
 class RunList(BaseModel):
@@ -57,23 +78,53 @@ async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Ru
         if not 0 <= first < end <= 2**53 or end - first > most:
             raise InputError(f"must be [first, end] with 0 <= first < end and at most {most} seeds", "seeds")
         seeds = list(range(first, end))
+    label = clean_label(body.label)
     await service.keeping.room()
-    run, is_new = await service.jobs.start(scenario, seeds)
+    run, is_new = await service.jobs.start(scenario, seeds, label)
     response.status_code = 202 if is_new else 200
     response.headers["Location"] = f"/api/v1/runs/{run.id}"
     return run
 
 
 @router.get("")
-async def list_runs(service: ServiceDep) -> RunList:
-    """List runs."""
-    return RunList(runs=await service.jobs.all())
+async def list_runs(service: ServiceDep, wanted: FilterDep) -> RunList:
+    """List runs, newest first; text, state and scenario choose among them."""
+    return RunList(runs=await service.jobs.all(wanted))
+
+
+@router.post("/remove", dependencies=[RateLimited])
+async def remove_runs(body: Ended, service: ServiceDep) -> Removed:
+    """Remove runs that have ended, and their files; all that have ended if none is named."""
+    return Removed(removed=await service.jobs.remove(body.ids))
+
+
+@router.get("/compare")
+async def compare_finished_runs(service: ServiceDep, ids: Ids) -> RunComparison:
+    """Put finished runs side by side: figures, differences from the first run, and the signals that all have."""
+    runs, paths = await service.jobs.traces(ids)
+    return await asyncio.to_thread(compare_runs, runs, paths)
+
+
+@router.get("/compare/trace")
+async def compare_traces(
+    service: ServiceDep, ids: Ids, signal: str, columns: Annotated[int, Query(ge=10, le=4000)] = 400
+) -> RunTraces:
+    """Return one signal of several finished runs, to be laid over each other."""
+    runs, paths = await service.jobs.traces(ids)
+    async with service.file_turn:
+        return await asyncio.to_thread(traces, runs, paths, signal, columns)
 
 
 @router.get("/{run_id}")
 async def get_run(run_id: str, service: ServiceDep) -> Run:
     """Return how far a run is, and its summary once it is done."""
     return await service.jobs.get(run_id)
+
+
+@router.patch("/{run_id}", dependencies=[RateLimited])
+async def rename_run(run_id: str, body: NewLabel, service: ServiceDep) -> Run:
+    """Give a run a name."""
+    return await service.jobs.rename(run_id, body.label)
 
 
 @router.delete("/{run_id}", dependencies=[RateLimited])

@@ -14,8 +14,10 @@ from scenarios.report.script import campaign_script
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, table_response
+from server.api.runs import Ended, FilterDep, NewLabel, Removed
 from server.errors import ApiError
 from server.runs import apart
+from server.runs.listing import clean_label
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
 
@@ -26,6 +28,7 @@ class NewSweep(Body):
     """A campaign to run."""
 
     sweep: str | dict[str, Any] = Field(description="Campaign as TOML text or as a document")
+    label: str = Field("", max_length=1000, description="Name for the campaign, at most 120 characters")
 
 
 class SweepList(BaseModel):
@@ -50,23 +53,36 @@ class SweepPoints(BaseModel):
 async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -> SweepRun:
     """Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one."""
     document = body.sweep if isinstance(body.sweep, dict) else await asyncio.to_thread(read_toml, body.sweep, "sweep")
+    label = clean_label(body.label)
     await service.keeping.room()
-    sweep, is_new = await service.sweeps.start(document)
+    sweep, is_new = await service.sweeps.start(document, label)
     response.status_code = 202 if is_new else 200
     response.headers["Location"] = f"/api/v1/sweeps/{sweep.id}"
     return sweep
 
 
 @router.get("")
-async def list_sweeps(service: ServiceDep) -> SweepList:
-    """List campaigns."""
-    return SweepList(sweeps=await service.sweeps.all())
+async def list_sweeps(service: ServiceDep, wanted: FilterDep) -> SweepList:
+    """List campaigns, newest first; text, state and scenario choose among them."""
+    return SweepList(sweeps=await service.sweeps.all(wanted))
+
+
+@router.post("/remove", dependencies=[RateLimited])
+async def remove_sweeps(body: Ended, service: ServiceDep) -> Removed:
+    """Remove campaigns that have ended; all that have ended if none is named."""
+    return Removed(removed=await service.sweeps.remove(body.ids))
 
 
 @router.get("/{sweep_id}")
 async def get_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
     """Return how far a campaign is."""
     return await service.sweeps.get(sweep_id)
+
+
+@router.patch("/{sweep_id}", dependencies=[RateLimited])
+async def rename_sweep(sweep_id: str, body: NewLabel, service: ServiceDep) -> SweepRun:
+    """Give a campaign a name."""
+    return await service.sweeps.rename(sweep_id, body.label)
 
 
 @router.delete("/{sweep_id}", dependencies=[RateLimited])

@@ -12,13 +12,12 @@ import json
 import logging
 import multiprocessing
 import shutil
+from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
@@ -29,6 +28,7 @@ from scenarios.schema import Scenario
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
 from server.runs.length import check_length
+from server.runs.listing import ACTIVE, Run, RunFilter, remove, rename
 from server.runs.worker import CANCEL, NICE, PROGRESS, STEM, Cancelled, work
 from server.settings import Settings
 from server.store.database import Database
@@ -36,28 +36,10 @@ from server.store.models import RunRow, now
 
 log = logging.getLogger(__name__)
 
-ACTIVE = ("queued", "running")
 MAX_ATTEMPTS = 3
 """Most starts of one run: a run that so often was under way when the server or its worker ended is the likely cause."""
 CANCEL_S = 5.0
-
-
-class Run(BaseModel):
-    """A headless run as the API shows it."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    id: str
-    key: str
-    state: str
-    scenario_id: str
-    title: str
-    seeds: list[int]
-    created: datetime
-    finished: datetime | None
-    progress: float
-    summary: dict[str, Any] | None
-    error: dict[str, Any] | None
+T = TypeVar("T")
 
 
 def identify(scenario: Scenario, seeds: list[int]) -> tuple[dict[str, Any], str]:
@@ -88,8 +70,8 @@ class Jobs:
         self._turn = asyncio.Semaphore(max(1, settings.run_workers))
         self._is_closing = False
 
-    async def start(self, scenario: Scenario, seeds: list[int]) -> tuple[Run, bool]:
-        """Queue a run, or return the same one if it exists; true when it is new.
+    async def start(self, scenario: Scenario, seeds: list[int], label: str = "") -> tuple[Run, bool]:
+        """Queue a run, or return the same one if it exists; true when it is new. A name it is given is its name then.
 
         Raises
         ------
@@ -107,6 +89,7 @@ class Jobs:
             state="queued",
             scenario_id=scenario.id,
             title=scenario.head.title,
+            label=label,
             document=document,
             seeds=seeds,
             created=now(),
@@ -121,7 +104,9 @@ class Jobs:
         def settle(session: Session) -> RunRow | None:
             known = session.get(RunRow, row.id)
             if known is not None and (known.state in ACTIVE or known.state == "done"):
+                known.label = label or known.label
                 return known
+            row.label = row.label or (known.label if known is not None else "")
             if has_room:
                 session.merge(row)
             return None
@@ -138,9 +123,9 @@ class Jobs:
         """Carry a run out in its turn."""
         self._tasks[run_id] = asyncio.create_task(self._carry_out(run_id, document, seeds))
 
-    async def all(self, limit: int = 200) -> list[Run]:
-        """List runs, newest first."""
-        query = select(RunRow).order_by(RunRow.created.desc()).limit(limit)
+    async def all(self, wanted: RunFilter) -> list[Run]:
+        """List the runs that are asked for, newest first."""
+        query = wanted.of(RunRow)
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         return [self._live(Run.model_validate(row)) for row in rows]
 
@@ -157,6 +142,15 @@ class Jobs:
             raise not_found("run", run_id)
         return self._live(Run.model_validate(row))
 
+    async def rename(self, run_id: str, label: str) -> Run:
+        """Give a run a name."""
+        await rename(self._database, RunRow, "run", run_id, label)
+        return await self.get(run_id)
+
+    async def remove(self, run_ids: list[str] | None) -> int:
+        """Remove runs that have ended, all of them if none is named, with their files."""
+        return await remove(self._database, RunRow, "run", run_ids, self._folder)
+
     async def cancel(self, run_id: str) -> Run:
         """End a run that waits or is under way; a study under way goes on to its end, and its result is dropped."""
         run = await self.get(run_id)
@@ -171,6 +165,27 @@ class Jobs:
             await asyncio.to_thread((place / CANCEL).touch)
         await asyncio.wait([task], timeout=CANCEL_S)
         return await self.get(run_id)
+
+    async def apart(self, function: Callable[..., T], *arguments: object) -> T:
+        """Call a function in a worker process, in turn with the runs.
+
+        Raises
+        ------
+        RuntimeError
+            When the worker died.
+        """
+        async with self._turn:
+            pool = self._executor()
+            try:
+                return await asyncio.wrap_future(pool.submit(function, *arguments))
+            except BrokenProcessPool:
+                self._pool = None if self._pool is pool else self._pool
+                raise RuntimeError("its worker process died") from None
+
+    async def traces(self, run_ids: list[str]) -> tuple[list[Run], list[Path]]:
+        """Return runs, and where their traces are if they have any."""
+        runs = [await self.get(run_id) for run_id in run_ids]
+        return runs, [(self._folder / run.id / STEM).with_suffix(".parquet") for run in runs]
 
     async def file(self, run_id: str, ending: str) -> tuple[Run, Path]:
         """Return a run that is done, and one of its files."""

@@ -27,6 +27,7 @@ from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
 from server.runs.apart import FEW_POINTS, FEW_RUNS, Apart, contents, examine
 from server.runs.length import check_length
+from server.runs.listing import ACTIVE, RunFilter, remove, rename
 from server.runs.worker import NICE
 from server.settings import Settings
 from server.store.database import Database, reason_of
@@ -35,7 +36,6 @@ from server.store.results import Results
 
 log = logging.getLogger(__name__)
 
-ACTIVE = ("queued", "running")
 T = TypeVar("T")
 
 
@@ -48,6 +48,7 @@ class SweepRun(BaseModel):
     state: str
     name: str
     title: str
+    label: str = Field("", description="Name that somebody gave it")
     version: str
     runs: int = Field(description="Different runs; until all points have been checked, at most")
     done: int = 0
@@ -78,8 +79,8 @@ class Sweeps:
         self._campaigns: dict[str, Campaign] = {}
         self._is_closing = False
 
-    async def start(self, document: dict[str, Any]) -> tuple[SweepRun, bool]:
-        """Queue a campaign, or return the same one if it exists; true when it is new.
+    async def start(self, document: dict[str, Any], label: str = "") -> tuple[SweepRun, bool]:
+        """Queue a campaign, or return the same one if it exists; true when it is new. A name it is given is its name.
 
         Of a campaign with many points only some are checked now. The others are checked while it waits; if one of them
         is wrong, the campaign fails.
@@ -102,6 +103,8 @@ class Sweeps:
         sweep_id = run_key(content_hash({"sweep": document}))[:32]
         known = await self._row(sweep_id)
         if known is not None and known.state in (*ACTIVE, "done"):
+            if label:
+                await self._update(sweep_id, label=label)
             return await self.get(sweep_id), False
         if len(self._tasks) >= settings.max_queued_runs:
             raise ApiError(
@@ -112,6 +115,7 @@ class Sweeps:
             "state": "queued",
             "name": sweep.head.id,
             "title": sweep.head.title,
+            "label": label or (known.label if known is not None else ""),
             "document": json.loads(json.dumps(document, default=str)),
             "version": code_version(),
             "runs": len(set(sweep.contents)) * len(sweep.seeds) if is_checked else len(sweep),
@@ -130,15 +134,24 @@ class Sweeps:
         """Carry a campaign out in its turn."""
         self._tasks[sweep_id] = asyncio.create_task(self._carry_out(sweep_id, document, points, is_checked))
 
-    async def all(self, limit: int = 200) -> list[SweepRun]:
-        """List campaigns, newest first."""
-        query = select(SweepRow).options(defer(SweepRow.document)).order_by(SweepRow.created.desc()).limit(limit)
+    async def all(self, wanted: RunFilter) -> list[SweepRun]:
+        """List the campaigns that are asked for, newest first."""
+        query = wanted.of(SweepRow).options(defer(SweepRow.document))
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         return [self._live(SweepRun.model_validate(row)) for row in rows]
 
     async def get(self, sweep_id: str) -> SweepRun:
         """Return one campaign, or refuse with 404."""
         return self._live(SweepRun.model_validate(await self._known(sweep_id)))
+
+    async def rename(self, sweep_id: str, label: str) -> SweepRun:
+        """Give a campaign a name."""
+        await rename(self._database, SweepRow, "campaign", sweep_id, label)
+        return await self.get(sweep_id)
+
+    async def remove(self, sweep_ids: list[str] | None) -> int:
+        """Remove campaigns that have ended, all if none is named; results stay, for campaigns share them."""
+        return await remove(self._database, SweepRow, "campaign", sweep_ids)
 
     async def cancel(self, sweep_id: str) -> SweepRun:
         """Stop a campaign after the runs in hand; its results stay, and the same campaign can go on from there."""

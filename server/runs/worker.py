@@ -92,3 +92,15 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     summary = dict(json.loads(json.dumps(summary, default=str)))
     keep(kept, summary, seeds, place / STEM)
     return summary
+
+
+def draw(document: dict[str, Any]) -> dict[str, Any]:
+    """Run a scenario with its own seed, and return its summary and its figure; nothing else of it is kept."""
+    from scenarios.report.figure import figure
+    from scenarios.report.svg import CARD, paint
+    from scenarios.run import run
+    from scenarios.schema import Scenario
+
+    result = run(Scenario.load(document))
+    summary = dict(json.loads(json.dumps(result.summary(), default=str)))
+    return {"summary": summary, "svg": paint(figure(result), CARD)}

@@ -54,6 +54,7 @@ class RunRow(Base):
     state: Mapped[str] = mapped_column(String(16), index=True)
     scenario_id: Mapped[str] = mapped_column(String(200))
     title: Mapped[str] = mapped_column(String(400))
+    label: Mapped[str] = mapped_column(String(120), default="", server_default="")
     document: Mapped[dict[str, Any]]
     seeds: Mapped[list[Any]]
     created: Mapped[datetime] = mapped_column(default=now, index=True)
@@ -73,6 +74,7 @@ class SweepRow(Base):
     state: Mapped[str] = mapped_column(String(16), index=True)
     name: Mapped[str] = mapped_column(String(64))
     title: Mapped[str] = mapped_column(String(200))
+    label: Mapped[str] = mapped_column(String(120), default="", server_default="")
     document: Mapped[dict[str, Any]]
     version: Mapped[str] = mapped_column(String(16))
     runs: Mapped[int] = mapped_column(Integer)

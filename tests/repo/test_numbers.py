@@ -9,8 +9,6 @@ import pytest
 
 READ = ("scenarios/report", "core/board/words.py", "core/board/observer.py", "server/cli.py", "server/bench")
 """What writes for people."""
-DRAWN = "thumbnail.py"
-"""A picture without a number; what it rounds are coordinates."""
 
 
 def _general(source: str) -> list[int]:
@@ -27,7 +25,7 @@ def _general(source: str) -> list[int]:
 def test_numbers_for_people_have_one_formatter(root: Path, place: str) -> None:
     """Reports, logs and tables leave the digits to the formatter."""
     start = root / place
-    files = sorted(path for path in start.rglob("*.py") if path.name != DRAWN) if start.is_dir() else [start]
+    files = sorted(start.rglob("*.py")) if start.is_dir() else [start]
     astray = [f"{path.relative_to(root)}:{line}" for path in files for line in _general(path.read_text("utf-8"))]
     assert files
     assert not astray

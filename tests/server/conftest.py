@@ -151,7 +151,8 @@ class Live:
 def serving(folder: Path, **fields: Any) -> Iterator[Live]:
     """Serve from a thread, on a free port, until the test is over."""
     generous = {"command_rate_per_s": 10_000.0, "command_burst": 10_000, "max_benches": 64}
-    settings = Settings(**{"port": 0, "data": folder, "token": TOKEN, **generous, **fields})
+    usual = {"port": 0, "data": folder, "token": TOKEN, "figures": False}
+    settings = Settings(**{**usual, **generous, **fields})
     app = create_app(settings)
     listener = bind(settings)
     server = make_server(settings, app)

@@ -58,4 +58,4 @@ def test_the_monte_carlo_example(tmp_path: Path) -> None:
     # more noise, a worse detector; never worse than chance
     assert 0.98 < areas[0] <= 1.0 and 0.5 < areas[-1] < areas[0] and areas == sorted(areas, reverse=True)
     assert all(f"{area:.4f}" in done.stdout for area in areas) and done.stdout.count("act above") == 4
-    assert "<svg" in (tmp_path / "monte-carlo-roc" / "roc.html").read_text()
+    assert "<svg" in (tmp_path / "monte-carlo-roc" / "roc.svg").read_text()

@@ -33,7 +33,8 @@ export class LabServer {
   }
 
   async start(): Promise<void> {
-    const env = { ...process.env, ...this.settings };
+    // figures take some seconds of the machine: only the test of the gallery has them made
+    const env = { ...process.env, COMBBENCH_FIGURES: "false", ...this.settings };
     const child = spawn(COMBBENCH, ["serve", "--port", String(this.port), "--data", this.data], { env });
     this.process = child;
     let said = "";

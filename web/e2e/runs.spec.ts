@@ -43,7 +43,7 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   await page.getByRole("button", { name: "Start 4000 runs" }).click();
   await page.getByRole("button", { name: "Cancel Campaign ch5-seven-step" }).click({ timeout: 30_000 });
   const jobs = page.getByRole("region", { name: "Runs and campaigns" });
-  await expect(jobs.getByText("cancelled")).toBeVisible({ timeout: 30_000 });
+  await expect(jobs.getByRole("listitem").getByText("cancelled")).toBeVisible({ timeout: 30_000 });
 
   await page.getByRole("textbox", { name: "Seeds", exact: true }).fill("3");
   await page.getByRole("button", { name: "Start 6 runs" }).click();
@@ -52,8 +52,8 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   const rows = result.getByRole("table").first().locator("tbody tr");
   await expect(rows).toHaveCount(2);
   await expect(rows.first()).toContainText("0.05");
-  await result.getByRole("button", { name: "noise µm" }).click();
-  await result.getByRole("button", { name: "noise µm" }).click();
+  await result.getByRole("button", { name: "noise, µm" }).click();
+  await result.getByRole("button", { name: "noise, µm" }).click();
   await expect(rows.first()).toContainText("0.2");
   await expect(result.getByRole("img", { name: /Receiver operating characteristic/ })).toBeVisible();
   await expect(result.getByRole("img", { name: /Detection delay/ })).toBeVisible();
@@ -61,4 +61,56 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   const report = await page.request.get(await addressOf(result.getByRole("link", { name: "Report" })));
   expect(await report.text()).toContain("Receiver operating characteristic");
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
+});
+
+test("runs are named, found, compared and removed", async ({ page, server }) => {
+  const wait = async (seed: number, label: string) => {
+    const body = { scenario: "ch5-seven-step", set: { samples: 800 }, seed, label };
+    const { id } = await server.ask<{ id: string }>("POST", "/runs", body);
+    const state = () => server.ask<{ state: string }>("GET", `/runs/${id}`).then((found) => found.state);
+    await expect.poll(state, { timeout: 60_000 }).toBe("done");
+    return id;
+  };
+  const first = await wait(71, "quiet bench");
+  const second = await wait(72, "quiet bench again");
+  await page.request.get(server.url);
+  await page.goto(`${server.origin}/?page=runs&run=${first}`);
+  const jobs = page.getByRole("region", { name: "Runs and campaigns" });
+  const result = page.getByRole("region", { name: "Result" });
+
+  const name = result.getByRole("textbox", { name: "Name" });
+  await name.fill("loud bench");
+  await name.press("Enter");
+  await expect(result.getByRole("heading", { name: "loud bench" })).toBeVisible();
+
+  await jobs.getByRole("searchbox").fill("bench");
+  await expect(jobs.getByRole("listitem")).toHaveCount(2);
+  await jobs.getByRole("searchbox").fill("no such run");
+  await jobs.getByRole("button", { name: "Show all" }).click();
+  await jobs.getByRole("combobox", { name: "Scenario of the runs" }).selectOption("ch5-seven-step");
+  await jobs.getByRole("combobox", { name: "State" }).selectOption("done");
+  await jobs.getByRole("searchbox").fill("bench");
+  await expect(jobs.getByRole("listitem")).toHaveCount(2);
+
+  for (const box of await jobs.getByRole("checkbox").all()) await box.check();
+  await jobs.getByRole("button", { name: "Compare 2" }).click();
+  await expect(page).toHaveURL(/[?&]compare=/);
+  const row = result.getByRole("row", { name: /^rms error, µm/ });
+  const { figures } = await server.ask<{ figures: { metric: string; differences: number[] }[] }>(
+    "GET",
+    `/runs/compare?ids=${second}&ids=${first}`,
+  );
+  const difference = figures.find(({ metric }) => metric === "control.rms_error_um")?.differences[1] ?? 0;
+  expect(difference).not.toBe(0);
+  await expect(row.getByRole("cell").last()).toHaveText(difference > 0 ? /^\+/ : /^−/);
+  await expect(result.getByRole("img", { name: /^plant.displacement: displacement, µm/ })).toBeVisible();
+  await seriousViolations(page).then((found) => expect(found).toEqual([]));
+
+  page.once("dialog", (dialog) => dialog.dismiss());
+  await jobs.getByRole("button", { name: "Remove 2" }).click();
+  await expect(jobs.getByRole("listitem")).toHaveCount(2);
+  page.once("dialog", (dialog) => dialog.accept());
+  await jobs.getByRole("button", { name: "Remove 2" }).click();
+  await expect(jobs.getByText("No run is like that")).toBeVisible();
+  await expect(server.ask("GET", `/runs/${first}`)).rejects.toThrow("not_found");
 });

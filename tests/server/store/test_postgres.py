@@ -64,6 +64,10 @@ def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: 
             assert time.monotonic() < end
             time.sleep(0.1)
         assert (found["state"], found["done"]) == ("done", 4)
+        assert live.http.patch(f"/api/v1/sweeps/{sweep['id']}", json={"label": "a % sign"}).status_code == 200
+        for query, count in (("text=%25", 1), ("text=_", 0), ("scenario=ch5-seven-step&state=done", 1)):
+            assert len(live.http.get(f"/api/v1/sweeps?{query}").json()["sweeps"]) == count
+        assert live.http.get("/api/v1/runs?text=SEVEN-step").json()["runs"][0]["id"] == done["id"]
         bench = stepped(live, 500)
         kept = live.http.post(recordings(bench), json={"past_ticks": 400, "ticks": 0}).json()
         assert ended(live, kept["id"])["ticks"] == 400
@@ -74,6 +78,8 @@ def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: 
         points = live.http.get(f"/api/v1/sweeps/{sweep['id']}/points").json()["points"]
         assert points[0]["runs"] == 4
         assert live.http.get(f"/api/v1/recordings/{kept['id']}/trace").status_code == 200
+        assert live.http.post("/api/v1/sweeps/remove", json={"ids": [sweep["id"]]}).json() == {"removed": 1}
+        assert live.http.get("/api/v1/sweeps").json()["sweeps"] == []
     database = Database(address)
     assert database.transact(lambda session: session.query(RunRow).count()) == 1
     assert database.transact(lambda session: session.query(ResultRow).count()) == 4

@@ -870,7 +870,7 @@ export interface paths {
         };
         /**
          * List Runs
-         * @description List runs.
+         * @description List runs, newest first; text, state and scenario choose among them.
          */
         get: operations["list_runs_api_v1_runs_get"];
         put?: never;
@@ -879,6 +879,66 @@ export interface paths {
          * @description Queue a headless run; it does not disturb the live benches.
          */
         post: operations["start_run_api_v1_runs_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/remove": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Remove Runs
+         * @description Remove runs that have ended, and their files; all that have ended if none is named.
+         */
+        post: operations["remove_runs_api_v1_runs_remove_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/compare": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Compare Finished Runs
+         * @description Put finished runs side by side: figures, differences from the first run, and the signals that all have.
+         */
+        get: operations["compare_finished_runs_api_v1_runs_compare_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/compare/trace": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Compare Traces
+         * @description Return one signal of several finished runs, to be laid over each other.
+         */
+        get: operations["compare_traces_api_v1_runs_compare_trace_get"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -906,7 +966,11 @@ export interface paths {
         delete: operations["cancel_run_api_v1_runs__run_id__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Rename Run
+         * @description Give a run a name.
+         */
+        patch: operations["rename_run_api_v1_runs__run_id__patch"];
         trace?: never;
     };
     "/api/v1/runs/{run_id}/trace": {
@@ -998,7 +1062,7 @@ export interface paths {
         };
         /**
          * List Sweeps
-         * @description List campaigns.
+         * @description List campaigns, newest first; text, state and scenario choose among them.
          */
         get: operations["list_sweeps_api_v1_sweeps_get"];
         put?: never;
@@ -1007,6 +1071,26 @@ export interface paths {
          * @description Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one.
          */
         post: operations["start_sweep_api_v1_sweeps_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/remove": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Remove Sweeps
+         * @description Remove campaigns that have ended; all that have ended if none is named.
+         */
+        post: operations["remove_sweeps_api_v1_sweeps_remove_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1034,7 +1118,11 @@ export interface paths {
         delete: operations["cancel_sweep_api_v1_sweeps__sweep_id__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Rename Sweep
+         * @description Give a campaign a name.
+         */
+        patch: operations["rename_sweep_api_v1_sweeps__sweep_id__patch"];
         trace?: never;
     };
     "/api/v1/sweeps/{sweep_id}/points": {
@@ -1126,9 +1214,29 @@ export interface paths {
         };
         /**
          * Get Gallery
-         * @description Show every library scenario: claim, expectations, and the result of its run.
+         * @description Show every library scenario: claim, expectations, figure, and what was measured.
          */
         get: operations["get_gallery_api_v1_gallery_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/gallery/{scenario_id}/figure": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Figure
+         * @description Return the figure of a library scenario: what it is about, small, with axes and units.
+         */
+        get: operations["get_figure_api_v1_gallery__scenario_id__figure_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2102,6 +2210,17 @@ export interface components {
             amplitude_v: number;
         };
         /**
+         * Ended
+         * @description Runs or campaigns that have ended.
+         */
+        Ended: {
+            /**
+             * Ids
+             * @description All that have ended when left out
+             */
+            ids?: string[] | null;
+        };
+        /**
          * EquationCard
          * @description An equation, with its erratum when the printed one is wrong.
          */
@@ -2332,6 +2451,41 @@ export interface components {
             equation: components["schemas"]["EquationCard"];
         };
         /**
+         * FigureProgress
+         * @description How many figures are there.
+         */
+        FigureProgress: {
+            /** Made */
+            made: number;
+            /** Total */
+            total: number;
+            /** Is Making */
+            is_making: boolean;
+            /**
+             * Problem
+             * @description What went wrong last, in one line
+             */
+            problem: string;
+        };
+        /**
+         * FigureRow
+         * @description One figure of all runs.
+         */
+        FigureRow: {
+            /** Metric */
+            metric: string;
+            /**
+             * Values
+             * @description In the order of the runs; null where a run has no such figure
+             */
+            values: (number | null)[];
+            /**
+             * Differences
+             * @description Each value less that of the first run
+             */
+            differences: (number | null)[];
+        };
+        /**
          * FittedCurve
          * @description The response of the device found, and that of the nominal one.
          */
@@ -2377,10 +2531,11 @@ export interface components {
         Gallery: {
             /** Cards */
             cards: components["schemas"]["GalleryCard"][];
+            figures: components["schemas"]["FigureProgress"];
         };
         /**
          * GalleryCard
-         * @description A scenario of the library and its run, if there has been one with this version of the code.
+         * @description A scenario of the library, its figure, and its run if there has been one with this version of the code.
          */
         GalleryCard: {
             /** Id */
@@ -2395,6 +2550,26 @@ export interface components {
             claim: string;
             /** Verdict */
             verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /**
+             * Demo
+             * @description Made for first visits and lectures
+             */
+            demo: boolean;
+            /**
+             * Topics
+             * @description Device, controllers, diagnosers and faults it is about
+             */
+            topics: string[];
+            /**
+             * Figure
+             * @description Key of its figure at /gallery/{id}/figure; null until it is made
+             */
+            figure: string | null;
+            /**
+             * Problem
+             * @description Why it has no figure, if it cannot be made
+             */
+            problem: string;
             /**
              * Study
              * @description Kind of the study; null for a scenario that runs on a bench
@@ -2418,7 +2593,7 @@ export interface components {
             digest: string;
             /**
              * Ok
-             * @description Whether all expectations hold; null until it has been run
+             * @description Whether all expectations hold; null until they have been measured
              */
             ok: boolean | null;
             /** Expectations */
@@ -2982,6 +3157,17 @@ export interface components {
             time_scale?: number | null;
         };
         /**
+         * NewLabel
+         * @description A name for a run or a campaign.
+         */
+        NewLabel: {
+            /**
+             * Label
+             * @description At most 120 characters; empty takes the name away
+             */
+            label: string;
+        };
+        /**
          * NewLink
          * @description What a link is to lead to: a bench as it is now, a scenario, or a layout of the page alone.
          */
@@ -3040,6 +3226,12 @@ export interface components {
             /** Seed */
             seed?: number | null;
             /**
+             * Label
+             * @description Name for the run, at most 120 characters
+             * @default
+             */
+            label?: string;
+            /**
              * Seeds
              * @description First seed and the one behind the last
              */
@@ -3068,6 +3260,12 @@ export interface components {
             sweep: string | {
                 [key: string]: unknown;
             };
+            /**
+             * Label
+             * @description Name for the campaign, at most 120 characters
+             * @default
+             */
+            label?: string;
         };
         /**
          * NoiseFigure
@@ -3550,6 +3748,14 @@ export interface components {
             kind?: "redo";
         };
         /**
+         * Removed
+         * @description How many were removed.
+         */
+        Removed: {
+            /** Removed */
+            removed: number;
+        };
+        /**
          * Replay
          * @description The speed of a replay.
          */
@@ -3657,6 +3863,12 @@ export interface components {
             scenario_id: string;
             /** Title */
             title: string;
+            /**
+             * Label
+             * @description Name that somebody gave it
+             * @default
+             */
+            label?: string;
             /** Seeds */
             seeds: number[];
             /**
@@ -3678,12 +3890,58 @@ export interface components {
             } | null;
         };
         /**
+         * RunComparison
+         * @description Runs side by side.
+         */
+        RunComparison: {
+            /** Runs */
+            runs: components["schemas"]["Run"][];
+            /** Figures */
+            figures: components["schemas"]["FigureRow"][];
+            /** Signals */
+            signals: components["schemas"]["RunSignal"][];
+        };
+        /**
          * RunList
          * @description Runs, newest first.
          */
         RunList: {
             /** Runs */
             runs: components["schemas"]["Run"][];
+        };
+        /**
+         * RunSignal
+         * @description A signal whose trace all runs have.
+         */
+        RunSignal: {
+            /** Name */
+            name: string;
+            /** Unit */
+            unit: string;
+        };
+        /**
+         * RunTrace
+         * @description One signal of one run, thinned to the smallest and largest value of each column.
+         */
+        RunTrace: {
+            /** Id */
+            id: string;
+            /** Time Ms */
+            time_ms: number[];
+            /** Values */
+            values: number[];
+        };
+        /**
+         * RunTraces
+         * @description One signal of several runs, to be laid over each other.
+         */
+        RunTraces: {
+            /** Signal */
+            signal: string;
+            /** Unit */
+            unit: string;
+            /** Runs */
+            runs: components["schemas"]["RunTrace"][];
         };
         /**
          * SafeBoundary
@@ -4041,6 +4299,12 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+            /**
+             * Label
+             * @description Name that somebody gave it
+             * @default
+             */
+            label?: string;
             /** Version */
             version: string;
             /**
@@ -6340,7 +6604,14 @@ export interface operations {
     };
     list_runs_api_v1_runs_get: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Words in the name, the title or the id of the scenario */
+                text?: string;
+                /** @description Only those in this state */
+                state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
+                /** @description Only those of this scenario */
+                scenario?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -6409,6 +6680,105 @@ export interface operations {
             };
         };
     };
+    remove_runs_api_v1_runs_remove_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Ended"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Removed"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    compare_finished_runs_api_v1_runs_compare_get: {
+        parameters: {
+            query: {
+                /** @description Runs, the one to compare with first */
+                ids: string[];
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunComparison"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    compare_traces_api_v1_runs_compare_trace_get: {
+        parameters: {
+            query: {
+                /** @description Runs, the one to compare with first */
+                ids: string[];
+                signal: string;
+                columns?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunTraces"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     get_run_api_v1_runs__run_id__get: {
         parameters: {
             query?: never;
@@ -6450,6 +6820,41 @@ export interface operations {
             cookie?: never;
         };
         requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Run"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    rename_run_api_v1_runs__run_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLabel"];
+            };
+        };
         responses: {
             /** @description Successful Response */
             200: {
@@ -6608,7 +7013,14 @@ export interface operations {
     };
     list_sweeps_api_v1_sweeps_get: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Words in the name, the title or the id of the scenario */
+                text?: string;
+                /** @description Only those in this state */
+                state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
+                /** @description Only those of this scenario */
+                scenario?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -6677,6 +7089,39 @@ export interface operations {
             };
         };
     };
+    remove_sweeps_api_v1_sweeps_remove_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Ended"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Removed"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     get_sweep_api_v1_sweeps__sweep_id__get: {
         parameters: {
             query?: never;
@@ -6718,6 +7163,41 @@ export interface operations {
             cookie?: never;
         };
         requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    rename_sweep_api_v1_sweeps__sweep_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLabel"];
+            };
+        };
         responses: {
             /** @description Successful Response */
             200: {
@@ -6882,6 +7362,37 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_figure_api_v1_gallery__scenario_id__figure_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scenario_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
                 };
             };
             /** @description Refused or failed */

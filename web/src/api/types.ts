@@ -1,4 +1,4 @@
-import type { components } from "./schema";
+import type { components, operations } from "./schema";
 
 /** The server's own types, under the names the page uses. */
 type Schemas = components["schemas"];
@@ -21,6 +21,7 @@ export type Equation = Schemas["EquationCard"];
 export type Evaluation = Schemas["Evaluation"];
 export type DiagnosisTally = Schemas["DiagnosisTally"];
 export type FaultProfile = Schemas["Profile"];
+export type Gallery = Schemas["Gallery"];
 export type GalleryCard = Schemas["GalleryCard"];
 export type ExcitationSource = Schemas["ExcitationSource"];
 export type ExcitationReport = Schemas["ExcitationReport"];
@@ -44,6 +45,7 @@ export type RateReadout = Schemas["RateReadout"];
 export type Recording = Schemas["Recording"];
 export type Run = Schemas["Run"];
 export type ScenarioSummary = Schemas["ScenarioCard"];
+export type RunComparison = Schemas["RunComparison"];
 export type Score = Schemas["Scores"];
 export type Signal = Schemas["Signal"];
 export type SweepPoints = Schemas["SweepPoints"];
@@ -53,6 +55,9 @@ export type Wanted = Schemas["Wanted"];
 export type Trace = Schemas["Trace"];
 export type Turn = Schemas["Turn"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
+
+/** Which runs and campaigns a list has. */
+export type RunFilter = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
 
 /** A scenario document as plain values. */
 export type Document = Bench["parameters"];

@@ -6,7 +6,7 @@ export const VERDICTS = ["reproduced", "reproduced by tuning", "partly", "not re
 export interface GalleryFilter {
   /** A chapter, an appendix, or "all". */
   chapter: string;
-  /** One of the verdicts, "open" for what has not been run or does not hold, or "all". */
+  /** One of the verdicts, "open" for what has not been measured or does not hold, or "all". */
   verdict: string;
   words: string;
 }
@@ -37,15 +37,40 @@ export function chapterName(chapter: string): string {
   return /\d/.test(chapter) ? `Chapter ${chapter}` : `Appendix ${chapter}`;
 }
 
-/** The cards a filter leaves, in the order of the book. */
+/** Where a word may stand in a card, and how much it says there. */
+const PLACES: readonly [number, (card: GalleryCard) => string][] = [
+  [8, (card) => card.id.replaceAll("-", " ")],
+  [6, (card) => card.title],
+  [4, (card) => card.topics.join(" ")],
+  [3, (card) => `${chapterName(chapterOf(card.id))} ${card.id}`],
+  [1, (card) => `${card.source} ${card.summary} ${card.claim}`],
+];
+
+/** How well a card fits a word: the best place it stands in, twice as well at the start of a word; 0 if nowhere. */
+function weightOf(card: GalleryCard, word: string): number {
+  const start = new RegExp(`(?:^|[\\s(-])${word.replaceAll(/[\\^$.*+?()[\]{}|]/g, "\\$&")}`);
+  const isNumber = /^\d+$/.test(word); // which is no part of another number
+  let best = 0;
+  for (const [weight, of] of PLACES) {
+    const text = of(card).toLowerCase();
+    if (start.test(text)) best = Math.max(best, 2 * weight);
+    else if (!isNumber && text.includes(word)) best = Math.max(best, weight);
+  }
+  return best;
+}
+
+/** The cards a filter leaves: without words demos first, then in the order of the book; with words the best fit first. */
 export function chosen(cards: readonly GalleryCard[], filter: GalleryFilter): GalleryCard[] {
   const words = filter.words.toLowerCase().split(/\s+/).filter(Boolean);
-  const left = cards.filter((card) => {
-    if (filter.chapter !== "all" && chapterOf(card.id) !== filter.chapter) return false;
-    if (filter.verdict === "open" && card.ok === true) return false;
-    if (filter.verdict !== "all" && filter.verdict !== "open" && card.verdict !== filter.verdict) return false;
-    const text = `${card.id} ${card.title} ${card.summary} ${card.claim} ${card.source}`.toLowerCase();
-    return words.every((word) => text.includes(word));
-  });
-  return left.sort(byChapter);
+  return cards
+    .filter((card) => {
+      if (filter.chapter !== "all" && chapterOf(card.id) !== filter.chapter) return false;
+      if (filter.verdict === "open") return card.ok !== true;
+      return filter.verdict === "all" || card.verdict === filter.verdict;
+    })
+    .map((card) => ({ card, fits: words.map((word) => weightOf(card, word)) }))
+    .filter(({ fits }) => fits.every((one) => one > 0))
+    .map(({ card, fits }) => ({ card, total: fits.reduce((sum, one) => sum + one, 0) }))
+    .sort((a, b) => b.total - a.total || Number(b.card.demo) - Number(a.card.demo) || byChapter(a.card, b.card))
+    .map(({ card }) => card);
 }

@@ -1,7 +1,7 @@
 import { useState } from "react";
 import type { GalleryCard } from "../api/types";
 import { formatFigure } from "../ui/format";
-import { metricName } from "../ui/metric-name";
+import { metricTitle, micro } from "../ui/metric-name";
 import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
 
@@ -34,22 +34,20 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
         </thead>
         <tbody>
           {rows.map((entry) => (
-            <tr key={entry.metric} title={`${entry.metric}${entry.note ? `: ${entry.note}` : ""}`}>
+            <tr key={entry.metric} title={micro(`${entry.metric}${entry.note ? `: ${entry.note}` : ""}`)}>
               <th scope="row">
-                {metricName(entry.metric)}
+                {metricTitle(entry.metric)}
                 {entry.verdict !== verdict && (
                   <div>
                     <Verdict verdict={entry.verdict} borneOut={entry.ok === true} />
                   </div>
                 )}
-                {all && entry.note && <small>{entry.note}</small>}
+                {all && entry.note && <small>{micro(entry.note)}</small>}
               </th>
-              <td>{entry.published?.replaceAll(" %", "\u00a0%") || "–"}</td>
+              <td>{micro(entry.published ?? "").replaceAll(" %", "\u00a0%") || "–"}</td>
               <td className={styles.expected}>{typeset(entry.expected)}</td>
               <td data-ok={entry.ok}>
-                {entry.measured === null || entry.measured === undefined
-                  ? "–"
-                  : formatFigure(entry.metric, entry.measured)}
+                {formatFigure(entry.metric, entry.measured)}
                 {entry.ok === false && " ✗"}
               </td>
             </tr>

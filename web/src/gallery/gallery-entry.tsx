@@ -6,13 +6,23 @@ import type { GalleryCard } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
+import { micro } from "../ui/metric-name";
 import { Verdict } from "../ui/verdict";
 import { ExpectationTable } from "./expectation-table";
 import styles from "./gallery.module.css";
+import { headlines } from "./headline";
 
-/** A scenario of the library: its run as a drawing, its claim beside what was measured, and the two ways to run it. */
-export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged(): void }) {
+interface GalleryEntryProps {
+  card: GalleryCard;
+  /** Whether the server still makes figures. */
+  isMaking: boolean;
+  onChanged(): void;
+}
+
+/** A scenario of the library: its figure, its claim beside what was measured, and the two ways to run it. */
+export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
   const [starting, setStarting] = useState(false);
+  const title = micro(card.title);
   const underWay = card.state === "queued" || card.state === "running";
 
   const live = async () => {
@@ -30,34 +40,46 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
   return (
     <li className={styles.card}>
       <div className={styles.thumbnail}>
-        {card.state === "done" && card.run ? (
-          <img
-            src={`./api/v1/runs/${card.run}/thumbnail`}
-            alt={card.study ? "Measured figures on the bars expected" : "Displacement and verdicts over the run"}
-            loading="lazy"
-          />
-        ) : underWay ? (
+        {card.figure ? (
+          <img src={`./api/v1/gallery/${card.id}/figure?v=${card.figure}`} alt={`Figure of ${title}`} loading="lazy" />
+        ) : card.state === "done" && card.run ? (
+          <img src={`./api/v1/runs/${card.run}/thumbnail`} alt={`Figure of ${title}`} loading="lazy" />
+        ) : (
+          !underWay && (
+            <div className={styles.wait} data-failed={card.problem !== ""}>
+              {card.problem ? `No figure: ${card.problem}` : isMaking ? "Its figure is being made" : "Not measured yet"}
+            </div>
+          )
+        )}
+        {underWay && (
           <div className={styles.wait}>
             {card.state === "queued" ? "waits for its turn" : "running"}
-            <Progress value={card.progress * 100} size="sm" w="60%" aria-label={`Progress of ${card.title}`} />
+            <Progress value={card.progress * 100} size="sm" w="60%" aria-label={`Progress of ${title}`} />
           </div>
-        ) : (
-          <div className={styles.wait}>{card.state === "new" ? "not run yet" : card.state}</div>
         )}
       </div>
       <div className={styles.words}>
-        <h2>{card.title}</h2>
+        <h2>{title}</h2>
         <small>
           {card.id}
           {card.source && ` · ${card.source}`}
         </small>
-        <p>{card.claim || card.summary}</p>
+        {headlines(card).map(({ metric, figure, ours, printed }) => (
+          <p key={metric} className={styles.headline}>
+            {figure}: <b>ours {ours}</b> / printed {printed}
+          </p>
+        ))}
+        <p>{micro(card.claim || card.summary)}</p>
       </div>
       <ExpectationTable entries={card.expectations} verdict={card.verdict} />
       <footer>
         <Verdict verdict={card.verdict} borneOut={card.ok === true} />
         <span className={styles.ok} data-ok={card.ok}>
-          {card.ok === null ? "" : card.ok ? "measured as expected" : "other than expected"}
+          {card.ok === null || card.expectations.length === 0
+            ? ""
+            : card.ok
+              ? "measured as expected"
+              : "other than expected"}
         </span>
         <div className={styles.buttons}>
           {card.state === "done" && card.run && (
@@ -68,7 +90,7 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
               size="compact-sm"
               variant="subtle"
               leftSection={<IconFileText size={15} />}
-              aria-label={`Report of ${card.title}`}
+              aria-label={`Report of ${title}`}
             >
               Report
             </Button>
@@ -79,8 +101,9 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
               variant="default"
               leftSection={<IconPlayerTrackNext size={15} />}
               disabled={underWay}
+              title="Headless, with report, trace and script; at lower priority than the live benches"
               onClick={headless}
-              aria-label={`Run ${card.title} headless`}
+              aria-label={`Run ${title} headless`}
             >
               Run
             </Button>
@@ -92,7 +115,7 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
               leftSection={<IconPlayerPlay size={15} />}
               loading={starting}
               onClick={live}
-              aria-label={`Open ${card.title} live`}
+              aria-label={`Open ${title} live`}
             >
               Live
             </Button>

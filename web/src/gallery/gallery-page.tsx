@@ -1,11 +1,11 @@
-import { Button, NativeSelect, TextInput } from "@mantine/core";
-import { IconFolderOpen, IconPlayerTrackNext } from "@tabler/icons-react";
+import { Button, NativeSelect, Progress, TextInput } from "@mantine/core";
+import { IconFolderOpen } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/use-answer";
-import { showError } from "../bench/send";
 import { useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
+import { formatCount, formatNumber } from "../ui/format";
 import { Stale } from "../ui/stale";
 import { chapterName, chaptersOf, chosen, EVERYTHING, VERDICTS } from "./chapters";
 import styles from "./gallery.module.css";
@@ -13,33 +13,19 @@ import { GalleryEntry } from "./gallery-entry";
 
 const BUSY_MS = 700;
 const CALM_MS = 15_000;
-/** Between two starts, so that the server's limit on commands is never met. */
-const PACE_MS = 60;
-
 const isUnderWay = (state: string) => state === "queued" || state === "running";
 
 /** Every experiment of the library: what is claimed, what was measured, and whether that agrees. */
 export function GalleryPage() {
   const { value, error, since, again } = useAnswer(api.gallery, (now) =>
-    now?.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS,
+    now?.figures.is_making || now?.cards.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS,
   );
   const [filter, setFilter] = useState(EVERYTHING);
-  const cards = useMemo(() => chosen(value ?? [], filter), [value, filter]);
-  const missing = cards.filter((card) => card.state !== "done" && !isUnderWay(card.state));
-  const busy = value?.filter((card) => isUnderWay(card.state)).length ?? 0;
+  const all = value?.cards;
+  const figures = value?.figures;
+  const cards = useMemo(() => chosen(all ?? [], filter), [all, filter]);
+  const busy = all?.filter((card) => isUnderWay(card.state)).length ?? 0;
   const set = (part: Partial<typeof filter>) => setFilter({ ...filter, ...part });
-
-  const runMissing = async () => {
-    try {
-      for (const { id } of missing) {
-        await api.startRun({ scenario: id });
-        await new Promise((resolve) => setTimeout(resolve, PACE_MS));
-      }
-    } catch (refused) {
-      showError(refused);
-    }
-    again();
-  };
 
   return (
     <main className={styles.page}>
@@ -51,7 +37,7 @@ export function GalleryPage() {
           value={filter.chapter}
           data={[
             { value: "all", label: "All chapters" },
-            ...chaptersOf(value ?? []).map((name) => ({ value: name, label: chapterName(name) })),
+            ...chaptersOf(all ?? []).map((name) => ({ value: name, label: chapterName(name) })),
           ]}
           onChange={(e) => set({ chapter: e.currentTarget.value })}
         />
@@ -62,22 +48,25 @@ export function GalleryPage() {
           data={[
             { value: "all", label: "Any verdict" },
             ...VERDICTS.map((verdict) => ({ value: verdict, label: verdict })),
-            { value: "open", label: "not run, or other than expected" },
+            { value: "open", label: "not measured, or other than expected" },
           ]}
           onChange={(e) => set({ verdict: e.currentTarget.value })}
         />
         <TextInput
           size="xs"
           type="search"
-          placeholder="Search"
+          placeholder="Title, device, controller, fault"
           aria-label="Search the gallery"
+          w={240}
           value={filter.words}
           onChange={(e) => set({ words: e.currentTarget.value })}
         />
-        {value && (
+        {all && (
           <output className={styles.count}>
-            {cards.length === value.length ? `${value.length} experiments` : `${cards.length} of ${value.length}`}
-            {busy > 0 && `, ${busy} under way`}
+            {cards.length === all.length
+              ? formatCount(all.length, "experiment")
+              : `${formatNumber(cards.length, 0)} of ${formatNumber(all.length, 0)}`}
+            {busy > 0 && `, ${formatNumber(busy, 0)} under way`}
           </output>
         )}
         <Button
@@ -88,23 +77,28 @@ export function GalleryPage() {
         >
           Mine, or from disk
         </Button>
-        <Stale error={error} since={since} onRetry={again} />
-        {missing.length > 0 && (
-          <Button
-            size="xs"
-            ml="auto"
-            leftSection={<IconPlayerTrackNext size={16} />}
-            title="Headless, one after the other, at lower priority than the live benches"
-            onClick={runMissing}
-          >
-            Run the {missing.length} not run yet
-          </Button>
+        {figures?.is_making && (
+          <div className={styles.making}>
+            Figures: {formatNumber(figures.made, 0)} of {formatNumber(figures.total, 0)}
+            <Progress
+              value={(100 * figures.made) / figures.total}
+              size="sm"
+              w={120}
+              aria-label="Figures that have been made"
+            />
+          </div>
         )}
+        {figures?.problem && (
+          <p className={styles.problem} role="status">
+            {figures.problem}
+          </p>
+        )}
+        <Stale error={error} since={since} onRetry={again} />
       </header>
       {value && cards.length > 0 ? (
         <ul className={styles.grid} data-stale={error !== undefined} aria-label="Experiments">
           {cards.map((card) => (
-            <GalleryEntry key={card.id} card={card} onChanged={again} />
+            <GalleryEntry key={card.id} card={card} isMaking={figures?.is_making === true} onChanged={again} />
           ))}
         </ul>
       ) : value ? (

@@ -7,10 +7,12 @@ import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
-import { metricTitle } from "../ui/metric-name";
+import { metricTitle, micro } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { ReportButton, ScriptButton } from "./file-buttons";
+import { sweepName } from "./jobs";
+import { NameField } from "./name-field";
 import { metricsOf, numericAxes, trend, usualMetrics } from "./points";
 import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
@@ -19,7 +21,7 @@ const BUSY_MS = 2000;
 const MOST_TRENDS = 6;
 
 /** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
-export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
+export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
   const active = sweep.state === "queued" || sweep.state === "running";
   // biome-ignore lint/correctness/useExhaustiveDependencies: the end of a campaign is worth a question
   const ask = useCallback(() => api.sweepPoints(sweep.id), [sweep.id, active]);
@@ -32,11 +34,16 @@ export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
   return (
     <article className={styles.result}>
       <header>
-        <h2>{sweep.title || `Campaign ${sweep.name}`}</h2>
+        <h2>{sweepName(sweep)}</h2>
         <small>
           {formatNumber(sweep.done ?? 0, 0)} of {formatCount(sweep.runs, "run")} · {sweep.state}
           {sweep.error && `: ${String(sweep.error.message)}`}
         </small>
+        <NameField
+          label={sweep.label ?? ""}
+          title={micro(sweep.title) || `Campaign ${sweep.name}`}
+          save={(label) => api.renameSweep(sweep.id, label).then(onChanged)}
+        />
       </header>
       <Stale error={error} since={since} onRetry={again} />
       {points.length === 0 ? (
@@ -59,7 +66,7 @@ export function CampaignDetail({ sweep }: { sweep: SweepRun }) {
             size="xs"
             label="Figures"
             searchable
-            data={metricsOf(points)}
+            data={metricsOf(points).map((name) => ({ value: name, label: metricTitle(name) }))}
             value={shown}
             onChange={setMetrics}
             maxDropdownHeight={300}

@@ -14,7 +14,7 @@ it("reads several values, and evenly spaced ones", () => {
 
 it("asks for seeds from the first to the one behind the last", () => {
   const draft = { ...newDraft("first-look"), firstSeed: 5, seeds: 3, set: [{ path: "sensor.noise_um", text: "0.1" }] };
-  expect(runOf(draft)).toEqual({ scenario: "first-look", set: { "sensor.noise_um": 0.1 }, seeds: [5, 8] });
+  expect(runOf(draft)).toEqual({ scenario: "first-look", label: "", set: { "sensor.noise_um": 0.1 }, seeds: [5, 8] });
 });
 
 it("writes a grid, and counts its points times the devices", () => {

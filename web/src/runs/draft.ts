@@ -20,6 +20,8 @@ export interface RangeRow {
 export interface Draft {
   kind: "run" | "campaign";
   scenario: string;
+  /** Name of the run or campaign; empty: its title. */
+  label: string;
   set: Row[];
   firstSeed: number;
   seeds: number;
@@ -39,6 +41,7 @@ export function newDraft(scenario: string): Draft {
   return {
     kind: "run",
     scenario,
+    label: "",
     set: [],
     firstSeed: 1,
     seeds: 1,
@@ -92,8 +95,8 @@ const setOf = (rows: readonly Row[]) =>
 
 /** What a run is asked for with. */
 export function runOf(draft: Draft) {
-  const { scenario, firstSeed, seeds } = draft;
-  return { scenario, set: setOf(draft.set), seeds: [firstSeed, firstSeed + seeds] };
+  const { scenario, label, firstSeed, seeds } = draft;
+  return { scenario, label, set: setOf(draft.set), seeds: [firstSeed, firstSeed + seeds] };
 }
 
 /** The campaign's document, as a file would have it. */

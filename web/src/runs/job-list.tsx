@@ -1,115 +1,131 @@
-import { ActionIcon, Progress } from "@mantine/core";
-import { IconPlayerStopFilled } from "@tabler/icons-react";
+import { ActionIcon, Button, Checkbox, Progress } from "@mantine/core";
+import { IconArrowsDiff, IconPlayerStopFilled, IconTrash } from "@tabler/icons-react";
+import { useState } from "react";
 import { api } from "../api/api";
-import type { Run, SweepRun } from "../api/types";
 import { showError } from "../bench/send";
-import { formatCount, formatNumber } from "../ui/format";
+import { formatCount } from "../ui/format";
+import { type Job, stateText } from "./jobs";
 import styles from "./runs.module.css";
 import type { Chosen } from "./use-chosen";
-
-interface Common {
-  id: string;
-  title: string;
-  /** What it consists of, in a few words. */
-  about: string;
-  state: string;
-  created: string;
-  progress: number;
-  isActive: boolean;
-}
-
-export type Job = Common & ({ kind: "run"; run: Run } | { kind: "campaign"; sweep: SweepRun });
-
-const isActive = (state: string) => state === "queued" || state === "running";
-
-/** Runs and campaigns as one list, newest first. */
-export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[] {
-  return [
-    ...runs.map(
-      (run): Job => ({
-        kind: "run",
-        run,
-        id: run.id,
-        title: run.title || run.scenario_id,
-        about: `${run.scenario_id} · ${run.seeds.length > 1 ? formatCount(run.seeds.length, "seed") : `seed ${run.seeds[0]}`}`,
-        state: run.state,
-        created: run.created,
-        progress: run.progress,
-        isActive: isActive(run.state),
-      }),
-    ),
-    ...sweeps.map(
-      (sweep): Job => ({
-        kind: "campaign",
-        sweep,
-        id: sweep.id,
-        title: sweep.title || `Campaign ${sweep.name}`,
-        about: `${formatNumber(sweep.done ?? 0, 0)} of ${formatCount(sweep.runs, "run")}`,
-        state: sweep.state,
-        created: sweep.created,
-        progress: sweep.runs ? (sweep.done ?? 0) / sweep.runs : 0,
-        isActive: isActive(sweep.state),
-      }),
-    ),
-  ].sort((a, b) => Date.parse(b.created) - Date.parse(a.created));
-}
 
 interface JobListProps {
   jobs: Job[];
   chosen: Chosen | undefined;
-  onChoose(chosen: Chosen): void;
+  onChoose(chosen: Chosen | undefined): void;
   onChanged(): void;
 }
 
-/** Everything that was asked for, newest first; what is under way shows how far it is. */
+const MOST_COMPARED = 8;
+const keyOf = (job: Job) => `${job.kind} ${job.id}`;
+
+/** Everything that was asked for, newest first; marked ones are compared or removed. */
 export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
+  const [marked, setMarked] = useState<ReadonlySet<string>>(new Set());
+  const marks = jobs.filter((job) => marked.has(keyOf(job)));
+  const finished = marks.filter((job) => job.kind === "run" && job.state === "done");
+  const ended = jobs.filter((job) => !job.isActive);
+  const removable = marks.length > 0 ? marks.filter((job) => !job.isActive) : ended;
+
   const cancel = (job: Job) =>
     (job.kind === "run" ? api.cancelRun(job.id) : api.cancelSweep(job.id)).then(onChanged, showError);
+  const remove = async () => {
+    const what = removable.length === 1 ? removable[0].title : formatCount(removable.length, "run");
+    if (!window.confirm(`Remove ${what} with reports and traces for good?`)) return;
+    const runs = removable.filter((job) => job.kind === "run").map((job) => job.id);
+    const sweeps = removable.filter((job) => job.kind === "campaign").map((job) => job.id);
+    try {
+      if (runs.length > 0) await api.removeRuns(runs);
+      if (sweeps.length > 0) await api.removeSweeps(sweeps);
+      setMarked(new Set());
+      if (removable.some((job) => chosen?.id.includes(job.id))) onChoose(undefined);
+    } catch (error) {
+      showError(error);
+    }
+    onChanged();
+  };
+  const mark = (job: Job, is: boolean) => {
+    const next = new Set(marked);
+    if (is) next.add(keyOf(job));
+    else next.delete(keyOf(job));
+    setMarked(next);
+  };
+
   return (
-    <ul className={styles.list}>
-      {jobs.map((job) => (
-        <li key={job.kind + job.id} data-chosen={job.id === chosen?.id}>
-          <button
-            type="button"
-            aria-current={job.id === chosen?.id ? "true" : undefined}
-            onClick={() => onChoose({ kind: job.kind, id: job.id })}
-          >
-            <b>{job.title}</b>
-            <span>{job.about}</span>
-            <span
-              className={styles.state}
-              data-state={job.state}
-              data-ok={job.kind === "run" ? job.run.summary?.ok === true : undefined}
+    <>
+      <div className={styles.tools}>
+        <Button
+          size="compact-sm"
+          variant="default"
+          leftSection={<IconArrowsDiff size={15} />}
+          disabled={finished.length < 2 || finished.length > MOST_COMPARED}
+          title={`Mark from 2 to ${MOST_COMPARED} finished runs`}
+          onClick={() => onChoose({ kind: "comparison", id: finished.map((job) => job.id).join(",") })}
+        >
+          Compare{finished.length > 1 && ` ${finished.length}`}
+        </Button>
+        <Button
+          size="compact-sm"
+          variant="default"
+          leftSection={<IconTrash size={15} />}
+          disabled={removable.length === 0}
+          title="What has ended, with its files; what is under way stays"
+          onClick={remove}
+        >
+          {marks.length > 0 ? `Remove ${removable.length}` : "Remove all finished"}
+        </Button>
+      </div>
+      <ul className={styles.list}>
+        {jobs.map((job) => (
+          <li key={keyOf(job)} data-chosen={job.id === chosen?.id}>
+            <Checkbox
+              size="xs"
+              aria-label={`Mark ${job.title}, ${job.about}`}
+              checked={marked.has(keyOf(job))}
+              onChange={(e) => mark(job, e.currentTarget.checked)}
+            />
+            <button
+              type="button"
+              className={styles.pick}
+              aria-current={job.id === chosen?.id ? "true" : undefined}
+              onClick={() => onChoose({ kind: job.kind, id: job.id })}
             >
-              {stateText(job)}
-            </span>
-            <time dateTime={job.created}>{new Date(job.created).toLocaleTimeString([], { timeStyle: "short" })}</time>
-            {job.state === "running" && (
-              <Progress value={job.progress * 100} size="sm" w="100%" aria-label={`Progress of ${job.title}`} />
+              <b>{job.title}</b>
+              <span>{job.about}</span>
+              <span
+                className={styles.state}
+                data-state={job.state}
+                data-ok={job.kind === "run" ? job.run.summary?.ok === true : undefined}
+              >
+                {stateText(job)}
+              </span>
+              <time dateTime={job.created} title={new Date(job.created).toLocaleString()}>
+                {whenText(new Date(job.created))}
+              </time>
+              {job.state === "running" && (
+                <Progress value={job.progress * 100} size="sm" w="100%" aria-label={`Progress of ${job.title}`} />
+              )}
+            </button>
+            {job.isActive && (
+              <ActionIcon
+                size={28}
+                variant="subtle"
+                color="alarm"
+                aria-label={`Cancel ${job.title}`}
+                title={job.kind === "run" ? "Cancel" : "Stop here; what is done stays, and starting it again goes on"}
+                onClick={() => cancel(job)}
+              >
+                <IconPlayerStopFilled size={15} />
+              </ActionIcon>
             )}
-          </button>
-          {job.isActive && (
-            <ActionIcon
-              size={28}
-              variant="subtle"
-              color="alarm"
-              aria-label={`Cancel ${job.title}`}
-              title={job.kind === "run" ? "Cancel" : "Stop here; what is done stays, and starting it again goes on"}
-              onClick={() => cancel(job)}
-            >
-              <IconPlayerStopFilled size={15} />
-            </ActionIcon>
-          )}
-        </li>
-      ))}
-    </ul>
+          </li>
+        ))}
+      </ul>
+    </>
   );
 }
 
-function stateText(job: Job): string {
-  if (job.state !== "done" || job.kind === "campaign") return job.state;
-  const summary = job.run.summary as { ok?: boolean; trip?: unknown; expectations?: unknown[] } | null;
-  if (summary?.trip) return "tripped";
-  if (!summary?.expectations?.length) return "done";
-  return summary.ok ? "as expected" : "other than expected";
-}
+/** The time of day, or the date of another day. */
+const whenText = (moment: Date) =>
+  moment.toDateString() === new Date().toDateString()
+    ? moment.toLocaleTimeString([], { timeStyle: "short" })
+    : moment.toLocaleDateString([], { dateStyle: "short" });

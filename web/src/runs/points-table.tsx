@@ -1,7 +1,7 @@
 import { useState } from "react";
 import type { PointTally } from "../api/types";
 import { formatCount, formatFigure, formatNumber, formatSi } from "../ui/format";
-import { metricName } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 import { labelText } from "./points";
 import styles from "./runs.module.css";
 
@@ -22,7 +22,7 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
     ...axes.map(
       (axis): Column => ({
         id: axis,
-        title: metricName(axis.split(".").at(-1) ?? axis),
+        title: metricTitle(axis.split(".").at(-1) ?? axis),
         of: (p) => p.labels[axis],
         say: (p) => labelText(p.labels[axis] ?? ""),
       }),
@@ -33,7 +33,7 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
     ...metrics.map(
       (metric): Column => ({
         id: metric,
-        title: metricName(metric),
+        title: metricTitle(metric),
         of: (p) => p.metrics?.[metric]?.mean,
         say: (p) => {
           const found = p.metrics?.[metric];

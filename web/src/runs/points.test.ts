@@ -15,7 +15,7 @@ const point = (noise: number, kind: string, mean: number): PointTally => ({
 const POINTS = [point(0.6, "pid", 3), point(0.05, "pid", 1), point(0.6, "mrac", 2), point(0.05, "mrac", 0.5)];
 
 it("names a point by what it differs in", () => {
-  expect(pointName(POINTS[0].labels)).toBe("noise µm 0.6, kind pid");
+  expect(pointName(POINTS[0].labels)).toBe("noise 0.6\u00a0µm, kind pid");
   expect(pointName({})).toBe("all runs");
   expect(pointName({ variant: "cold" })).toBe("cold");
 });

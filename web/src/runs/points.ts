@@ -1,7 +1,7 @@
 import type { DiagnosisTally, PointTally } from "../api/types";
 import type { ChartLine } from "../picture/line-field";
 import { formatShort } from "../ui/format";
-import { metricName } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 
 /** Figures shown before anybody chooses. */
 const USUAL = [/\.correct_fraction$/, /\.mean_delay_samples$/, /\.false_switches$/, /^control\.rms_error_um$/];
@@ -11,9 +11,11 @@ export const labelText = (value: string | number) => (typeof value === "number" 
 
 /** What a point is called: the values it differs by. */
 export function pointName(labels: PointTally["labels"]): string {
-  const parts = Object.entries(labels).map(([path, value]) =>
-    path === "variant" ? labelText(value) : `${metricName(path.split(".").at(-1) ?? path)} ${labelText(value)}`,
-  );
+  const parts = Object.entries(labels).map(([path, value]) => {
+    if (path === "variant") return labelText(value);
+    const [name, unit] = metricTitle(path.split(".").at(-1) ?? path).split(", ");
+    return `${name} ${labelText(value)}${unit ? `\u00a0${unit}` : ""}`;
+  });
   return parts.join(", ") || "all runs";
 }
 

@@ -9,8 +9,10 @@ import { ExpectationTable } from "../gallery/expectation-table";
 import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatFigure, formatPercent, formatShort, formatSi } from "../ui/format";
-import { metricTitle } from "../ui/metric-name";
+import { metricTitle, micro } from "../ui/metric-name";
 import { ReportButton, ScriptButton } from "./file-buttons";
+import { runName } from "./jobs";
+import { NameField } from "./name-field";
 import styles from "./runs.module.css";
 
 /** What the summary of a run holds, as `combbench run --json` prints it. */
@@ -31,7 +33,7 @@ interface Summary {
 }
 
 /** One run: what was expected and measured, every figure, and the files it left. */
-export function RunDetail({ run }: { run: Run }) {
+export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
   const files = `./api/v1/runs/${run.id}`;
   const summary = run.summary as Summary | null;
   if (!summary)
@@ -52,13 +54,18 @@ export function RunDetail({ run }: { run: Run }) {
   return (
     <article className={styles.result}>
       <header>
-        <h2>{run.title || run.scenario_id}</h2>
+        <h2>{runName(run)}</h2>
         <small>
           {run.scenario_id} ·{" "}
           {run.seeds.length > 1 ? `seeds ${run.seeds[0]} to ${run.seeds.at(-1)}` : `seed ${run.seeds[0]}`}
           {hasTrace && ` · ${formatCount(summary.ticks, "tick")} of ${formatShort(summary.dt_s, "s")}`} · took{" "}
           {formatSi(summary.elapsed_s, "s", 3)}
         </small>
+        <NameField
+          label={run.label ?? ""}
+          title={micro(run.title) || run.scenario_id}
+          save={(label) => api.renameRun(run.id, label).then(onChanged)}
+        />
         {summary.trip && <p className={styles.refusal}>Tripped: {summary.trip.reason}</p>}
         {summary.warnings.map((text) => (
           <p key={text} className={styles.refusal}>
@@ -67,7 +74,7 @@ export function RunDetail({ run }: { run: Run }) {
         ))}
       </header>
       <div className={styles.overview}>
-        <img src={`${files}/thumbnail`} alt="The run as a drawing" />
+        <img src={`${files}/thumbnail`} alt={`Figure of ${runName(run)}`} />
         <div className={styles.links}>
           <ReportButton files={files} />
           <ScriptButton files={files} title="A script that repeats this run over REST and checks its bits" />
@@ -93,7 +100,7 @@ export function RunDetail({ run }: { run: Run }) {
       {summary.expectations.length > 0 && (
         <>
           <h3>Expectations</h3>
-          {summary.claim && <p className={styles.note}>Claim: {summary.claim}.</p>}
+          {summary.claim && <p className={styles.note}>Claim: {micro(summary.claim)}.</p>}
           <ExpectationTable entries={summary.expectations} verdict={summary.verdict} />
         </>
       )}

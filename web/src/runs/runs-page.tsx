@@ -1,10 +1,17 @@
-import { useCallback, useEffect, useRef } from "react";
+import { Button } from "@mantine/core";
+import { useDebouncedValue } from "@mantine/hooks";
+import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
+import type { RunFilter } from "../api/types";
 import { useAnswer } from "../api/use-answer";
+import { showError } from "../bench/send";
 import { EmptyState } from "../ui/empty-state";
 import { Stale } from "../ui/stale";
 import { CampaignDetail } from "./campaign-detail";
-import { type Job, JobList, jobsOf } from "./job-list";
+import { JobFilter } from "./job-filter";
+import { JobList } from "./job-list";
+import { type Job, jobsOf } from "./jobs";
+import { RunComparison } from "./run-comparison";
 import { RunDetail } from "./run-detail";
 import styles from "./runs.module.css";
 import { StartForm } from "./start-form";
@@ -13,17 +20,29 @@ import { useChosen } from "./use-chosen";
 const BUSY_MS = 700;
 const CALM_MS = 15_000;
 
-async function ask(): Promise<Job[]> {
-  const [runs, sweeps] = await Promise.all([api.runs(), api.sweeps()]);
+/** Pause in typing after which the list is asked for. */
+const PAUSE_MS = 250;
+const ALL: RunFilter = {};
+
+async function jobsLike(filter: RunFilter): Promise<Job[]> {
+  const [runs, sweeps] = await Promise.all([api.runs(filter), api.sweeps(filter)]);
   return jobsOf(runs, sweeps);
 }
 
 /** Headless runs and campaigns: start them, watch them, read what they gave. */
 export function RunsPage() {
+  const [filter, setFilter] = useState(ALL);
+  const [wanted] = useDebouncedValue(filter, PAUSE_MS);
+  const ask = useCallback(() => jobsLike(wanted), [wanted]);
   const { value, error, since, again } = useAnswer(ask, (jobs) =>
     jobs?.some((job) => job.isActive) ? BUSY_MS : CALM_MS,
   );
   const [chosen, choose] = useChosen();
+  const [scenarios, setScenarios] = useState<string[]>([]);
+  useEffect(() => {
+    api.scenarios().then((found) => setScenarios(found.map((one) => one.id)), showError);
+  }, []);
+  const isFiltered = Object.values(filter).some(Boolean);
   const job = value?.find((one) => one.kind === chosen?.kind && one.id === chosen.id);
   const detail = useRef<HTMLElement>(null);
   // Where the result stands below the list it comes into view when it is chosen.
@@ -45,8 +64,20 @@ export function RunsPage() {
       </section>
       <section className={styles.jobs} aria-label="Runs and campaigns">
         <Stale error={error} since={since} onRetry={again} />
+        <JobFilter filter={filter} scenarios={scenarios} onChange={setFilter} />
         {value && value.length > 0 ? (
           <JobList jobs={value} chosen={chosen} onChoose={choose} onChanged={again} />
+        ) : value && isFiltered ? (
+          <EmptyState
+            title="No run is like that"
+            action={
+              <Button size="xs" variant="default" onClick={() => setFilter(ALL)}>
+                Show all
+              </Button>
+            }
+          >
+            Take another state or scenario, or fewer words.
+          </EmptyState>
         ) : (
           !error && (
             <EmptyState title={value ? "Nothing has been run yet" : "Asking the server"}>
@@ -56,12 +87,14 @@ export function RunsPage() {
         )}
       </section>
       <section ref={detail} className={styles.detail} aria-label="Result">
-        {job?.kind === "run" ? (
-          <RunDetail key={job.id} run={job.run} />
+        {chosen?.kind === "comparison" ? (
+          <RunComparison key={chosen.id} ids={chosen.id} />
+        ) : job?.kind === "run" ? (
+          <RunDetail key={job.id} run={job.run} onChanged={again} />
         ) : job?.kind === "campaign" ? (
-          <CampaignDetail key={job.id} sweep={job.sweep} />
+          <CampaignDetail key={job.id} sweep={job.sweep} onChanged={again} />
         ) : (
-          <EmptyState title={chosen && value ? "That one is not here" : "No result chosen"}>
+          <EmptyState title={chosen && value ? "That one is not in the list" : "No result chosen"}>
             Choose a run or a campaign from the list: figures, expectations, reports and downloads appear here.
           </EmptyState>
         )}

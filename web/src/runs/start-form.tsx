@@ -6,6 +6,7 @@ import { ApiError } from "../api/api-error";
 import type { ApiErrorBody, ScenarioSummary } from "../api/types";
 import { showError } from "../bench/send";
 import { formatCount } from "../ui/format";
+import { micro } from "../ui/metric-name";
 import { campaignOf, type Draft, EMPTY_RANGE, newDraft, pathsOf, pointCount, runOf } from "./draft";
 import styles from "./runs.module.css";
 import type { Chosen } from "./use-chosen";
@@ -37,7 +38,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
     setBusy(true);
     setRefusal(undefined);
     try {
-      const { id } = isRun ? await api.startRun(runOf(draft)) : await api.startSweep(campaignOf(draft));
+      const { id } = isRun ? await api.startRun(runOf(draft)) : await api.startSweep(campaignOf(draft), draft.label);
       onStarted({ kind: draft.kind, id });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -74,8 +75,16 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         allowDeselect={false}
         nothingFoundMessage="No scenario is called so"
         value={draft.scenario}
-        data={library.map((s) => ({ value: s.id, label: s.title ? `${s.id}: ${s.title}` : s.id }))}
+        data={library.map((s) => ({ value: s.id, label: s.title ? `${s.id}: ${micro(s.title)}` : s.id }))}
         onChange={(scenario) => scenario && set({ scenario })}
+      />
+      <TextInput
+        size="xs"
+        label="Name"
+        placeholder="none: the title of the scenario"
+        maxLength={120}
+        value={draft.label}
+        onChange={(e) => set({ label: e.currentTarget.value })}
       />
       <ValueRows
         label="With other values"

@@ -1,16 +1,19 @@
 import { useCallback, useEffect, useState } from "react";
 
-/** A run or a campaign. */
+/** A run, a campaign, or several runs side by side, whose ids are separated by commas. */
 export interface Chosen {
-  kind: "run" | "campaign";
+  kind: "run" | "campaign" | "comparison";
   id: string;
 }
 
+/** What the address calls each. */
+const KEYS: Record<Chosen["kind"], string> = { comparison: "compare", campaign: "sweep", run: "run" };
+const KINDS = Object.keys(KEYS) as Chosen["kind"][];
+
 function inAddress(): Chosen | undefined {
   const query = new URLSearchParams(window.location.search);
-  const run = query.get("run");
-  const sweep = query.get("sweep");
-  return sweep ? { kind: "campaign", id: sweep } : run ? { kind: "run", id: run } : undefined;
+  const kind = KINDS.find((one) => query.get(KEYS[one]));
+  return kind && { kind, id: query.get(KEYS[kind]) ?? "" };
 }
 
 /** Which run or campaign the page shows; the address names it. */
@@ -23,9 +26,8 @@ export function useChosen(): [Chosen | undefined, (next: Chosen | undefined) => 
   }, []);
   const choose = useCallback((next: Chosen | undefined) => {
     const url = new URL(window.location.href);
-    url.searchParams.delete("run");
-    url.searchParams.delete("sweep");
-    if (next) url.searchParams.set(next.kind === "run" ? "run" : "sweep", next.id);
+    for (const kind of KINDS) url.searchParams.delete(KEYS[kind]);
+    if (next) url.searchParams.set(KEYS[next.kind], next.id);
     window.history.pushState(null, "", url);
     setChosen(next);
   }, []);

@@ -41,7 +41,7 @@ it.each(cases.percent as [number, number, string][])("writes the share %s in %s 
   expect(formatPercent(share, decimals)).toBe(text);
 });
 
-it.each(cases.figure as [string, number, number, string][])("writes %s of %s in %s digits as %s", (...one) => {
+it.each(cases.figure as [string, number | null, number, string][])("writes %s of %s in %s digits as %s", (...one) => {
   const [metric, value, digits, text] = one;
   expect(formatFigure(metric, value, digits)).toBe(text);
 });

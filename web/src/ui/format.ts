@@ -56,8 +56,9 @@ export function formatShare(share: number, decimals = 4): string {
   return formatPart(share, 1, "", decimals);
 }
 
-/** A measured figure by the name of its metric: what is whole, such as a count, is written whole. */
-export function formatFigure(metric: string, value: number, digits = 4): string {
+/** A measured figure by the name of its metric, none as a dash: what is whole, such as a count, is written whole. */
+export function formatFigure(metric: string, value: number | null | undefined, digits = 4): string {
+  if (value === null || value === undefined) return NOTHING;
   if (metric.endsWith("_fraction")) return formatShare(value, digits);
   return Number.isInteger(value) ? formatNumber(value, 0) : formatSi(value, "", digits);
 }

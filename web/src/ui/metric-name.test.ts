@@ -1,5 +1,6 @@
 import { expect, it } from "vitest";
-import { metricName, metricTitle } from "./metric-name";
+import cases from "./metric-cases.json";
+import { metricName, metricTitle, metricUnit, micro } from "./metric-name";
 
 it("says a metric in words and keeps whose it is", () => {
   expect(metricName("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
@@ -8,10 +9,14 @@ it("says a metric in words and keeps whose it is", () => {
   expect(metricName("beam_width.softer_5_um_pct")).toBe("beam width softer 5 µm %");
 });
 
-it("titles an axis with the unit its name ends in", () => {
-  expect(metricTitle("noise_um")).toBe("noise, µm");
-  expect(metricTitle("device.force_n_per_v")).toBe("force, N/V");
-  expect(metricTitle("integral_v_um_ms")).toBe("integral, V/(µm·ms)");
-  expect(metricTitle("diagnosis.kalman.mean_delay_samples")).toBe("kalman mean delay, samples");
-  expect(metricTitle("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
+it.each(Object.entries(cases))("titles %s as reports do: %s", (metric, title) =>
+  expect(metricTitle(metric)).toBe(title));
+
+it("tells the unit of a metric alone", () => {
+  expect(metricUnit("control.first_peak_pct")).toBe("%");
+  expect(metricUnit("control.effort_ratio")).toBe("");
+});
+
+it("prints the units of a text", () => {
+  expect(micro("Beams 0.2 um narrower, h = 20us, a drum")).toBe("Beams 0.2\u00a0µm narrower, h = 20\u00a0µs, a drum");
 });

@@ -1,4 +1,11 @@
+import names from "../../../scenarios/report/metric_names.json";
 import { unitText } from "./unit-scale";
+
+// The rules of reports (`scenarios/report/metric_name.py`); `metric-cases.json` holds both to the same names.
+
+/** Units by the ending that the names of fields have for them. */
+const UNITS: Partial<Record<string, string>> = names.units;
+const WORDS: Partial<Record<string, string>> = names.words;
 
 /** A metric in words: "diagnosis.kalman.correct_fraction" reads "kalman correct fraction". */
 export function metricName(metric: string): string {
@@ -10,44 +17,46 @@ export function metricName(metric: string): string {
     .replaceAll(/\bpct\b/g, "%");
 }
 
-/** Units by the ending that the names of fields have for them. */
-const UNITS: Record<string, string> = {
-  um: "um",
-  nm: "nm",
-  pm: "pm",
-  pct: "%",
-  ms: "ms",
-  us: "us",
-  s: "s",
-  hz: "Hz",
-  khz: "kHz",
-  v: "V",
-  pa: "Pa",
-  kg: "kg",
-  nn: "nN",
-  un: "uN",
-  db: "dB",
-  deg: "deg",
-  mrad: "mrad",
-  samples: "samples",
-  n_m: "N/m",
-  n_m3: "N/m^3",
-  ns_m: "N s/m",
-  n_per_v: "N/V",
-  v_um: "V/um",
-  v_um_ms: "V/(um ms)",
-  v_ms_um: "V ms/um",
-  um_ms: "um/ms",
-  deg_h: "deg/h",
-  deg_rt_h: "deg/rt h",
-};
-
-/** A metric as the title of an axis: "noise_um" reads "noise, µm". */
+/** A metric in words with the unit its name ends in: "control.rms_error_um" reads "rms error, µm". */
 export function metricTitle(metric: string): string {
-  const parts = metric.split("_");
-  for (let i = 1; i < parts.length; i += 1) {
-    const unit = UNITS[parts.slice(i).join("_")]; // the longest ending first: V/µm before µm
-    if (unit) return `${metricName(parts.slice(0, i).join("_"))}, ${unitText(unit)}`;
+  let pieces = metric.split(".");
+  const said: string[] = [];
+  if (pieces[0] === "twins" && pieces.length > 2) {
+    said.push(pieces[1]);
+    pieces = pieces.slice(2);
   }
-  return metricName(metric);
+  if (pieces.length > 1 && names.families.includes(pieces[0])) pieces = pieces.slice(1);
+  const first = said.length;
+  let unit = "";
+  for (const piece of pieces) {
+    // the number of a step belongs to what is counted
+    if (/^\d+$/.test(piece) && said.length > first) said[said.length - 1] += ` ${piece}`;
+    else {
+      const found = withoutUnit(piece);
+      unit = found.unit || unit;
+      said.push(found.words);
+    }
+  }
+  const name = said.join(": ");
+  return unit ? `${name}, ${unitText(unit)}` : name;
+}
+
+/** The unit that the name of a metric ends in; empty if it has none. */
+export const metricUnit = (metric: string): string => metricTitle(metric).split(", ")[1] ?? "";
+
+/** A text of the library with its units as they are printed: "20 us" reads "20 µs". */
+export const micro = (text: string): string => text.replace(/(\d)\s?u([msNVg])\b/g, "$1\u00a0µ$2");
+
+/** The words of a piece, and the unit its longest ending names: V/µm before µm. */
+function withoutUnit(piece: string): { words: string; unit: string } {
+  const parts = piece.split("_");
+  let start = 1;
+  while (start < parts.length && !(parts.slice(start).join("_") in UNITS)) start += 1;
+  return {
+    words: parts
+      .slice(0, start)
+      .map((part) => WORDS[part] ?? part)
+      .join(" "),
+    unit: UNITS[parts.slice(start).join("_")] ?? "",
+  };
 }

@@ -1,12 +1,27 @@
 import { expect, it } from "vitest";
+import cases from "./axis-cases.json";
+import { labelsOn } from "./format";
 import { decadeTicks, linearTicks } from "./ticks";
+import { timeUnit } from "./time-axis";
+import { unitScale } from "./unit-scale";
 
-it("puts round values across a range", () => {
-  expect(linearTicks(-43, 17, 6)).toEqual([-40, -30, -20, -10, 0, 10]);
-  expect(linearTicks(0, 1, 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
-  expect(linearTicks(2, 2, 5)).toEqual([]);
+it.each(cases.linear as [number, number, number, number[]][])("puts round values from %s to %s, about %s", (...one) => {
+  const [low, high, count, ticks] = one;
+  expect(linearTicks(low, high, count)).toEqual(ticks);
 });
 
-it("marks 1, 2 and 5 of every decade", () => {
-  expect(decadeTicks(200, 20_000)).toEqual([200, 500, 1000, 2000, 5000, 10_000, 20_000]);
+it.each(cases.decade as [number, number, number[]][])("marks 1, 2 and 5 of every decade from %s to %s", (...one) => {
+  const [low, high, ticks] = one;
+  expect(decadeTicks(low, high)).toEqual(ticks);
 });
+
+it.each(cases.time as [number, string, number][])("shows a span of %s ms in %s", (span, unit, factor) =>
+  expect(timeUnit(span)).toEqual({ unit, factor }));
+
+it.each(cases.unit as [string, number, string, number][])("shows %s up to %s in %s", (unit, size, text, factor) => {
+  const scale = unitScale(unit, size);
+  expect([scale.unit, scale.factor]).toEqual([text, expect.closeTo(factor, 12)]);
+});
+
+it.each(cases.labels as [string, number[], string[]][])("labels %s ticks %s", (unit, ticks, labels) =>
+  expect(labelsOn(unitScale(unit, Math.max(...ticks)), ticks)).toEqual(labels));

@@ -19,14 +19,5 @@ export function timeLabels(splitsMs: readonly number[], spanMs: number): string[
   return labelsOn({ factor, exponent: "" }, splitsMs);
 }
 
-/** Steps of 1, 2 or 5 that put at most `most` marks on a span. */
-export function timeSplits(startMs: number, endMs: number, most: number): number[] {
-  const span = endMs - startMs;
-  if (!(span > 0) || most < 1) return [];
-  const raw = span / most;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * ([1, 2, 5, 10].find((m) => power * m >= raw * 0.9999) ?? 10);
-  const splits: number[] = [];
-  for (let i = Math.ceil(startMs / step - 1e-9); i * step <= endMs + step * 1e-9; i += 1) splits.push(i * step);
-  return splits;
-}
+/** Round values across a span of time. */
+export { linearTicks as timeSplits } from "./ticks";

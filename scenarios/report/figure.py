@@ -1,0 +1,285 @@
+"""The figure of a run: what its scenario is about, in its own shape, as on a card of the gallery.
+
+A study shows its curves, or its figures beside what is expected of them. A bench shows what its expectations speak of:
+the Allan deviation, the locus, two devices in step, the verdicts of diagnosers, the error of identifiers, what a sensor
+says, how far the shuttle moves aside, how well it follows.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from core.block import FloatArray
+from core.board.board import Board
+from core.format import format_figure
+from core.theory.rate_noise import LEAST_TIMES, averaging_times
+from core.units import DEG_H_PER_DEG_S
+from scenarios.report.axis import Axis
+from scenarios.report.metric_name import metric_title, micro
+from scenarios.report.palette import Look, hypothesis, signal
+from scenarios.report.svg import Bar, Chart, Lane, Mark, Series, thin
+from scenarios.run import Result
+
+COLUMNS = 160
+"""Columns of a trace on a card."""
+MOST_LANES, MOST_BARS = 3, 6
+PERIODS = 3
+"""Periods of a motion that is too fast to be shown whole."""
+MANY = 8
+"""Periods of a motion above which one sees no more than a block on a card."""
+LEAST_ERROR_UM = 1e-6
+"""Errors below it are drawn as it: what is left in the end is the rounding of the computer."""
+DONE = ("inject", "heal", "set", "switch", "reset_trip", "tripped")
+"""Kinds of log entries that are marked."""
+TIME = "time"
+
+
+def figure(result: Result) -> Chart:
+    """Return the figure of a run."""
+    if result.scenario.study is not None:
+        return _study(result) or _expected(result)
+    if len(result.outputs) < 2:
+        return _expected(result)
+    asked = [re.sub(r"^twins\.[^.]+\.", "", entry.metric) for entry in result.scenario.head.expect]
+    for start, shape in SHAPES:
+        if any(metric.startswith(start) for metric in asked) and (chart := shape(result)) is not None:
+            return chart
+    if result.board.spec.axes:
+        return _rate(result)
+    return _followed(result) if asked else _motion(result)
+
+
+def marks(result: Result) -> list[Mark]:
+    """Return what was done to the bench, each at its moment."""
+    dt_ms = result.board.dt_ms
+    return [Mark(one.tick * dt_ms, one.text) for one in result.board.log if one.kind in DONE and one.tick]
+
+
+def _title(result: Result) -> str:
+    return micro(result.scenario.head.title) or result.scenario.id
+
+
+def _names(result: Result) -> set[str]:
+    return {one.name for one in result.kept}
+
+
+def _time(result: Result, at: slice = slice(None)) -> FloatArray:
+    time: FloatArray = (np.arange(float(len(result.outputs))) * result.board.dt_ms)[at]
+    return time
+
+
+def _trace(result: Result, name: str, said: str = "", at: slice = slice(None), number: int = 0) -> Series:
+    """Return a signal as a line."""
+    x, y = thin(_time(result, at), result.signal(name)[at], COLUMNS)
+    return Series(said or name, x, y, look=signal(name.rpartition(":")[2], number) if ":" not in name else None)
+
+
+def _last_periods(values: FloatArray, periods: int = PERIODS) -> slice:
+    """Return the last so many periods of a swing; all of it where it has fewer."""
+    centred = values - np.mean(values[-len(values) // 4 :])
+    rising = np.flatnonzero((centred[:-1] < 0.0) & (centred[1:] >= 0.0))
+    return slice(int(rising[-periods - 1]), None) if len(rising) > periods else slice(None)
+
+
+def _periods(values: FloatArray) -> int:
+    return int(np.count_nonzero(np.diff(np.signbit(values)))) // 2
+
+
+def _study(result: Result) -> Chart | None:
+    """Show the curves of a study."""
+    assert result.scenario.study is not None
+    study, params = result.scenario.study
+    picture = study.picture(Board.restore(result.board.checkpoint()), params)
+    if picture is None:
+        return None
+    lines = [Series(name, x, y, is_stepped=picture.is_stepped) for name, x, y in picture.curves]
+    return Chart(_title(result), Axis(*picture.x, is_log=picture.is_log_x), Axis(*picture.y), lines)
+
+
+def _expected(result: Result) -> Chart:
+    """Show each measured figure beside its expectation."""
+    bars = list[Bar]()
+    for entry in result.scenario.head.expect:
+        value = result.metrics.get(entry.metric, math.nan)
+        if math.isfinite(value) and len(bars) < MOST_BARS:
+            text = format_figure(entry.metric, value, 3)
+            bars.append(Bar(metric_title(entry.metric), value, text, *entry.bounds(), entry.holds(value)))
+    return Chart(_title(result), bars=bars)
+
+
+def _allan(result: Result) -> Chart | None:
+    """Show the Allan deviation over the averaging time."""
+    board = result.board
+    lines = []
+    for name, section in board.spec.readouts.items():
+        block: Any = section.block
+        state = board.wiring.state(name)
+        averages = np.array(state.averages)
+        known = averaging_times(averages) >= LEAST_TIMES
+        taus = np.array(block.taus_s(section.params, board.spec.context(section.every)))[known]
+        deviation = DEG_H_PER_DEG_S * np.sqrt(0.5 * np.array(state.squares)[known] / averages[known])
+        lines.append(Series(name, taus.tolist(), deviation.tolist()))
+    if not any(one.x for one in lines):
+        return None
+    x, y = Axis("averaging time", "s", is_log=True), Axis("Allan deviation", "deg/h", is_log=True)
+    return Chart(_title(result), x, y, lines)
+
+
+def _locus(result: Result) -> Chart | None:
+    """Show the way of the mass over the plane, for a device and its partner."""
+    pairs = [("plant.x", "plant.y", "device"), ("plant.partner_x", "plant.partner_y", "partner")]
+    at = _last_periods(result.signal("plant.x"), 12)
+    lines = []
+    for x, y, said in pairs:
+        if {x, y} <= _names(result):
+            every = max(1, len(result.signal(x)[at]) // 600)
+            across, up = (result.signal(name)[at][::every].tolist() for name in (x, y))
+            lines.append(Series(said, across, up, look=signal(x, 0)))
+    return Chart(_title(result), Axis("x", "um"), Axis("y", "um"), lines)
+
+
+def _in_step(result: Result) -> Chart | None:
+    """Show the sense axes of two devices over some periods."""
+    if "plant.partner_y" not in _names(result):
+        return None
+    at = _last_periods(result.signal("plant.y"))
+    shown = [("plant.y", "y of the device"), ("plant.partner_y", "y of its partner")]
+    shown += [(f"{twin}:plant.partner_y", f"y of its partner, {twin}") for twin in result.scenario.twins]
+    lines = [_trace(result, name, said, at) for name, said in shown if name in _names(result)]
+    return Chart(_title(result), Axis(TIME, "ms"), Axis("displacement", "um"), lines)
+
+
+def _rate(result: Result) -> Chart:
+    """Show the true rate and what is read, on the bench and on its twins."""
+    spec = result.board.spec
+    shown = [(f"{spec.active}.rate", "read"), ("rate.rate", "true")]
+    shown += [
+        (f"{name}:{twin.active}.rate", f"read, {name.replace('_', ' ')}")
+        for name, twin in result.scenario.twins.items()
+    ]
+    lines = [_trace(result, name, said) for name, said in shown if name in _names(result)]
+    settled = [value for one in lines for value in one.y[len(one.y) // 4 :] if math.isfinite(value)]
+    span = (min(settled), max(settled)) if settled else (0.0, 0.0)  # what the start makes of it is cut off
+    air = 0.08 * (span[1] - span[0]) or 1.0
+    ends = span[0] - air, span[1] + air
+    lines = [replace(one, y=np.clip(one.y, *ends).tolist()) for one in lines]
+    return Chart(_title(result), Axis(TIME, "ms"), Axis("rate", "deg/s"), lines, marks(result))
+
+
+def _lanes(result: Result) -> Chart | None:
+    """Show the truth, and below it what each of the first diagnosers concluded, over time."""
+    scores = {name: one for name, one in result.board.scores().items() if f"{name}.winner" in _names(result)}
+    if not scores:
+        return None
+    lanes, seen = [], set[int]()
+    names = next(iter(scores.values())).names
+    for name in list(scores)[:MOST_LANES]:
+        areas = _areas(result, f"{name}.truth", is_truth=True) + _areas(result, f"{name}.winner", is_truth=False)
+        lanes.append(Lane(name.replace("_", " "), areas))
+        seen |= {int(v) for kind in ("truth", "winner") for v in np.unique(result.signal(f"{name}.{kind}")) if v >= 0}
+    keys = [(names[i], hypothesis(i)) for i in sorted(seen) if i < len(names)]
+    span = (0.0, float(_time(result)[-1]))
+    return Chart(_title(result), Axis(TIME, "ms", span), marks=marks(result), lanes=lanes, keys=keys)
+
+
+def _areas(result: Result, name: str, *, is_truth: bool) -> list[tuple[float, float, Look, bool]]:
+    """Return the hypothesis named at each moment; moments without one stay empty."""
+    time, values = _time(result), result.signal(name)
+    picked = np.linspace(0, len(values) - 1, 2 * COLUMNS).astype(np.int64)
+    verdict = values[picked]
+    edges = [0, *(np.flatnonzero(np.diff(verdict)) + 1).tolist(), len(verdict) - 1]
+    return [
+        (float(time[picked[first]]), float(time[picked[end]]), hypothesis(int(verdict[first])), is_truth)
+        for first, end in itertools.pairwise(edges)
+        if end > first and verdict[first] >= 0
+    ]
+
+
+def _identified(result: Result) -> Chart | None:
+    """Show how far the identifiers are from the truth."""
+    shown = [name for name in result.board.spec.identifiers if f"{name}.error_pct" in _names(result)]
+    lines = []
+    for name in shown:
+        x, y = thin(_time(result), np.minimum(result.signal(f"{name}.error_pct"), 150.0), COLUMNS)
+        lines.append(Series(name.replace("_", " "), x, y))
+    return Chart(_title(result), Axis(TIME, "ms"), Axis("error", "%"), lines, marks(result)) if lines else None
+
+
+def _motion(result: Result) -> Chart:
+    """Show some periods of the motion: of the model, the shuttle, and what is measured."""
+    at = _last_periods(result.signal("plant.displacement"))
+    shown = [("plant.displacement", "shuttle"), ("model.displacement", "model"), ("sensor.displacement", "measured")]
+    lines = [_trace(result, name, said, at) for name, said in shown]
+    return Chart(_title(result), Axis(TIME, "ms"), Axis("displacement", "um"), lines)
+
+
+def _sensed(result: Result) -> Chart:
+    """Show how far the sensor is from the truth over some periods."""
+    at = _last_periods(result.signal("plant.displacement"))
+    error = (result.signal("sensor.displacement") - result.signal("plant.displacement"))[at]
+    line = Series("error", *thin(_time(result, at), error, COLUMNS), look=Look(3))
+    return Chart(_title(result), Axis(TIME, "ms"), Axis("measured less true", "um"), [line])
+
+
+def _angle(result: Result) -> Chart | None:
+    """Show the angle that a gyroscope reads instead of a rate."""
+    name = f"{result.board.spec.active}.angle"
+    if name not in _names(result):
+        return None
+    line = _trace(result, name, "angle")
+    return Chart(_title(result), Axis(TIME, "ms"), Axis("angle", "deg"), [line], marks(result))
+
+
+def _aside(result: Result) -> Chart | None:
+    """Show how far the shuttle moves aside as it goes."""
+    if "plant.shift" not in _names(result) or _periods(result.signal("plant.displacement")) > MANY:
+        return None
+    lines = [_trace(result, "plant.displacement", "displacement"), _trace(result, "plant.shift", "shift aside")]
+    return Chart(_title(result), Axis(TIME, "ms"), Axis("displacement", "um"), lines, marks(result))
+
+
+def _followed(result: Result) -> Chart:
+    """Show the model and the shuttle; where their periods cannot be told apart, the error or the amplitudes."""
+    names, time = _names(result), Axis(TIME, "ms")
+    model, plant = result.signal("model.displacement"), result.signal("plant.displacement")
+    periods = _periods(plant)
+    if periods <= MANY:
+        shown = [("plant.displacement", "shuttle"), ("model.displacement", "model")]
+        shown += [(f"{name}:plant.displacement", f"shuttle, {name}") for name in result.scenario.twins]
+        lines = [_trace(result, name, said) for name, said in shown if name in names]
+        return Chart(_title(result), time, Axis("displacement", "um"), lines, marks(result))
+    if result.board.spec.active == "open_loop":
+        amplitudes = [("shuttle", "plant.displacement", plant), ("model", "model.displacement", model)]
+        lines = [Series(said, *_peaks(_time(result), v, periods), look=signal(name, 0)) for said, name, v in amplitudes]
+        top = 1.08 * max(max(one.y) for one in lines) or 1.0
+        return Chart(_title(result), time, Axis("amplitude", "um", (0.0, top)), lines, marks(result))
+    at, peaks = _peaks(_time(result), model - plant, periods)
+    error = Series("error", at, np.maximum(peaks, LEAST_ERROR_UM).tolist(), look=signal("plant.displacement", 0))
+    return Chart(_title(result), time, Axis("peak error", "um", is_log=True), [error], marks(result))
+
+
+def _peaks(time: FloatArray, values: FloatArray, periods: int) -> tuple[list[float], list[float]]:
+    """Return the largest size of each period, or of each column where there are more periods."""
+    edges = np.linspace(0, len(values), min(COLUMNS, periods) + 1).astype(np.int64)
+    pieces = list(itertools.pairwise(edges.tolist()))
+    return [float(time[first]) for first, _ in pieces], [float(np.max(np.abs(values[a:b]))) for a, b in pieces]
+
+
+SHAPES: tuple[tuple[tuple[str, ...], Callable[[Result], Chart | None]], ...] = (
+    (("rate.arw", "rate.bias_instability", "rate.random_walk", "rate.noise"), _allan),
+    (("rate.phase_difference", "sync.error"), _in_step),
+    (("gyro.tilt", "gyro.partner_tilt"), _locus),
+    (("rate.angle",), _angle),
+    (("diagnosis.",), _lanes),
+    (("identify.",), _identified),
+    (("sensing.",), _sensed),
+    (("lateral.",), _aside),
+)
+"""What an expectation begins with, and the shape that shows it; the first that fits is taken."""

@@ -1,0 +1,48 @@
+"""Names of figures in words, with the unit that the name of a field ends in.
+
+The page has the same rules; ``web/src/ui/metric-cases.json`` holds both to the same names.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from core.format import unit_text
+
+NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "metric_names.json").read_text("utf-8"))
+"""Shared with the page: families that need not be said, words for parts of names, units by the ending of a name."""
+
+
+def metric_title(metric: str) -> str:
+    """Return a metric in words with its unit: ``control.rms_error_um`` is "rms error, µm"."""
+    pieces = metric.split(".")
+    whose = [pieces[1]] if pieces[0] == "twins" and len(pieces) > 2 else []
+    pieces = pieces[2:] if whose else pieces
+    if len(pieces) > 1 and pieces[0] in NAMES["families"]:
+        pieces = pieces[1:]
+    unit, said = "", list[str]()
+    for piece in pieces:
+        if piece.isdigit() and said:  # the number of a step belongs to what is counted
+            said[-1] += f" {piece}"
+            continue
+        words, found = _without_unit(piece)
+        unit = found or unit
+        said.append(words)
+    name = ": ".join([*whose, *said])
+    return f"{name}, {unit_text(unit)}" if unit else name
+
+
+def micro(text: str) -> str:
+    """Return a text of the library with its units as they are printed: "20 us" is "20 µs"."""
+    return re.sub(r"(\d)\s?u([msNVg])\b", "\\1\u00a0µ\\2", text)
+
+
+def _without_unit(piece: str) -> tuple[str, str]:
+    """Return the words of a piece, and the unit its longest ending names: V/um before um."""
+    parts = piece.split("_")
+    start = next((i for i in range(1, len(parts)) if "_".join(parts[i:]) in NAMES["units"]), len(parts))
+    words = " ".join(NAMES["words"].get(part, part) for part in parts[:start])
+    return words, NAMES["units"].get("_".join(parts[start:]), "")

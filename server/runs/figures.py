@@ -1,0 +1,125 @@
+"""Figures of the gallery: made once for each scenario and version of the code, and kept in the data folder.
+
+They are made by the worker processes of headless runs, at their low priority, one after the other: a run that somebody
+asks for waits for one figure at most. A scenario that fails, or a full disk, is told in one line and stops nothing.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from scenarios.library import is_demo, library
+from scenarios.report.traces import write_json
+from scenarios.run import DEFAULT_SAMPLES
+from scenarios.schema import Scenario
+from server.runs.jobs import Jobs, identify
+from server.runs.worker import draw
+from server.settings import Settings
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """What one scenario gave: its summary, and its picture as SVG."""
+
+    key: str
+    summary: dict[str, Any]
+    svg: str
+
+
+class Figures:
+    """Makes the figures of the library that are not there yet, and keeps all of them at hand.
+
+    Parameters
+    ----------
+    jobs : Jobs
+        Whose worker processes make them.
+    settings : Settings
+        Data folder, and whether they are made.
+    """
+
+    def __init__(self, jobs: Jobs, settings: Settings) -> None:
+        self._jobs, self._settings = jobs, settings
+        self._folder = settings.data / "figures"
+        self._task: asyncio.Task[None] | None = None
+        self.made: dict[str, Figure] = {}
+        self.failed: dict[str, str] = {}
+        self.problem = ""
+
+    @property
+    def total(self) -> int:
+        """How many there will be."""
+        return len(library())
+
+    @cached_property
+    def keys(self) -> dict[str, str]:
+        """The id of the run of each library scenario with its own seed; its figure is known by the same."""
+        return {scenario.id: identify(scenario, [scenario.spec.seed])[1][:32] for scenario in library()}
+
+    @property
+    def is_making(self) -> bool:
+        """Whether some are still being made."""
+        return self._task is not None and not self._task.done()
+
+    def start(self, ready: Callable[[], Awaitable[None]]) -> None:
+        """Read what is there, and make the others once the server is ready for it."""
+        self._task = asyncio.create_task(self._make_all(ready))
+
+    async def stop(self) -> None:
+        """End; what is made stays."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+
+    async def _make_all(self, ready: Callable[[], Awaitable[None]]) -> None:
+        missing = await asyncio.to_thread(self._read)
+        if not missing or not self._settings.figures or not self._settings.run_workers:
+            return
+        await ready()
+        for scenario, key in missing:
+            try:
+                made = await self._jobs.apart(draw, scenario.document)
+                figure = Figure(key, made["summary"], made["svg"])
+                self.made[scenario.id] = figure
+                await asyncio.to_thread(self._keep, figure)
+            except OSError as error:
+                self._tell(f"the figure of {scenario.id} could not be kept: {error.strerror or error}")
+            except Exception as error:
+                self.failed[scenario.id] = str(error) or type(error).__name__
+                self._tell(f"the figure of {scenario.id} could not be made: {self.failed[scenario.id]}")
+        log.info("figures of the gallery: %d of %d are there", len(self.made), self.total)
+
+    def _tell(self, text: str) -> None:
+        self.problem = " ".join(text.split())
+        log.warning("%s", self.problem)
+
+    def _read(self) -> list[tuple[Scenario, str]]:
+        """Read the figures that are there, drop those of other versions, and return what is missing, cheapest first."""
+        for path in self._folder.glob("*.json"):
+            if path.stem not in self.keys.values():
+                path.unlink(missing_ok=True)
+        for name, key in self.keys.items():
+            try:
+                kept = json.loads((self._folder / f"{key}.json").read_text("utf-8"))
+                self.made[name] = Figure(key, kept["summary"], kept["svg"])
+            except (OSError, ValueError, KeyError, TypeError):  # missing, or not whole: it is made again
+                continue
+        missing = [scenario for scenario in library() if scenario.id not in self.made]
+        missing.sort(key=lambda scenario: (not is_demo(scenario.id), cost(scenario)))
+        return [(scenario, self.keys[scenario.id]) for scenario in missing]
+
+    def _keep(self, figure: Figure) -> None:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        write_json(self._folder / f"{figure.key}.json", {"summary": figure.summary, "svg": figure.svg})
+
+
+def cost(scenario: Scenario) -> int:
+    """Return about how long a scenario takes: its ticks. Most studies take a moment."""
+    return 0 if scenario.study is not None else scenario.samples or DEFAULT_SAMPLES

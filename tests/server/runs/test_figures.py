@@ -1,0 +1,100 @@
+"""Figures of the gallery: made once, kept, and told in one line where they cannot be."""
+
+from __future__ import annotations
+
+import errno
+import os
+import time
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import run
+
+FEW = ("first-look", "ch1-beam-width", "ch3-ffrls-b30")
+
+
+def few(monkeypatch: pytest.MonkeyPatch, *more: Any) -> None:
+    chosen = (*(get(name) for name in FEW), *more)
+    for module in ("server.runs.figures", "server.api.gallery"):
+        monkeypatch.setattr(f"{module}.library", lambda: chosen)
+
+
+def settled(live: Any, seconds: float = 90.0) -> dict[str, Any]:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found: dict[str, Any] = live.http.get("/api/v1/gallery").json()
+        if not found["figures"]["is_making"]:
+            return found
+        time.sleep(0.1)
+    raise TimeoutError(found["figures"])
+
+
+def test_figures_are_made_once_and_survive_a_restart(
+    serve: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few(monkeypatch)
+    with serve(folder=tmp_path, figures=True) as live:
+        found = settled(live)
+        assert found["figures"] == {"made": 3, "total": 3, "is_making": False, "problem": ""}
+        for card in found["cards"]:
+            expected = run(get(card["id"]))
+            assert card["digest"] == expected.digest and card["state"] == "new" and card["run"] is None
+            assert [one["measured"] for one in card["expectations"]] == [
+                one["measured"] for one in expected.expectations()
+            ]
+            picture = live.http.get(f"/api/v1/gallery/{card['id']}/figure")
+            assert picture.headers["content-type"].startswith("image/svg+xml")
+            assert ElementTree.fromstring(picture.text).attrib["aria-label"] == card["title"]
+        assert live.http.get("/api/v1/runs").json()["runs"] == []  # figures are no runs that somebody asked for
+        assert live.http.get("/api/v1/gallery/none/figure").status_code == 404
+        assert live.http.get("/api/v1/gallery/appA-spr/figure").json()["error"]["code"] == "not_found"
+    kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "figures").iterdir()}
+    assert len(kept) == 3
+    (broken := next(iter(kept))).write_text("{")
+    (tmp_path / "figures" / "of-another-version.json").write_text("{}")
+    with serve(folder=tmp_path, figures=True) as live:
+        assert settled(live)["figures"]["made"] == 3
+        assert live.service.jobs._pool is not None  # the broken one is made again, the others are not
+    after = {path: path.stat().st_mtime_ns for path in (tmp_path / "figures").iterdir()}
+    assert set(after) == set(kept)
+    assert [path for path in kept if after[path] != kept[path]] == [broken]
+
+
+def test_a_scenario_that_fails_is_told_in_one_line_and_stops_nothing(
+    serve: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few(monkeypatch, with_values(get("ch1-process-spread"), {"device.id": "ch3"}))
+    with serve(figures=True) as live:
+        found = settled(live)
+        assert found["figures"]["made"] == 3 and found["figures"]["total"] == 4
+        assert "ch1-process-spread" in found["figures"]["problem"] and "\n" not in found["figures"]["problem"]
+        failed = next(card for card in found["cards"] if card["id"] == "ch1-process-spread")
+        assert "has no drawing" in failed["problem"] and failed["figure"] is None
+
+
+def test_on_a_full_disk_figures_are_there_and_the_reason_they_are_not_kept(
+    serve: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few(monkeypatch)
+
+    def full(*_: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("server.runs.figures.write_json", full)
+    with serve(folder=tmp_path, figures=True) as live:
+        found = settled(live)
+        assert found["figures"]["made"] == 3 and "No space left" in found["figures"]["problem"]
+        assert live.http.get("/api/v1/gallery/first-look/figure").status_code == 200
+
+
+def test_cards_say_what_they_are_about(live: Any) -> None:
+    cards = {card["id"]: card for card in live.http.get("/api/v1/gallery").json()["cards"]}
+    assert cards["first-look"]["demo"] and not cards["ch5-seven-step"]["demo"]
+    assert {"ch3", "Kalman bank (MMAE)", "Added mass"} <= set(cards["ch5-seven-step"]["topics"])
+    assert any("PID" in topic for topic in cards["ch5-closed-loop"]["topics"])
+    assert all(card["topics"] for card in cards.values() if card["study"] is None)

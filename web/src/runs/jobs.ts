@@ -1,0 +1,71 @@
+import type { Run, SweepRun } from "../api/types";
+import { formatCount, formatNumber } from "../ui/format";
+import { micro } from "../ui/metric-name";
+
+interface Common {
+  id: string;
+  /** Its name if somebody gave it one, else its title. */
+  title: string;
+  /** What it consists of, in a few words. */
+  about: string;
+  state: string;
+  created: string;
+  progress: number;
+  isActive: boolean;
+}
+
+/** A run or a campaign in the list. */
+export type Job = Common & ({ kind: "run"; run: Run } | { kind: "campaign"; sweep: SweepRun });
+
+const isActive = (state: string) => state === "queued" || state === "running";
+
+/** What a run is called. */
+export const runName = (run: Run): string => run.label || micro(run.title) || run.scenario_id;
+
+/** What a campaign is called. */
+export const sweepName = (sweep: SweepRun): string => sweep.label || micro(sweep.title) || `Campaign ${sweep.name}`;
+
+/** The seeds of a run in words. */
+export const seedText = (run: Run): string =>
+  run.seeds.length > 1 ? formatCount(run.seeds.length, "seed") : `seed ${run.seeds[0]}`;
+
+/** Runs and campaigns as one list, newest first. */
+export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[] {
+  return [
+    ...runs.map(
+      (run): Job => ({
+        kind: "run",
+        run,
+        id: run.id,
+        title: runName(run),
+        about: `${run.scenario_id} · ${seedText(run)}`,
+        state: run.state,
+        created: run.created,
+        progress: run.progress,
+        isActive: isActive(run.state),
+      }),
+    ),
+    ...sweeps.map(
+      (sweep): Job => ({
+        kind: "campaign",
+        sweep,
+        id: sweep.id,
+        title: sweepName(sweep),
+        about: `${sweep.name} · ${formatNumber(sweep.done ?? 0, 0)} of ${formatCount(sweep.runs, "run")}`,
+        state: sweep.state,
+        created: sweep.created,
+        progress: sweep.runs ? (sweep.done ?? 0) / sweep.runs : 0,
+        isActive: isActive(sweep.state),
+      }),
+    ),
+  ].sort((a, b) => Date.parse(b.created) - Date.parse(a.created));
+}
+
+/** How a job stands, in words. */
+export function stateText(job: Job): string {
+  if (job.state !== "done" || job.kind === "campaign") return job.state;
+  const summary = job.run.summary as { ok?: boolean; trip?: unknown; expectations?: unknown[] } | null;
+  if (summary?.trip) return "tripped";
+  if (!summary?.expectations?.length) return "done";
+  return summary.ok ? "as expected" : "other than expected";
+}
