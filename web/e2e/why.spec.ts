@@ -80,7 +80,7 @@ test("why opens beside the lanes in every layout, and goes to where the verdict 
     await pick(page);
     await besideEachOther(page);
   }
-  // also over a panel that fills the page, and where it was put over the lanes
+  // also where the lanes fill the page
   const group = page.locator(".dv-groupview", { has: lanesOf(page) });
   await group.getByRole("button", { name: "Fill the page with this panel" }).click();
   await pick(page);

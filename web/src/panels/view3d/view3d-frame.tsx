@@ -47,9 +47,10 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
 
   useEffect(() => {
     if (visible) return setIdle(false);
-    const timer = setTimeout(() => setIdle(true), IDLE_MS);
+    // one that has not got its scene yet has nothing to keep
+    const timer = setTimeout(() => setIdle(true), connected === 0 ? 0 : IDLE_MS);
     return () => clearTimeout(timer);
-  }, [visible]);
+  }, [visible, connected]);
 
   useEffect(() => {
     const listen = (event: MessageEvent) => {
