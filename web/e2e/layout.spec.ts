@@ -11,10 +11,13 @@ test("panels keep their sizes, and the open tab is in view, when the page is ope
   await openBench("lab");
   const labs = page.getByRole("tab", { name: "Noise and memory" });
   await labs.click();
+  const notice = page.getByRole("region", { name: "Notice" }); // takes room of its own
+  await expect(notice).toBeVisible();
   const before = await sizesOf(page);
   for (let i = 0; i < 2; i += 1) {
     await page.reload();
     await expect(labs).toBeInViewport({ ratio: 1 });
+    await expect(notice).toBeVisible();
     await page.getByRole("tab", { name: i ? "Diagnosis" : "Events", exact: true }).click(); // stores the layout again
   }
   expect(await sizesOf(page)).toEqual(before);

@@ -65,7 +65,8 @@ test("a link made in two clicks opens the same tick, log, layout, cursors and no
   expect(await digestOf(server, elsewhere)).toEqual(await digestOf(server, page));
   await expect(elsewhere.getByRole("region", { name: "Note of the link" })).toContainText("Watch the mass.");
   await expect(elsewhere.getByRole("tab", { name: "Events", exact: true })).toHaveAttribute("aria-selected", "true");
-  await expect(elsewhere.getByText("added mass").first()).toBeVisible();
+  const log = elsewhere.getByRole("list", { name: "Events, newest first" });
+  await expect(log.getByText(/added.mass/i).first()).toBeVisible();
   await expect(elsewhere.getByRole("slider", { name: "Cursor A" })).toHaveAttribute("aria-valuenow", "23");
   await elsewhere.reload();
   await expect(elsewhere.getByRole("slider", { name: "Cursor A" })).toHaveAttribute("aria-valuenow", "23");
