@@ -10,8 +10,8 @@ from core.board.words import describe
 from core.faults.fault import FaultParams
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING
+from server.bench.fast_forward import FastForwarding
 from server.bench.live_bench import LiveBench
-from server.bench.pacing import Pacer
 from server.bench.recordings import Recordings
 from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
 
@@ -23,14 +23,10 @@ class ShownBench(LiveBench, Protocol):
     scenario: Scenario
     created: datetime
     status: BenchStatus
-    pacer: Pacer
+    fast_forward: FastForwarding
     recordings: Recordings
     replay_of: str
     recorded_scale: float | None
-
-    @property
-    def dt_ms(self) -> float:
-        """Device time of one tick."""
 
     @property
     def is_running(self) -> bool:
@@ -54,6 +50,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         first_tick=bench.history.first_tick,
         time_scale=pacer.scale,
         achieved_scale=pacer.achieved if bench.is_started else 0.0,
+        fast_forward=bench.fast_forward.reason,
         capped=bench.is_started and pacer.capped,
         overruns=pacer.overruns,
         given_up_ms=pacer.given_up_s * 1e3,
@@ -75,6 +72,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
                 actor=entry.actor,
                 tick=entry.tick,
                 when=entry.command.when,
+                command=entry.event(),
             )
             for entry in islice(board.pending, MAX_PENDING)
         ],

@@ -17,8 +17,9 @@ from core.board.document import Document
 from core.errors import InputError
 from core.format import format_short
 from scenarios.schema import Scenario
-from server.bench.commands import MAX_PENDING, Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
+from server.bench.commands import MAX_PENDING, FastForward, Loop, Pause, Seek, Start, Step, StepPeriod, TimeScale
 from server.bench.events import Event, EventLog
+from server.bench.fast_forward import FastForwarding
 from server.bench.pacing import Pacer
 from server.bench.portrait import status_of
 from server.bench.recorder import Recorder
@@ -30,7 +31,7 @@ from server.bench.timeline import Timeline
 from server.errors import not_found
 from server.metrics import Metrics
 
-RunsBench = Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
+RunsBench = Start | Pause | Step | StepPeriod | TimeScale | FastForward | Seek | Loop
 RUN = get_args(RunsBench)
 STATUS_S = 0.2
 FORK_TICKS = 20_000
@@ -80,11 +81,10 @@ class Session(Timeline):
         self._metrics = metrics
         self.events = EventLog(self._happened)
         self.steps = Steps(self)
-        self._running = False
-        self._closed = False
+        self.fast_forward = FastForwarding(self)
+        self._running, self._closed = False, False
         self._ends_at = scenario.samples
-        self._counted = (0, 0.0)
-        self._status_due = 0.0
+        self._counted, self._status_due = (0, 0.0), 0.0
         self.refresh_status()
 
     # ---- calls of the engine
@@ -113,8 +113,8 @@ class Session(Timeline):
         if self.steps:
             return self.steps.slice()
         wanted = self.board.chunk if target is None else target - self.board.tick
-        if wanted > 0:
-            self.advance(wanted)
+        if wanted > 0 and not self.fast_forward.advance(wanted):
+            return False
         if self._ends_at is not None and self.board.tick >= self._ends_at and self._running:
             self._finish()
         return self._running and (target is None or self.board.tick < target)
@@ -146,6 +146,7 @@ class Session(Timeline):
         self.pacer.anchor(self.board.tick, self._clock())
         self._share_log()
         self.note("board", "opened", "running" if start else "paused at the first tick")
+        self.fast_forward.begin()
         self.refresh_status()
 
     def execute(self, command: Any, actor: str) -> Event | Future[Event]:
@@ -167,8 +168,8 @@ class Session(Timeline):
             entry = self.board.apply(command, actor)
             assert isinstance(entry, Event)
             event = entry
-            if self.board.trip is not None:
-                self._running = False
+            self.fast_forward.end()
+            self._running = self._running and self.board.trip is None
         self.refresh_status()
         return event
 
@@ -177,8 +178,8 @@ class Session(Timeline):
         if self._closed:
             raise not_found("bench", self.id)
 
-    def reset(self, scenario: Scenario, board: Board, actor: str) -> Event:
-        """Begin again with a new board of the same signals."""
+    def reset(self, scenario: Scenario, board: Board, actor: str, before_tick: int | None = None) -> Event:
+        """Begin again with a new board of the same signals; given a tick, run at once to shortly before it."""
         if [signal.name for signal in board.signals] != list(self._index):
             raise InputError(
                 "these values give the bench other signals", "values", "make a new bench for them", "conflict"
@@ -190,6 +191,8 @@ class Session(Timeline):
         self.history = self._empty_history()
         event = self._jumped(actor, "reset", "reset to tick 0")
         self._share_log()
+        self._running = self._running or before_tick is not None
+        self.fast_forward.begin(before_tick)
         return event
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
@@ -227,27 +230,23 @@ class Session(Timeline):
         if isinstance(command, Seek | Loop):
             raise InputError("only a recording that is played can do that", "kind", code="conflict")
         if isinstance(command, TimeScale):
-            old = self.pacer.scale
-            self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
-            text = "time runs as fast as possible"
-            if command.value is not None:
-                text = f"time scale set to {format_short(command.value, 's/s')}"
-            return self.events.add(self.board.tick, actor, "time_scale", text, document, old, command.value)
+            old, new = self.pacer.scale, command.value
+            self.pacer.rescale(new, self.board.tick, self._clock(), self._running)
+            text = f"time scale set to {format_short(new, 's/s')}" if new else "time runs as fast as possible"
+            return self.events.add(self.board.tick, actor, "time_scale", text, document, old, new)
         if isinstance(command, Pause):
             self._running = False
             self.steps.end()
             return self.note(actor, "pause", "paused", document)
         if self.board.trip is not None:
-            raise InputError(
-                f"the board has tripped: {self.board.trip.reason}",
-                hint="reset the trip first",
-                code="tripped",
-            )
-        if isinstance(command, Start):
+            text = f"the board has tripped: {self.board.trip.reason}"
+            raise InputError(text, hint="reset the trip first", code="tripped")
+        if isinstance(command, Start | FastForward):
+            skips = isinstance(command, FastForward) and self.fast_forward.skip(command.before_tick, self._ends_at)
             self.steps.end()
             self._running = True
             self.pacer.anchor(self.board.tick, self._clock())
-            return self.note(actor, "start", "started", document)
+            return self.note(actor, command.kind, skips or "started", document)
         ended = self.steps.add(command, actor)
         self._running = False
         return ended
@@ -283,9 +282,9 @@ class Session(Timeline):
     def _jumped(self, actor: str, kind: str, text: str) -> Event:
         """Note that time has jumped: recordings end, the clock is anchored anew."""
         self.steps.end()
+        self.fast_forward.end()
         self.recordings.close(f"the bench was {kind}")
-        if self.board.trip is not None:
-            self._running = False
+        self._running = self._running and self.board.trip is None
         self.pacer.anchor(self.board.tick, self._clock())
         event = self.note(actor, kind, text)
         self.refresh_status()
