@@ -41,9 +41,10 @@ class FastForwarding:
         """Leave out the wait for a tick; without one, and if the bench leads, that for the first command that waits."""
         if before_tick:
             self.skip(before_tick, None)
-        elif self.leads and (tick := self._next_tick()) is not None:
+        elif self.leads and not self._conditions() and (tick := self._bench.board.pending.next_tick) is not None:
             text = self._begin("quiet_lead", tick)
-            self._bench.note("scenario", "fast_forward", f"quiet lead: {text}")
+            if self.reason:
+                self._bench.note("scenario", "fast_forward", f"quiet lead: {text}")
 
     def skip(self, before_tick: int | None, ends_at: int | None) -> str:
         """Run on to shortly before a tick, what waits, or the end of the scenario; return that in words.

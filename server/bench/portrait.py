@@ -117,6 +117,10 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
             name: DiagnoserInfo(
                 kind=section.block.name,
                 names=[item.name for item in getattr(section.params, "hypotheses", ())],
+                factors=[
+                    item.model_dump(exclude_defaults=True, exclude={"name"})
+                    for item in getattr(section.params, "hypotheses", ())
+                ],
             )
             for name, section in bench.board.diagnosers.items()
         },

@@ -77,6 +77,7 @@ class DiagnoserInfo(BaseModel):
 
     kind: str
     names: list[str]
+    factors: list[dict[str, float]] = Field(description="How each differs from the nominal device")
 
 
 class Bench(BenchStatus):

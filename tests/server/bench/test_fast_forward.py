@@ -90,6 +90,9 @@ def test_nothing_leads_unless_asked_to_nor_where_the_first_moment_is_not_known()
     assert waiting.fast_forward.reason is None
     quiet, _ = session(lead=True, events=[])
     assert quiet.fast_forward.reason is None
+    later = {"at_sample": 5000, "heal": "all"}
+    soon, _ = session(lead=True, events=[{"at_sample": SHORTLY, "fault": "added_mass", "severity": 0.05}, later])
+    assert soon.fast_forward.reason is None
 
 
 @pytest.mark.parametrize(

@@ -1775,6 +1775,13 @@ export interface components {
             kind: string;
             /** Names */
             names: string[];
+            /**
+             * Factors
+             * @description How each differs from the nominal device
+             */
+            factors: {
+                [key: string]: number;
+            }[];
         };
         /**
          * DiagnosisTally

@@ -59,6 +59,7 @@ export type Command =
   | Schemas["StepPeriod"]
   | Schemas["Reset"]
   | Schemas["TimeScale"]
+  | Schemas["FastForward"]
   | Schemas["Inject"]
   | Schemas["Heal"]
   | Schemas["Set"]

@@ -11,14 +11,17 @@ import { Announcer } from "./announcer";
 import { Banner } from "./banner";
 import { openFirstBench } from "./first-bench";
 import { Header } from "./header/header";
+import { PresentedHeader } from "./header/presented-header";
 import { KeySheet } from "./key-sheet";
 import { NewBench } from "./new-bench";
 import { PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
+import { StepBar } from "./step-bar";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
+import { useReadingSize } from "./use-reading-size";
 
 interface Failure {
   title: string;
@@ -33,7 +36,9 @@ export function App() {
   const stale = useLasting(silent, 700);
   const Page = PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
+  const present = useView((s) => s.present);
   useKeys();
+  useReadingSize(phone);
 
   const start = useCallback(() => {
     setFailure(undefined);
@@ -52,17 +57,18 @@ export function App() {
   }, [start]);
 
   return (
-    <div className="page" data-stale={stale}>
-      {phone ? null : <Header />}
+    <div className="page" data-stale={stale} data-present={present}>
+      {phone ? null : present ? <PresentedHeader /> : <Header />}
       <ReplayBar />
-      <Banner hints={!phone && page === "bench"} />
+      <Banner hints={!present && page === "bench"} />
+      {page === "bench" && !present && <StepBar />}
       {failure ? (
         <EmptyState title={failure.title} action={<Button onClick={start}>Try again</Button>}>
           {failure.advice}
         </EmptyState>
       ) : (
         <div className="body">
-          <Rail />
+          {!present && <Rail />}
           {phone && page === "bench" ? <Phone /> : <Page />}
         </div>
       )}

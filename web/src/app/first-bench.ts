@@ -1,5 +1,7 @@
 import { api } from "../api/api";
 import { benchInAddress, lastBench, openBench } from "../bench/open-bench";
+import { send } from "../bench/send";
+import { useBench } from "../stream/bench-store";
 
 /** Worth seeing at first sight: the first of these that the library has. */
 const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
@@ -13,7 +15,15 @@ export async function openFirstBench(): Promise<void> {
 
 /** Start a bench of a library scenario in place of the one shown. */
 export async function startAgain(scenario: string): Promise<void> {
-  openBench((await api.createBench({ scenario, paused: false })).id, true);
+  openBench((await api.createBench({ scenario, paused: false, quiet_lead: true })).id, true);
+}
+
+/** Start a bench of a library scenario; the one shown is paused if nobody else watches it. */
+export async function startBeside(scenario: string): Promise<void> {
+  const { bench } = useBench.getState();
+  const made = await api.createBench({ scenario, paused: false, quiet_lead: true });
+  if (bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  openBench(made.id);
 }
 
 /** Open the bench this browser had last, else one that runs, or start the showpiece. */
@@ -25,5 +35,5 @@ export async function openAnyBench(): Promise<void> {
   const library = await api.scenarios();
   const id = SHOWPIECES.find((name) => library.some((s) => s.id === name)) ?? library[0]?.id;
   if (!id) throw new Error("The library holds no scenario to start from.");
-  openBench((await api.createBench({ scenario: id, paused: false })).id, true);
+  openBench((await api.createBench({ scenario: id, paused: false, quiet_lead: true })).id, true);
 }

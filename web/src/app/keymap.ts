@@ -3,6 +3,7 @@ import { focusNextGroup } from "../bench/dock";
 import type { PageName } from "../bench/view-store";
 import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
+import { togglePresent } from "./present";
 import { themeSwitch } from "./theme-switch";
 
 export interface KeyBinding {
@@ -22,6 +23,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "]", shown: "]", does: "twice as fast", group: "Run", run: actions.faster },
   { key: "[", shown: "[", does: "half as fast", group: "Run", run: actions.slower },
   { key: "R", shown: "Shift R", does: "reset to the start", group: "Run", run: actions.reset },
+  { key: ">", shown: ">", does: "skip to the next step of the scenario", group: "Run", run: actions.skip },
   { key: "h", shown: "H", does: "heal all faults", group: "Bench", run: actions.healAll },
   { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
   { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
@@ -33,6 +35,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
   { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
+  { key: "p", shown: "P", does: "present: panels only, on the whole screen", group: "Look", run: togglePresent },
   { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },

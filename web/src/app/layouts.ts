@@ -12,6 +12,10 @@ let axes = false;
 
 const storageKey = (name: LayoutName) => `combbench.layout.4.${axes ? "axes." : ""}${name}`;
 
+const CHOSEN = "combbench.layout.chosen";
+
+const isLayout = (name: string | null): name is LayoutName => name !== null && name in BUILT_IN;
+
 /** Lay the panels out for the benches of a kind; within one kind they stay where they are. */
 export function layOutFor(withAxes: boolean): void {
   if (withAxes === axes) return;
@@ -28,7 +32,7 @@ export function attachDock(api: DockviewApi): void {
   });
   axes = hasAxes(useBench.getState().bench);
   const asked = new URLSearchParams(window.location.search).get("layout");
-  const name = asked && asked in BUILT_IN ? (asked as LayoutName) : useView.getState().layout;
+  const name = [asked, localStorage.getItem(CHOSEN)].find(isLayout) ?? useView.getState().layout;
   arrange(name, stored(name));
   api.onDidLayoutChange(() =>
     localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(api.toJSON())),
@@ -38,6 +42,7 @@ export function attachDock(api: DockviewApi): void {
 /** Choose a built-in layout afresh; what was rearranged in it is forgotten. The address names it. */
 export function setLayout(name: LayoutName): void {
   localStorage.removeItem(storageKey(name));
+  localStorage.setItem(CHOSEN, name);
   const url = new URL(window.location.href);
   url.searchParams.set("layout", name);
   window.history.replaceState(null, "", url);
@@ -51,8 +56,7 @@ function stored(name: LayoutName): SerializedDockview | undefined {
 
 function arrange(name: LayoutName, saved: SerializedDockview | undefined): void {
   const api = dockNow();
-  useView.setState({ layout: name, large: name === "lecture" });
-  document.documentElement.dataset.size = name === "lecture" ? "large" : "normal";
+  useView.setState({ layout: name });
   if (!api) return;
   if (saved && restoreLayout(saved)) return;
   localStorage.removeItem(storageKey(name));

@@ -19,22 +19,27 @@ interface ViewStore {
   dialog: "none" | "keys" | "bench";
   /** On a phone: the panel shown beside those it always has. */
   extra: string;
-  /** Reading size: lectures are read from the last row. */
-  large: boolean;
+  /** Size of the letters on canvases, px: lectures are read from the last row. */
+  fontPx: number;
+  /** Only what an audience looks at. */
+  present: boolean;
 }
 
-/** Below this width three columns of panels are too narrow to read. */
-const WIDE = 1280;
+/** Letters on canvases, px, but in a lecture. */
+export const NORMAL_PX = 12;
+/** Those of a lecture, in the smallest window it is made for. */
+export const LECTURE_PX = 15;
 
 /** How this page looks at the bench; says nothing about the bench itself. */
 export const useView = create<ViewStore>(() => ({
   page: pageInAddress(),
-  layout: window.innerWidth >= WIDE ? "research" : "lab",
+  layout: "lecture",
   card: "diagnosers.kalman",
   sample: undefined,
   dialog: "none",
   extra: "",
-  large: false,
+  fontPx: NORMAL_PX,
+  present: new URLSearchParams(window.location.search).get("present") === "1",
 }));
 
 /** The page named in the address. */

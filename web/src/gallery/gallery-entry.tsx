@@ -18,7 +18,7 @@ export function GalleryEntry({ card, onChanged }: { card: GalleryCard; onChanged
   const live = async () => {
     setStarting(true);
     try {
-      openBench((await api.createBench({ scenario: card.id, paused: false })).id);
+      openBench((await api.createBench({ scenario: card.id, paused: false, quiet_lead: true })).id);
       setPage("bench");
     } catch (error) {
       showError(error);

@@ -1,6 +1,7 @@
 import { Menu } from "@mantine/core";
 import { type LayoutName, useView } from "../../bench/view-store";
 import { setLayout } from "../layouts";
+import { togglePresent } from "../present";
 import styles from "./header.module.css";
 
 const LAYOUTS: [LayoutName, string][] = [
@@ -9,10 +10,10 @@ const LAYOUTS: [LayoutName, string][] = [
   ["research", "Everything (3)"],
 ];
 
-/** The built-in layouts, as items of a menu. */
+/** The built-in layouts and the view for an audience, as items of a menu. */
 export function LayoutItems() {
   const layout = useView((s) => s.layout);
-  return LAYOUTS.map(([name, what]) => (
+  const items = LAYOUTS.map(([name, what]) => (
     <Menu.Item
       key={name}
       aria-current={name === layout}
@@ -23,4 +24,14 @@ export function LayoutItems() {
       <small className={styles.menuNote}>{what}</small>
     </Menu.Item>
   ));
+  return (
+    <>
+      {items}
+      <Menu.Divider />
+      <Menu.Item onClick={togglePresent}>
+        Present
+        <small className={styles.menuNote}>Panels only, on the whole screen (P); Escape leaves</small>
+      </Menu.Item>
+    </>
+  );
 }
