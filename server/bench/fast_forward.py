@@ -40,7 +40,7 @@ class FastForwarding:
     def begin(self, before_tick: int | None = None) -> None:
         """Leave out the wait for a tick; without one, and if the bench leads, that for the first command that waits."""
         if before_tick:
-            self.skip(before_tick, None)
+            self._bench.note("scenario", "fast_forward", self.skip(before_tick, None))
         elif self.leads and not self._conditions() and (tick := self._bench.board.pending.next_tick) is not None:
             text = self._begin("quiet_lead", tick)
             if self.reason:

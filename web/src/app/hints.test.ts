@@ -24,6 +24,7 @@ it("suits what is open: the rate of a gyroscope, the steps of a scenario, nothin
   expect(ids(hintsOf(gyroscope, false))).toEqual(["rate", "switch"]);
   expect(hintsOf(gyroscope, false)?.intro).toMatch(/gyroscope/);
   expect(ids(hintsOf(full, true))).toEqual(["find", "skip"]);
+  expect(ids(hintsOf({ ...gyroscope, diagnosers: {} }, true))).toEqual(["rate", "switch", "skip"]);
   expect(hintsOf(full, true)?.guided).toBeUndefined();
   expect(hintsOf({ ...bench, replay_of: "x" }, false)).toBeUndefined();
 });

@@ -39,7 +39,10 @@ export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
     intro: axes
       ? "A live gyroscope: a plate swings along x, and turning it pushes it along y. The controllers read the rate of turn from that."
       : `A live comb resonator: a voltage shakes a plate on thin beams.${diagnosed ? " Diagnosis says what is wrong with it: the fuller a lane, the surer." : ""}`,
-    hints: hasSteps ? ofSteps(diagnosed) : axes ? ofAxes(bench) : ofResonator(bench, diagnosed),
+    hints: [
+      ...(axes ? ofAxes(bench) : hasSteps ? [] : ofResonator(bench, diagnosed)),
+      ...(hasSteps ? ofSteps(diagnosed) : []),
+    ],
     guided: hasSteps
       ? undefined
       : axes

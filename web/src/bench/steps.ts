@@ -37,10 +37,11 @@ export function useSteps(): BenchStep[] {
   return useMemo(() => (shown && pending ? stepsOf(currentEvents(events), pending) : NONE), [events, pending, shown]);
 }
 
-/** The longest of some steps, in ticks, up to where the scenario ends; undefined where it is not known. */
+/** The longest time between two steps, in ticks; from a single one, that to the end. Undefined where it is not known. */
 export function longestStep(steps: readonly BenchStep[], end: number | null | undefined): number | undefined {
   const ticks = steps.slice(1).flatMap(({ tick }) => tick ?? []);
-  const gaps = [...ticks, ...(end ? [end] : [])].map((tick, i, all) => tick - (all[i - 1] ?? tick));
+  const edges = ticks.length === 1 && end ? [...ticks, end] : ticks;
+  const gaps = edges.map((tick, i) => tick - (edges[i - 1] ?? tick));
   const longest = Math.max(0, ...gaps);
   return longest > 0 ? longest : undefined;
 }

@@ -18,7 +18,7 @@ import { printLanes } from "./print-lanes";
 import type { LaneTime } from "./use-lane-time";
 
 /** Share of the panel that the words of the hypotheses may take; otherwise their names stand there. */
-const WORDS_SHARE = 0.28;
+const WORDS_SHARE = 0.32;
 
 interface DiagnoserLanesProps {
   id: string;
