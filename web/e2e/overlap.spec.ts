@@ -7,7 +7,7 @@ const SIZES = [
   { width: 820, height: 1180 },
   { width: 390, height: 844 },
 ];
-const LAYOUTS = ["lecture", "lab", "research"] as const;
+const LAYOUTS = ["lab", "research", "lecture"] as const;
 const PAGES = ["Gallery", "Runs", "Design", "Theory"];
 
 /** What is cut, lies over something else, or makes the page wider than its window. */

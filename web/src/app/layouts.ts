@@ -1,7 +1,7 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { hasAxes } from "../api/fits";
 import { dockNow, holdDock, restoreLayout } from "../bench/dock";
-import { type LayoutName, useView } from "../bench/view-store";
+import { keepLayout, type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
 import { BUILT_IN } from "./built-in-layouts";
 import { PANELS } from "./panels";
@@ -11,10 +11,6 @@ import { BUILT_IN_AXES } from "./two-axis-layouts";
 let axes = false;
 
 const storageKey = (name: LayoutName) => `combbench.layout.4.${axes ? "axes." : ""}${name}`;
-
-const CHOSEN = "combbench.layout.chosen";
-
-const isLayout = (name: string | null): name is LayoutName => name !== null && name in BUILT_IN;
 
 /** Lay the panels out for the benches of a kind; within one kind they stay where they are. */
 export function layOutFor(withAxes: boolean): void {
@@ -31,8 +27,7 @@ export function attachDock(api: DockviewApi): void {
     if (!panel.title || panel.title === panel.id) panel.api.setTitle(PANELS[panel.view.contentComponent].title);
   });
   axes = hasAxes(useBench.getState().bench);
-  const asked = new URLSearchParams(window.location.search).get("layout");
-  const name = [asked, localStorage.getItem(CHOSEN)].find(isLayout) ?? useView.getState().layout;
+  const name = useView.getState().layout;
   arrange(name, stored(name));
   api.onDidLayoutChange(() =>
     localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(api.toJSON())),
@@ -42,10 +37,7 @@ export function attachDock(api: DockviewApi): void {
 /** Choose a built-in layout afresh; what was rearranged in it is forgotten. The address names it. */
 export function setLayout(name: LayoutName): void {
   localStorage.removeItem(storageKey(name));
-  localStorage.setItem(CHOSEN, name);
-  const url = new URL(window.location.href);
-  url.searchParams.set("layout", name);
-  window.history.replaceState(null, "", url);
+  keepLayout(name);
   arrange(name, undefined);
 }
 

@@ -1,6 +1,10 @@
 import { create } from "zustand";
 
-export type LayoutName = "lecture" | "lab" | "research";
+const LAYOUT_NAMES = ["lecture", "lab", "research"] as const;
+
+export type LayoutName = (typeof LAYOUT_NAMES)[number];
+
+const CHOSEN = "combbench.layout.chosen";
 
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
@@ -33,7 +37,7 @@ export const LECTURE_PX = 15;
 /** How this page looks at the bench; says nothing about the bench itself. */
 export const useView = create<ViewStore>(() => ({
   page: pageInAddress(),
-  layout: "lecture",
+  layout: firstLayout(),
   card: "diagnosers.kalman",
   sample: undefined,
   dialog: "none",
@@ -41,6 +45,20 @@ export const useView = create<ViewStore>(() => ({
   fontPx: NORMAL_PX,
   present: new URLSearchParams(window.location.search).get("present") === "1",
 }));
+
+/** The layout named in the address, else the one chosen last; a lecture for who comes first. */
+function firstLayout(): LayoutName {
+  const asked = [new URLSearchParams(window.location.search).get("layout"), localStorage.getItem(CHOSEN)];
+  return LAYOUT_NAMES.find((name) => name === asked[0]) ?? LAYOUT_NAMES.find((name) => name === asked[1]) ?? "lecture";
+}
+
+/** Keep a layout for the next visit; the address names it. */
+export function keepLayout(layout: LayoutName): void {
+  localStorage.setItem(CHOSEN, layout);
+  const url = new URL(window.location.href);
+  url.searchParams.set("layout", layout);
+  window.history.replaceState(null, "", url);
+}
 
 /** The page named in the address. */
 export function pageInAddress(): PageName {
