@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from fastapi import APIRouter, Body, Query, Response
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, model_validator
 
 from scenarios.schema import Scenario
 from server.api.bodies import Body as StrictBody
@@ -33,6 +33,20 @@ class NewBench(StrictBody):
         le=MAX_SCALE,
         description="Device seconds per wall second; null: as fast as possible. Unless given, that of the device",
     )
+    quiet_lead: bool = Field(
+        False,
+        description=(
+            "Run as fast as possible to two seconds, at the time scale, before the first command of the scenario that "
+            "waits for a tick; from there on at the time scale. After a reset again; a time_scale command ends it. "
+            "Bits are the same"
+        ),
+    )
+
+    @model_validator(mode="after")
+    def _has_a_pace(self) -> Self:
+        if self.quiet_lead and self.time_scale is None:
+            raise ValueError("quiet_lead needs a time_scale to go on at")
+        return self
 
 
 class BenchList(BaseModel):
@@ -81,7 +95,13 @@ async def create_bench(body: NewBench, service: ServiceDep, response: Response) 
     """Make a bench and let it run."""
     given = "time_scale" in body.model_fields_set
     session = await service.benches.create(
-        body.scenario, body.set, body.seed, body.paused, body.time_scale, own_scale=not given
+        body.scenario,
+        body.set,
+        body.seed,
+        body.paused,
+        body.time_scale,
+        own_scale=not given,
+        quiet_lead=body.quiet_lead,
     )
     session.keep = body.keep
     response.headers["Location"] = f"/api/v1/benches/{session.id}"

@@ -97,8 +97,11 @@ class Benches:
         time_scale: float | None,
         *,
         own_scale: bool = False,
+        quiet_lead: bool = False,
     ) -> Session:
         """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
+
+        With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario.
 
         Raises
         ------
@@ -110,7 +113,9 @@ class Benches:
 
         def made() -> Session:
             scenario, board = prepare(source, values, seed)
-            return self._session(scenario, board, usual_scale(board) if own_scale else time_scale)
+            session = self._session(scenario, board, usual_scale(board) if own_scale else time_scale)
+            session.fast_forward.leads = quiet_lead
+            return session
 
         return await self._admit(asyncio.to_thread(made), not paused)
 
@@ -236,12 +241,13 @@ class Benches:
             if isinstance(command, Reset) and isinstance(session.board, Tape):
                 if command.values:
                     raise InputError(REFUSAL, "values", "run its scenario to change something", "conflict")
-                event = await self._engine.call(session.execute, Seek(tick=session.board.first), actor)
+                tick = session.board.first if command.before_tick is None else command.before_tick
+                event = await self._engine.call(session.execute, Seek(tick=tick), actor)
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}
                 scenario, board = await asyncio.to_thread(prepare, session.scenario.document, values, None)
-                event = await self._engine.call(session.reset, scenario, board, actor)
+                event = await self._engine.call(session.reset, scenario, board, actor, command.before_tick)
             else:
                 event = await self._engine.call(session.execute, command, actor)
         except (InputError, ApiError) as error:

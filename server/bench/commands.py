@@ -54,6 +54,22 @@ class Reset(RunCommand):
 
     kind: Literal["reset"] = "reset"
     values: dict[str, Any] = Field({}, description="Dotted paths of the scenario; any field, live or not")
+    before_tick: int | None = Field(
+        None, ge=0, le=2**53, description="Then run, as fast as possible to shortly before this tick"
+    )
+
+
+class FastForward(RunCommand):
+    """Run as fast as possible for a while, then go on at the time scale.
+
+    It ends shortly before a tick: the one given, else that of the next command that waits. If only commands wait whose
+    moment is not known, it ends once one of them has taken effect; if none waits, at the end of the scenario.
+    """
+
+    kind: Literal["fast_forward"] = "fast_forward"
+    before_tick: int | None = Field(
+        None, ge=0, le=2**53, description="Shortly before this tick; null: before what waits"
+    )
 
 
 class Undo(RunCommand):
@@ -101,6 +117,7 @@ RUN_KINDS: dict[str, type[RunCommand]] = {
     "undo": Undo,
     "redo": Redo,
     "time_scale": TimeScale,
+    "fast_forward": FastForward,
     "seek": Seek,
     "loop": Loop,
 }
@@ -141,6 +158,7 @@ Command = Annotated[
     | Undo
     | Redo
     | TimeScale
+    | FastForward
     | Seek
     | Loop
     | Inject

@@ -9,6 +9,7 @@ from core.board.document import Document
 from core.board.history import History
 from core.signals import Signal
 from server.bench.events import Event, EventLog
+from server.bench.pacing import Pacer
 from server.bench.tick_source import TickSource
 
 
@@ -18,6 +19,15 @@ class LiveBench(Protocol):
     board: TickSource
     history: History
     events: EventLog
+    pacer: Pacer
+
+    @property
+    def now(self) -> float:
+        """The time on the engine's clock."""
+
+    @property
+    def dt_ms(self) -> float:
+        """Device time of one tick."""
 
     @property
     def signals(self) -> Sequence[Signal]:

@@ -39,6 +39,7 @@ class Pacer:
         self._due = 0
         self._seen: deque[tuple[float, int, int]] = deque()
         self._lags_since: float | None = None
+        self._fast_to: int | None = None
         self.given_up_s = 0.0
         self.overruns = 0
 
@@ -46,6 +47,16 @@ class Pacer:
     def scale(self) -> float | None:
         """Device seconds per wall second; none is as fast as possible."""
         return self._scale
+
+    @property
+    def fast_to(self) -> int | None:
+        """The tick up to which it runs as fast as possible, whatever its time scale; none: at its time scale."""
+        return self._fast_to
+
+    def hurry(self, fast_to: int | None, tick: int, now: float) -> None:
+        """Run as fast as possible to a tick, or no longer; from there on the time scale counts."""
+        self._fast_to = fast_to if fast_to is not None and fast_to > tick else None
+        self.anchor(tick, now)
 
     def anchor(self, tick: int, now: float) -> None:
         """Start counting here: after a start, a pause, a step, a restore."""
@@ -56,6 +67,8 @@ class Pacer:
 
     def rescale(self, scale: float | None, tick: int, now: float, is_running: bool) -> None:
         """Change the time scale from now on; ticks due at the old one stay due."""
+        if self._fast_to is not None:
+            self.hurry(None, tick, now)
         if scale == self._scale:
             return
         due = self.target(tick, now) if is_running else None
@@ -72,6 +85,10 @@ class Pacer:
         now : float
             Wall clock in seconds.
         """
+        if self._fast_to is not None:
+            if tick < self._fast_to:
+                return self._fast_to
+            self.hurry(None, tick, now)
         if self._scale is None:
             return None
         rate = self._scale / self.dt_s
@@ -86,13 +103,15 @@ class Pacer:
 
     def record(self, tick: int, target: int | None, now: float) -> None:
         """Note the tick that a round of work reached."""
+        if self._fast_to is not None:
+            target = None
         if target is not None and tick < target:
             self.overruns += 1
         due = self._due + (target if target is not None else tick)
         self._seen.append((now, tick, due))
         while len(self._seen) > 2 and now - self._seen[1][0] >= WINDOW_S:
             self._seen.popleft()
-        if self._scale is None or self.achieved >= CAPPED_BELOW * self._scale:
+        if self._scale is None or self._fast_to is not None or self.achieved >= CAPPED_BELOW * self._scale:
             self._lags_since = None
         elif self._lags_since is None:
             self._lags_since = now
@@ -103,7 +122,7 @@ class Pacer:
         if len(self._seen) < 2:
             return self._scale or 0.0
         (wall_0, tick_0, due_0), (wall_1, tick_1, due_1) = self._seen[0], self._seen[-1]
-        if self._scale is None:
+        if self._scale is None or self._fast_to is not None:
             elapsed = wall_1 - wall_0
             return (tick_1 - tick_0) * self.dt_s / elapsed if elapsed > 0 else 0.0
         # The ticks due are the measure, not the clock: at 1 us/s a second holds less than one tick.

@@ -11,8 +11,8 @@ from core.faults.fault import FaultParams
 from scenarios.schema import Scenario
 from server.bench.changes import Changes
 from server.bench.commands import MAX_PENDING
+from server.bench.fast_forward import FastForwarding
 from server.bench.live_bench import LiveBench
-from server.bench.pacing import Pacer
 from server.bench.recordings import Recordings
 from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Opened, Pending, State
 
@@ -24,17 +24,13 @@ class ShownBench(LiveBench, Protocol):
     scenario: Scenario
     created: datetime
     status: BenchStatus
-    pacer: Pacer
+    fast_forward: FastForwarding
     recordings: Recordings
     changes: Changes
     replay_of: str
     recorded_scale: float | None
     opened: Opened | None
     keep: bool
-
-    @property
-    def dt_ms(self) -> float:
-        """Device time of one tick."""
 
     @property
     def is_running(self) -> bool:
@@ -58,6 +54,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         first_tick=bench.history.first_tick,
         time_scale=pacer.scale,
         achieved_scale=pacer.achieved if bench.is_started else 0.0,
+        fast_forward=bench.fast_forward.reason,
         capped=bench.is_started and pacer.capped,
         overruns=pacer.overruns,
         given_up_ms=pacer.given_up_s * 1e3,
@@ -79,6 +76,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
                 actor=entry.actor,
                 tick=entry.tick,
                 when=entry.command.when,
+                command=entry.event(),
             )
             for entry in islice(board.pending, MAX_PENDING)
         ],
@@ -125,6 +123,10 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
             name: DiagnoserInfo(
                 kind=section.block.name,
                 names=[item.name for item in getattr(section.params, "hypotheses", ())],
+                factors=[
+                    item.model_dump(exclude_defaults=True, exclude={"name"})
+                    for item in getattr(section.params, "hypotheses", ())
+                ],
             )
             for name, section in bench.board.diagnosers.items()
         },

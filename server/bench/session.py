@@ -19,8 +19,21 @@ from core.errors import InputError
 from core.format import format_short
 from scenarios.schema import Scenario
 from server.bench.changes import Changes
-from server.bench.commands import MAX_PENDING, Loop, Pause, Redo, Seek, Start, Step, StepPeriod, TimeScale, Undo
+from server.bench.commands import (
+    MAX_PENDING,
+    FastForward,
+    Loop,
+    Pause,
+    Redo,
+    Seek,
+    Start,
+    Step,
+    StepPeriod,
+    TimeScale,
+    Undo,
+)
 from server.bench.events import Event, EventLog
+from server.bench.fast_forward import FastForwarding
 from server.bench.moment import Moment
 from server.bench.pacing import Pacer
 from server.bench.portrait import status_of
@@ -34,7 +47,7 @@ from server.bench.timeline import Timeline
 from server.errors import not_found
 from server.metrics import Metrics
 
-RunsBench = Undo | Redo | Start | Pause | Step | StepPeriod | TimeScale | Seek | Loop
+RunsBench = Undo | Redo | Start | Pause | Step | StepPeriod | TimeScale | FastForward | Seek | Loop
 STATUS_S = 0.2
 
 
@@ -85,11 +98,10 @@ class Session(Timeline):
         self._metrics = metrics
         self.events = EventLog(self._happened)
         self.steps = Steps(self)
-        self._running = False
-        self._closed = False
+        self.fast_forward = FastForwarding(self)
+        self._running, self._closed = False, False
         self._ends_at = scenario.samples
-        self._counted = (0, 0.0)
-        self._status_due = 0.0
+        self._counted, self._status_due = (0, 0.0), 0.0
         self.refresh_status()
 
     @property
@@ -116,8 +128,8 @@ class Session(Timeline):
         if self.steps:
             return self.steps.slice()
         wanted = self.board.chunk if target is None else target - self.board.tick
-        if wanted > 0:
-            self.advance(wanted)
+        if wanted > 0 and not self.fast_forward.advance(wanted):
+            return False
         if self._ends_at is not None and self.board.tick >= self._ends_at and self._running:
             self._finish()
         return self._running and (target is None or self.board.tick < target)
@@ -149,6 +161,7 @@ class Session(Timeline):
         self.pacer.anchor(self.board.tick, self._clock())
         self._share_log()
         self.note("board", "opened", "running" if start else f"paused at tick {self.board.tick}")
+        self.fast_forward.begin()
         self.refresh_status()
 
     def execute(self, command: Any, actor: str) -> Event | Future[Event]:
@@ -168,6 +181,7 @@ class Session(Timeline):
             if len(self.board.pending) >= MAX_PENDING:
                 raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
             event = self.changes.apply(command, actor)
+            self.fast_forward.end()
             self._running = self._running and self.board.trip is None
         self.refresh_status()
         return event
@@ -177,8 +191,8 @@ class Session(Timeline):
         if self._closed:
             raise not_found("bench", self.id)
 
-    def reset(self, scenario: Scenario, board: Board, actor: str) -> Event:
-        """Begin again with a new board of the same signals."""
+    def reset(self, scenario: Scenario, board: Board, actor: str, before_tick: int | None = None) -> Event:
+        """Begin again with a new board of the same signals; given a tick, run at once to shortly before it."""
         if [signal.name for signal in board.signals] != list(self._index):
             text = "these values give the bench other signals"
             raise InputError(text, "values", "make a new bench for them", "conflict")
@@ -189,6 +203,8 @@ class Session(Timeline):
         event = self.note(actor, "reset", "reset to tick 0")
         self._share_log()
         self.changes.jumped(event, before)
+        self._running = self._running or before_tick is not None
+        self.fast_forward.begin(before_tick)
         self.refresh_status()
         return event
 
@@ -240,12 +256,10 @@ class Session(Timeline):
         if isinstance(command, Seek | Loop):
             raise InputError("only a recording that is played can do that", "kind", code="conflict")
         if isinstance(command, TimeScale):
-            old = self.pacer.scale
-            self.pacer.rescale(command.value, self.board.tick, self._clock(), self._running)
-            text = "time runs as fast as possible"
-            if command.value is not None:
-                text = f"time scale set to {format_short(command.value, 's/s')}"
-            return self.events.add(self.board.tick, actor, "time_scale", text, document, old, command.value)
+            old, new = self.pacer.scale, command.value
+            self.pacer.rescale(new, self.board.tick, self._clock(), self._running)
+            text = f"time scale set to {format_short(new, 's/s')}" if new else "time runs as fast as possible"
+            return self.events.add(self.board.tick, actor, "time_scale", text, document, old, new)
         if isinstance(command, Pause):
             self._running = False
             self.steps.end()
@@ -253,11 +267,12 @@ class Session(Timeline):
         if self.board.trip is not None:
             text = f"the board has tripped: {self.board.trip.reason}"
             raise InputError(text, hint="reset the trip first", code="tripped")
-        if isinstance(command, Start):
+        if isinstance(command, Start | FastForward):
+            skips = isinstance(command, FastForward) and self.fast_forward.skip(command.before_tick, self._ends_at)
             self.steps.end()
             self._running = True
             self.pacer.anchor(self.board.tick, self._clock())
-            return self.note(actor, "start", "started", document)
+            return self.note(actor, command.kind, skips or "started", document)
         ended = self.steps.add(command, actor)
         self._running = False
         return ended
@@ -293,11 +308,11 @@ class Session(Timeline):
     def _jumped(self, why: str) -> None:
         """Follow a jump in time: recordings end, the clock is anchored anew."""
         self.steps.end()
+        self.fast_forward.end()
         self.recordings.close(why)
         if self.board.dt_ms * 1e-3 != self.pacer.dt_s:
             self.pacer = Pacer(self.board.dt_ms * 1e-3, self.pacer.scale)
-        if self.board.trip is not None:
-            self._running = False
+        self._running = self._running and self.board.trip is None
         self.pacer.anchor(self.board.tick, self._clock())
 
     def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:

@@ -8,6 +8,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field
 
 from core.board.commands import Trip
+from core.board.document import Document
 from core.loop.score import Scores
 from core.signals import Signal
 
@@ -31,6 +32,7 @@ class Pending(BaseModel):
     actor: str
     tick: int | None
     when: str | None
+    command: Document = Field(description="As an event of a scenario")
 
 
 class Snapshot(BaseModel):
@@ -57,6 +59,9 @@ class BenchStatus(BaseModel):
     first_tick: int = Field(description="The oldest tick of the history")
     time_scale: float | None = Field(description="Device seconds per wall second wanted; null: no limit")
     achieved_scale: float = Field(description="Device seconds per wall second over the last second")
+    fast_forward: Literal["quiet_lead", "skip"] | None = Field(
+        description="Why it runs as fast as possible now, whatever its time scale: to be shortly before what waits"
+    )
     capped: bool = Field(description="The machine has been below 80 % of the rate for 3 s")
     overruns: int = Field(description="Rounds that missed their target")
     given_up_ms: float = Field(description="Wall time given up catching up")
@@ -91,6 +96,7 @@ class DiagnoserInfo(BaseModel):
 
     kind: str
     names: list[str]
+    factors: list[dict[str, float]] = Field(description="How each differs from the nominal device")
 
 
 class Bench(BenchStatus):

@@ -45,6 +45,11 @@ class Timeline:
         self._index = {signal.name: signal.index for signal in board.signals}
 
     @property
+    def now(self) -> float:
+        """The time on the engine's clock."""
+        return self._clock()
+
+    @property
     def dt_ms(self) -> float:
         """Device time of one tick."""
         return self.board.dt_ms

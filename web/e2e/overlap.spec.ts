@@ -7,7 +7,7 @@ const SIZES = [
   { width: 820, height: 1180 },
   { width: 390, height: 844 },
 ];
-const LAYOUTS = ["lecture", "lab", "research"] as const;
+const LAYOUTS = ["lab", "research", "lecture"] as const;
 const SHEETS = [
   { key: "S", title: "Share this experiment" },
   { key: "n", title: "Mine" },

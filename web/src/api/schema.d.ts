@@ -1668,6 +1668,11 @@ export interface components {
              */
             achieved_scale: number;
             /**
+             * Fast Forward
+             * @description Why it runs as fast as possible now, whatever its time scale: to be shortly before what waits
+             */
+            fast_forward: ("quiet_lead" | "skip") | null;
+            /**
              * Capped
              * @description The machine has been below 80 % of the rate for 3 s
              */
@@ -2146,6 +2151,13 @@ export interface components {
             kind: string;
             /** Names */
             names: string[];
+            /**
+             * Factors
+             * @description How each differs from the nominal device
+             */
+            factors: {
+                [key: string]: number;
+            }[];
         };
         /**
          * DiagnosisTally
@@ -2434,6 +2446,26 @@ export interface components {
             min: (number | null)[];
             /** Max */
             max: (number | null)[];
+        };
+        /**
+         * FastForward
+         * @description Run as fast as possible for a while, then go on at the time scale.
+         *
+         *     It ends shortly before a tick: the one given, else that of the next command that waits. If only commands wait whose
+         *     moment is not known, it ends once one of them has taken effect; if none waits, at the end of the scenario.
+         */
+        FastForward: {
+            /**
+             * Kind
+             * @default fast_forward
+             * @constant
+             */
+            kind?: "fast_forward";
+            /**
+             * Before Tick
+             * @description Shortly before this tick; null: before what waits
+             */
+            before_tick?: number | null;
         };
         /**
          * Figure
@@ -3155,6 +3187,12 @@ export interface components {
              * @default 0.002
              */
             time_scale?: number | null;
+            /**
+             * Quiet Lead
+             * @description Run as fast as possible to two seconds, at the time scale, before the first command of the scenario that waits for a tick; from there on at the time scale. After a reset again; a time_scale command ends it. Bits are the same
+             * @default false
+             */
+            quiet_lead?: boolean;
         };
         /**
          * NewLabel
@@ -3449,6 +3487,13 @@ export interface components {
             tick: number | null;
             /** When */
             when: string | null;
+            /**
+             * Command
+             * @description As an event of a scenario
+             */
+            command: {
+                [key: string]: unknown;
+            };
         };
         /**
          * PointTally
@@ -3791,6 +3836,11 @@ export interface components {
             values?: {
                 [key: string]: unknown;
             };
+            /**
+             * Before Tick
+             * @description Then run, as fast as possible to shortly before this tick
+             */
+            before_tick?: number | null;
         };
         /**
          * ResetTrip
@@ -4597,7 +4647,7 @@ export interface components {
             /** Id */
             id: string;
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
         };
         /**
          * Rearm
@@ -4873,6 +4923,11 @@ export interface components {
              * @description Device seconds per wall second over the last second
              */
             achieved_scale: number;
+            /**
+             * Fast Forward
+             * @description Why it runs as fast as possible now, whatever its time scale: to be shortly before what waits
+             */
+            fast_forward: ("quiet_lead" | "skip") | null;
             /**
              * Capped
              * @description The machine has been below 80 % of the rate for 3 s
@@ -5479,7 +5534,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
             };
         };
         responses: {

@@ -71,6 +71,7 @@ export type Command =
   | Schemas["Undo"]
   | Schemas["Redo"]
   | Schemas["TimeScale"]
+  | Schemas["FastForward"]
   | Schemas["Inject"]
   | Schemas["Heal"]
   | Schemas["Set"]

@@ -13,6 +13,7 @@ import { Banner } from "./banner";
 import { comeBack, openFirstBench } from "./first-bench";
 import { FullServer } from "./full-server";
 import { Header } from "./header/header";
+import { PresentedHeader } from "./header/presented-header";
 import { KeySheet } from "./key-sheet";
 import { LayoutSheet } from "./layout-sheet";
 import { MineSheet } from "./mine-sheet";
@@ -23,8 +24,10 @@ import { Phone } from "./phone";
 import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
 import { ShareSheet } from "./share-sheet";
+import { StepBar } from "./step-bar";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
+import { useReadingSize } from "./use-reading-size";
 
 interface Failure {
   code: string;
@@ -41,7 +44,9 @@ export function App() {
   const stale = useLasting(silent, 700);
   const Page = PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
+  const present = useView((s) => s.present);
   useKeys();
+  useReadingSize(phone);
 
   const start = useCallback(() => {
     setFailure(undefined);
@@ -65,10 +70,11 @@ export function App() {
   }, [start]);
 
   return (
-    <div className="page" data-stale={stale}>
-      {phone || failure ? null : <Header />}
+    <div className="page" data-stale={stale} data-present={present}>
+      {phone || failure ? null : present ? <PresentedHeader /> : <Header />}
       <ReplayBar />
-      <Banner hints={!phone && page === "bench" && !noted} />
+      <Banner hints={!phone && !present && page === "bench" && !noted} />
+      {page === "bench" && !present && !failure && <StepBar />}
       <OpenedLine />
       {failure?.code === "too_many_benches" ? (
         <FullServer
@@ -84,7 +90,7 @@ export function App() {
         </EmptyState>
       ) : (
         <div className="body">
-          <Rail />
+          {!present && <Rail />}
           {phone && page === "bench" ? <Phone /> : <Page />}
           {!phone && <View3dHost />}
         </div>

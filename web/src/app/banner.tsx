@@ -1,4 +1,5 @@
 import { Button, CloseButton } from "@mantine/core";
+import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { useEffect, useState } from "react";
 import { actions } from "../bench/actions";
@@ -7,22 +8,20 @@ import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
 import styles from "./banner.module.css";
-import { openOwnBench, startAgain } from "./first-bench";
-import { tryThis } from "./try-this";
+import { openOwnBench, startAgain, startBeside } from "./first-bench";
+import { useHints } from "./use-hints";
 import { useLasting } from "./use-lasting";
 
 /** A connection that is back this soon was not worth a word. */
 const BLINK_MS = 1000;
-const HINT_KEY = "combbench.hint.seen";
 
 /** One line under the header when something needs to be known: a trip, a lost connection, silence; else what to try. */
 export function Banner({ hints = true }: { hints?: boolean }) {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
-  const tip = useBench((s) => s.bench && tryThis(s.bench));
+  const tips = useHints();
   const lost = useLasting(connection.phase === "waiting" && !connection.reason?.quiet, BLINK_MS);
-  const [hint, setHint] = useState(() => localStorage.getItem(HINT_KEY) === null);
 
   if (connection.phase === "closed" && connection.reason)
     return (
@@ -70,20 +69,45 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         </Button>
       </Line>
     );
-  if (hint && hints && tip)
+  if (hints && tips)
     return (
-      <Line tone="hint" title="Try this:" text={tip}>
-        <CloseButton
-          size="sm"
-          aria-label="Dismiss the hint"
-          onClick={() => {
-            localStorage.setItem(HINT_KEY, "yes");
-            setHint(false);
-          }}
-        />
-      </Line>
+      <section className={styles.banner} data-tone="hint" aria-label="Notice">
+        <div className={styles.hints}>
+          <span>{tips.intro}</span>
+          <div className={styles.list}>
+            <strong>Try this:</strong>
+            <ul>
+              {tips.hints.map(({ id, text }) => (
+                <li key={id} data-done={tips.done.has(id)}>
+                  {tips.done.has(id) ? <IconSquareCheckFilled size={16} /> : <IconSquare size={16} />}
+                  {text}
+                  {tips.done.has(id) && <span className="visually-hidden">, done</span>}
+                </li>
+              ))}
+            </ul>
+            {tips.guided && <Guided {...tips.guided} />}
+          </div>
+        </div>
+        <CloseButton size="sm" aria-label="Dismiss the hints" onClick={tips.dismiss} />
+      </section>
     );
   return null;
+}
+
+/** A scenario that shows by itself what there is to see. */
+function Guided({ scenario, label }: { scenario: string; label: string }) {
+  const [busy, setBusy] = useState(false);
+  const start = () => {
+    setBusy(true);
+    startBeside(scenario)
+      .catch(showError)
+      .finally(() => setBusy(false));
+  };
+  return (
+    <Button size="compact-sm" loading={busy} leftSection={<IconPlayerPlayFilled size={14} />} onClick={start}>
+      {label}
+    </Button>
+  );
 }
 
 function Line({
@@ -92,7 +116,7 @@ function Line({
   text,
   children,
 }: {
-  tone: "alarm" | "warn" | "hint";
+  tone: "alarm" | "warn";
   title: string;
   text: string;
   children?: ReactNode;

@@ -4,6 +4,8 @@ import { ApiError } from "../api/api-error";
 import type { Bench } from "../api/types";
 import type { SharedLayout } from "../bench/dock";
 import { benchInAddress, inAddress, openBench, openOwn, ownBench, showBench } from "../bench/open-bench";
+import { send } from "../bench/send";
+import { useBench } from "../stream/bench-store";
 import { formatTick } from "../ui/format";
 import { showShared } from "./layouts";
 
@@ -42,7 +44,15 @@ export async function openLink(id: string, replace = false): Promise<void> {
 
 /** Start a bench of a library scenario in place of the one shown. */
 export async function startAgain(scenario: string): Promise<void> {
-  openOwn((await api.createBench({ scenario, paused: false })).id, true);
+  openOwn((await api.createBench({ scenario, paused: false, quiet_lead: true })).id, true);
+}
+
+/** Start a bench of a library scenario; the one shown is paused if nobody else watches it. */
+export async function startBeside(scenario: string): Promise<void> {
+  const { bench } = useBench.getState();
+  const made = await api.createBench({ scenario, paused: false, quiet_lead: true });
+  if (bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  openOwn(made.id);
 }
 
 /** Open the bench of this browser, or a fresh one. */

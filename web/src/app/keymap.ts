@@ -4,6 +4,7 @@ import type { PageName } from "../bench/view-store";
 import { askLatest } from "../bench/why";
 import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
+import { togglePresent } from "./present";
 import { takeBack } from "./take-back";
 import { themeSwitch } from "./theme-switch";
 
@@ -26,6 +27,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "]", shown: "]", does: "twice as fast", group: "Run", run: actions.faster },
   { key: "[", shown: "[", does: "half as fast", group: "Run", run: actions.slower },
   { key: "R", shown: "Shift R", does: "reset to the start", group: "Run", run: actions.reset },
+  { key: ">", shown: ">", does: "skip to the next step of the scenario", group: "Run", run: actions.skip },
   { key: "h", shown: "H", does: "heal all faults", group: "Bench", run: actions.healAll },
   { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
   { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
@@ -42,6 +44,7 @@ export const KEYMAP: KeyBinding[] = [
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
   { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
   { key: "w", shown: "W", does: "why the newest verdict", group: "Look", run: askLatest },
+  { key: "p", shown: "P", does: "present: panels only, on the whole screen", group: "Look", run: togglePresent },
   { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },

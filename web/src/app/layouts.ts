@@ -4,7 +4,7 @@ import { hasAxes } from "../api/fits";
 import { dockNow, forgetClosed, holdDock, restoreLayout, type SharedLayout } from "../bench/dock";
 import { inAddress } from "../bench/open-bench";
 import { showError } from "../bench/send";
-import { type LayoutName, useView } from "../bench/view-store";
+import { chooseLayout, type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
 import { BUILT_IN } from "./built-in-layouts";
 import { layoutHistory } from "./layout-history";
@@ -59,7 +59,7 @@ export function attachDock(api: DockviewApi): void {
   });
   axes = hasAxes(useBench.getState().bench);
   const asked = inAddress("layout");
-  arrange(known(asked) ?? useView.getState().layout);
+  arrange(known(asked) ?? known(useView.getState().layout) ?? "lecture");
   layoutHistory.watch(api);
   api.onDidLayoutChange(keepLayout);
   if (coming) showShared(coming);
@@ -75,7 +75,7 @@ export function keepLayout(): void {
 /** Choose a layout as it was left. The address names it. */
 export function setLayout(name: string): void {
   arrange(name);
-  nameInAddress(name);
+  chooseLayout(name);
 }
 
 /** Bring a built-in layout back to what it was at first. */
@@ -102,7 +102,7 @@ export function saveLayout(name: string, large = useView.getState().large): void
   keepList([...ownLayouts(), { name, large }]);
   useView.setState({ layout: name });
   keepLayout();
-  nameInAddress(name);
+  chooseLayout(name);
 }
 
 export function renameLayout(name: string, next: string): void {
@@ -112,7 +112,7 @@ export function renameLayout(name: string, next: string): void {
   localStorage.removeItem(storageKey(name));
   if (useView.getState().layout !== name) return;
   useView.setState({ layout: next });
-  nameInAddress(next);
+  chooseLayout(next);
 }
 
 export function deleteLayout(name: string): void {
@@ -153,20 +153,14 @@ async function fetchLayout(link: string): Promise<void> {
 export function putLayout(name: string, dock: SerializedDockview): void {
   localStorage.setItem(storageKey(name), JSON.stringify(dock));
   arrange(name);
-  nameInAddress(name);
+  chooseLayout(name);
 }
 
 function show(shared: SharedLayout, name: string): void {
   axes = shared.axes;
   localStorage.setItem(storageKey(name), JSON.stringify(shared.dock));
   arrange(name, shared.large);
-  nameInAddress(name);
-}
-
-function nameInAddress(name: string): void {
-  const url = new URL(window.location.href);
-  url.searchParams.set("layout", name);
-  window.history.replaceState(null, "", url);
+  chooseLayout(name);
 }
 
 function stored(name: string): SerializedDockview | undefined {
@@ -180,7 +174,6 @@ function arrange(
 ): void {
   const api = dockNow();
   useView.setState({ layout: name, large });
-  document.documentElement.dataset.size = large ? "large" : "normal";
   if (!api) return;
   forgetClosed();
   const saved = stored(name);

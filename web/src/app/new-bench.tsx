@@ -39,7 +39,12 @@ function Gallery() {
   const start = async (scenario: string) => {
     setBusy(scenario);
     try {
-      const bench = await api.createBench({ scenario, paused, ...(device ? { set: { "device.id": device } } : {}) });
+      const bench = await api.createBench({
+        scenario,
+        paused,
+        quiet_lead: true,
+        ...(device ? { set: { "device.id": device } } : {}),
+      });
       openOwn(bench.id);
       useView.setState({ dialog: "none" });
     } catch (error) {

@@ -1,7 +1,9 @@
 import { useMantineColorScheme } from "@mantine/core";
 import { useEffect } from "react";
+import { useView } from "../bench/view-store";
 import { useScheme } from "../ui/use-scheme";
 import { KEYMAP } from "./keymap";
+import { followFullScreen, setPresent } from "./present";
 import { themeSwitch } from "./theme-switch";
 
 const TYPING =
@@ -26,6 +28,12 @@ function giveBack({ target }: Event): void {
 /** Who leaves a field, or the list it opened, with Escape has the keys again. */
 function leave({ key, target }: KeyboardEvent): void {
   if (key === "Escape" && target instanceof HTMLElement && target.matches("input, textarea, select")) target.blur();
+}
+
+/** Who presents leaves with Escape, unless it closes something on the page. */
+function endPresenting({ key, defaultPrevented, target }: KeyboardEvent): void {
+  if (key !== "Escape" || defaultPrevented || (target as HTMLElement).closest(TYPING)) return;
+  if (useView.getState().present) setPresent(false);
 }
 
 /** Listens for the page's keys, except while something else wants them. */
@@ -53,9 +61,14 @@ export function useKeys(): void {
     const { signal } = stop;
     window.addEventListener("keydown", listen, { signal });
     window.addEventListener("keydown", leave, { signal });
+    window.addEventListener("keydown", endPresenting, { signal });
     window.addEventListener("keydown", noteKey, { capture: true, signal });
     window.addEventListener("pointerdown", notePointer, { capture: true, signal });
     window.addEventListener("change", giveBack, { signal });
-    return () => stop.abort();
+    const unfollow = followFullScreen();
+    return () => {
+      stop.abort();
+      unfollow();
+    };
   }, []);
 }

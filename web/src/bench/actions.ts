@@ -25,6 +25,14 @@ export const actions = {
     useView.setState({ sample: undefined });
     void sendAndTell({ kind: "reset" }, "Reset to the start");
   },
+  /** On to just before the next step of the scenario. */
+  skip: () => void send({ kind: "fast_forward" }, "Skipped on"),
+  /** Begin the scenario again, just before a step. */
+  replayStep: (tick: number | undefined) => {
+    jump.to("live");
+    useView.setState({ sample: undefined });
+    void replay(tick || undefined);
+  },
   resetTrip: () => void sendAndTell({ reset_trip: true }, "Trip reset"),
   faster: () => scale(2),
   slower: () => scale(0.5),
@@ -51,6 +59,11 @@ export const actions = {
 
 function scale(factor: number): void {
   void send({ kind: "time_scale", value: stepTimeScale(bench()?.time_scale ?? null, factor) });
+}
+
+async function replay(before_tick: number | undefined): Promise<void> {
+  const began = await send({ kind: "reset", values: {}, before_tick }, "The step again");
+  if (began && bench()?.state === "paused") void send({ kind: "start" });
 }
 
 async function fork(snapshot: string | null = null): Promise<void> {

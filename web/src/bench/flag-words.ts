@@ -1,11 +1,12 @@
 import type { LogEntry } from "../api/types";
 import { cardOf } from "../api/use-catalog";
+import { hypothesisWords } from "./hypothesis-words";
 import { severityScale, severityText } from "./severity";
 
 /** What an event says on its flag: a few words. */
 export function flagWords({ kind, command, new: value }: LogEntry): string {
-  if (kind === "recognised") return `found ${value}`;
-  if (kind === "truth_changed") return `truth: ${value}`;
+  if (kind === "recognised") return `found ${hypothesisWords(String(value))}`;
+  if (kind === "truth_changed") return `truth: ${hypothesisWords(String(value))}`;
   if (kind in WORDS || !command) return WORDS[kind] ?? kind.replaceAll("_", " ");
   if ("fault" in command) return faultWords(command.fault, command.severity);
   if ("switch" in command) return titleOf("control", command.switch);

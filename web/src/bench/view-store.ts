@@ -1,6 +1,10 @@
 import { create } from "zustand";
 
-export type LayoutName = "lecture" | "lab" | "research";
+const LAYOUT_NAMES = ["lecture", "lab", "research"] as const;
+
+export type LayoutName = (typeof LAYOUT_NAMES)[number];
+
+const CHOSEN = "combbench.layout.chosen";
 
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
@@ -20,23 +24,45 @@ interface ViewStore {
   dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts";
   /** On a phone: the panel shown beside those it always has. */
   extra: string;
-  /** Reading size: lectures are read from the last row. */
+  /** Whether the layout is in large type. */
   large: boolean;
+  /** Size of the letters on canvases, px: lectures are read from the last row. */
+  fontPx: number;
+  /** Only what an audience looks at. */
+  present: boolean;
 }
 
-/** Below this width three columns of panels are too narrow to read. */
-const WIDE = 1280;
+/** Letters on canvases, px, but in a lecture. */
+export const NORMAL_PX = 12;
+/** Those of a lecture, in the smallest window it is made for. */
+export const LECTURE_PX = 15;
 
 /** How this page looks at the bench; says nothing about the bench itself. */
 export const useView = create<ViewStore>(() => ({
   page: pageInAddress(),
-  layout: window.innerWidth >= WIDE ? "research" : "lab",
+  layout: firstLayout(),
   card: "diagnosers.kalman",
   sample: undefined,
   dialog: "none",
   extra: "",
-  large: false,
+  large: firstLayout() === "lecture",
+  fontPx: NORMAL_PX,
+  present: new URLSearchParams(window.location.search).get("present") === "1",
 }));
+
+/** The layout named in the address, else the one chosen last; a lecture for who comes first. */
+function firstLayout(): string {
+  const asked = new URLSearchParams(window.location.search).get("layout");
+  return LAYOUT_NAMES.find((name) => name === asked) ?? localStorage.getItem(CHOSEN) ?? "lecture";
+}
+
+/** Keep a layout for the next visit; the address names it. */
+export function chooseLayout(layout: string): void {
+  localStorage.setItem(CHOSEN, layout);
+  const url = new URL(window.location.href);
+  url.searchParams.set("layout", layout);
+  window.history.replaceState(null, "", url);
+}
 
 /** The page named in the address. */
 export function pageInAddress(): PageName {

@@ -28,7 +28,7 @@ export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
   const live = async () => {
     setStarting(true);
     try {
-      openOwn((await api.createBench({ scenario: card.id, paused: false })).id);
+      openOwn((await api.createBench({ scenario: card.id, paused: false, quiet_lead: true })).id);
       setPage("bench");
     } catch (error) {
       showError(error);

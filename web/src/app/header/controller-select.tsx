@@ -34,7 +34,7 @@ function SlotSelect({ slot, active }: { slot: string; active: string | undefined
       ref={input}
       size="sm"
       miw={92}
-      flex="0 1 190px"
+      flex={`0 1 ${(laws.find((law) => law.name === active)?.title.length ?? 8) + 7}ch`}
       aria-label={slotTitle(slot)}
       title={slotTitle(slot)}
       allowDeselect={false}

@@ -1,6 +1,7 @@
 import { Menu } from "@mantine/core";
 import { type LayoutName, useView } from "../../bench/view-store";
 import { FROM_LINK, isBuiltIn, ownLayouts, resetLayout, setLayout } from "../layouts";
+import { togglePresent } from "../present";
 import styles from "./header.module.css";
 
 const BUILT_IN: [LayoutName, string][] = [
@@ -27,6 +28,10 @@ export function LayoutItems() {
       <Menu.Divider />
       {isBuiltIn(layout) && <Menu.Item onClick={resetLayout}>Reset the {layout} layout</Menu.Item>}
       <Menu.Item onClick={() => useView.setState({ dialog: "layouts" })}>Save, rename or share a layout…</Menu.Item>
+      <Menu.Item onClick={togglePresent}>
+        Present
+        <small className={styles.menuNote}>Panels only, on the whole screen (P); Escape leaves</small>
+      </Menu.Item>
     </>
   );
 }

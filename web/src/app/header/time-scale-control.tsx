@@ -16,6 +16,8 @@ import styles from "./header.module.css";
 
 const set = (value: number | null) => send({ kind: "time_scale", value }, `Time scale ${formatTimeScale(value)}`);
 
+const FAST = { quiet_lead: "quiet lead, fast", skip: "skips, fast" };
+
 /** How fast device time runs: halve, double, slide, or let go; beside it what the machine achieves. */
 export function TimeScaleControl() {
   const target = useBench((s) => s.bench?.time_scale ?? null);
@@ -23,6 +25,7 @@ export function TimeScaleControl() {
   const closed = useBench((s) => s.connection.phase === "closed");
   const capped = useBench((s) => s.bench?.capped ?? false) && !closed;
   const running = useBench((s) => s.bench?.state === "running") && !closed;
+  const fast = useBench((s) => s.bench?.fast_forward);
   const [draft, setDraft] = useState<number | undefined>(undefined);
   const wanted = draft === undefined ? target : sliderToTimeScale(draft);
   const shown = draft ?? timeScaleToSlider(target);
@@ -45,7 +48,13 @@ export function TimeScaleControl() {
             <span>{target === null ? "max" : formatTimeScale(target)}</span>
             <small data-capped={capped} data-idle={!running}>
               {capped && <b>CAPPED </b>}
-              {closed ? "not connected" : running ? `runs ${formatTimeScale(achieved)}` : "stands still"}
+              {closed
+                ? "not connected"
+                : running && fast
+                  ? FAST[fast]
+                  : running
+                    ? `runs ${formatTimeScale(achieved)}`
+                    : "stands still"}
             </small>
           </button>
         </Popover.Target>

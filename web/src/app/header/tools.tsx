@@ -1,5 +1,5 @@
 import { ActionIcon, Menu, Tooltip } from "@mantine/core";
-import { useMediaQuery } from "@mantine/hooks";
+import { useViewportSize } from "@mantine/hooks";
 import {
   IconArrowBackUp,
   IconArrowForwardUp,
@@ -18,12 +18,16 @@ import {
 import type { ReactNode } from "react";
 import { actions } from "../../bench/actions";
 import { benchChange } from "../../bench/undo";
+import { LECTURE_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { useScheme } from "../../ui/use-scheme";
 import { takeBack } from "../take-back";
 import { themeSwitch } from "../theme-switch";
 import styles from "./header.module.css";
 import { LayoutItems } from "./layout-items";
+
+/** Below this width, in letters of the usual size, the titles want the room of the tools. */
+const ROOM_PX = 1400;
 
 interface Tool {
   label: string;
@@ -34,7 +38,9 @@ interface Tool {
 /** Keep, branch, arrange: what is not about running. On a narrow page it folds into one menu. */
 export function Tools() {
   const scheme = useScheme();
-  const narrow = useMediaQuery("(max-width: 1180px)", undefined, { getInitialValueInEffect: false });
+  const { width } = useViewportSize();
+  const scale = useView((s) => (s.large ? s.fontPx / LECTURE_PX : 1));
+  const narrow = (width || window.innerWidth) / scale < ROOM_PX;
   const recording = useBench((s) => (s.bench?.recording.length ?? 0) > 0);
   const undo = useBench((s) => s.bench?.undo?.seq !== undefined && benchChange("undo")?.text);
   const redo = useBench((s) => s.bench?.redo?.seq !== undefined && benchChange("redo")?.text);

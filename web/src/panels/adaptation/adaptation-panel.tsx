@@ -28,7 +28,7 @@ export function AdaptationPanel() {
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const { blocks } = useCatalog();
   const scheme = useScheme();
-  const fontSize = useView((s) => (s.large ? 15 : 12));
+  const fontSize = useView((s) => s.fontPx);
   const [windowMs, setWindowMs] = useState(20);
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const time = useLaneTime(windowMs, dtMs);

@@ -14,7 +14,7 @@ it("names each block on the bench and where its values are", () => {
     parameters,
     controller: "mrac",
     controllers: ["open_loop", "mrac"],
-    diagnosers: { kalman: { kind: "mmae", names: [] } },
+    diagnosers: { kalman: { kind: "mmae", names: [], factors: [] } },
   });
   expect(list.find((i) => i.id === "plant")).toMatchObject({ family: "plant", name: "nonlinear", path: "plant" });
   expect(list.find((i) => i.id === "diagnosers.kalman")).toMatchObject({ family: "diagnose", name: "mmae" });
@@ -53,7 +53,10 @@ it("has cards for identifiers, and none for the diagnosers of twins", () => {
     parameters: { identifiers: { excitation: { kind: "excitation" } } },
     controller: "pid",
     controllers: ["pid"],
-    diagnosers: { kalman: { kind: "mmae", names: [] }, "two:kalman": { kind: "mmae", names: [] } },
+    diagnosers: {
+      kalman: { kind: "mmae", names: [], factors: [] },
+      "two:kalman": { kind: "mmae", names: [], factors: [] },
+    },
   });
   expect(list.find((i) => i.id === "identifiers.excitation")).toMatchObject({ family: "identify", name: "excitation" });
   expect(list.filter((i) => i.family === "diagnose").map((i) => i.id)).toEqual(["diagnosers.kalman"]);

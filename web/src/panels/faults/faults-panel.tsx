@@ -5,8 +5,6 @@ import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatMoment } from "../../ui/format";
-import { conditionWords } from "../condition/condition";
 import { FaultRow } from "./fault-row";
 import styles from "./faults.module.css";
 import { groupsOf } from "./groups";
@@ -14,11 +12,8 @@ import { groupsOf } from "./groups";
 /** Every fault that this bench may have: what it changes, how much, how and when; several at once. */
 export function FaultsPanel() {
   const { blocks, failed, retry } = useCatalog();
-  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const active = useBench((s) => s.bench?.faults);
   const axes = useBench((s) => s.bench?.axes) ?? [];
-  const pending = useBench((s) => s.bench?.pending);
-  const signals = useBench((s) => s.bench?.signals);
   const [open, setOpen] = useState<string | undefined>(undefined);
   const faults = blocks.filter((b) => b.family === "faults" && fits(b, axes));
   if (faults.length === 0)
@@ -49,14 +44,6 @@ export function FaultsPanel() {
           Heal all
         </Button>
       </div>
-      {pending?.map((waiting) => (
-        <p key={`${waiting.text} ${waiting.tick} ${waiting.when}`} className={styles.pending}>
-          Waiting: {waiting.text}{" "}
-          {waiting.when
-            ? `when ${conditionWords(waiting.when, signals ?? [])}`
-            : waiting.tick !== null && `at ${formatMoment(waiting.tick * dtMs)}`}
-        </p>
-      ))}
       <div className={styles.list}>
         {groupsOf(faults).map(([group, members]) => (
           <section key={group} aria-label={group}>

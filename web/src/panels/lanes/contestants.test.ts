@@ -8,9 +8,9 @@ const signals = (...names: string[]): Signal[] =>
 it("puts banks before states, and leaves out what says nothing", () => {
   const found = contestants({
     diagnosers: {
-      regions: { kind: "regions", names: [] },
-      kalman: { kind: "mmae", names: ["healthy", "m+5"] },
-      mute: { kind: "moving_bank", names: [] },
+      regions: { kind: "regions", names: [], factors: [] },
+      kalman: { kind: "mmae", names: ["healthy", "m+5"], factors: [] },
+      mute: { kind: "moving_bank", names: [], factors: [] },
     },
     signals: signals(
       "regions.region",

@@ -1,9 +1,12 @@
 import { useMemo, useRef } from "react";
+import { hypothesesExplained, hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { pickSample } from "../../bench/why";
+import { textWidth } from "../../picture/text-width";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/current-events";
 import { useScheme } from "../../ui/use-scheme";
+import { useSize } from "../../ui/use-size";
 import { truthSwitches } from "./delays";
 import { LaneCanvas } from "./lane-canvas";
 import { LaneTools } from "./lane-tools";
@@ -13,6 +16,9 @@ import { lanesLayout } from "./lanes-layout";
 import { type LanesPicture, paintLanes } from "./paint-lanes";
 import { printLanes } from "./print-lanes";
 import type { LaneTime } from "./use-lane-time";
+
+/** Share of the panel that the words of the hypotheses may take; otherwise their names stand there. */
+const WORDS_SHARE = 0.32;
 
 interface DiagnoserLanesProps {
   id: string;
@@ -24,10 +30,11 @@ interface DiagnoserLanesProps {
 /** The lanes of one diagnoser: one for each hypothesis. */
 export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProps) {
   const scheme = useScheme();
-  const large = useView((s) => s.large);
   const picked = useView((s) => (s.sample?.diagnoser === id ? s.sample.tick : undefined));
   const events = useBench((s) => s.events);
-  const fontSize = large ? 15 : 12;
+  const fontSize = useView((s) => s.fontPx);
+  const { element, size } = useSize<HTMLElement>();
+  const diagnosers = useBench((s) => s.bench?.diagnosers);
   const switches = useMemo(() => truthSwitches(currentEvents(events), id), [events, id]);
   const unexplained = `${id}.unexplained`; // traces recorded earlier do not have it
   const withUnexplained = useBench((s) => s.bench?.signals.some(({ name }) => name === unexplained) ?? false);
@@ -40,6 +47,12 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
     ],
     [id, names, withUnexplained, unexplained],
   );
+  const { labels, left } = useMemo(() => {
+    const words = names.map((name) => hypothesisWords(name, diagnosers));
+    const wide = Math.max(...words.map((text) => textWidth(text, fontSize, 700, "IBM Plex Sans Variable"))) + 22;
+    const fits = wide <= size.width * WORDS_SHARE;
+    return { labels: fits ? words : names, left: Math.max(fontSize * 6, fits ? wide : 0) };
+  }, [names, diagnosers, fontSize, size.width]);
   const shown = useRef<LanesPicture | undefined>(undefined);
   const paint = useMemo<Parameters<typeof LaneCanvas>[0]["paint"]>(
     () =>
@@ -48,7 +61,8 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
           frame,
           span,
           names,
-          layout: lanesLayout(width, height, names.length, fontSize),
+          labels,
+          layout: lanesLayout(width, height, names.length, fontSize, left),
           scheme,
           fontSize,
           switches,
@@ -58,18 +72,19 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
         };
         paintLanes(ctx, shown.current);
       },
-    [names, fontSize, scheme, switches, withUnexplained, picked],
+    [names, labels, left, fontSize, scheme, switches, withUnexplained, picked],
   );
-  const edges = lanesLayout(1000, 400, names.length, fontSize);
+  const edges = lanesLayout(1000, 400, names.length, fontSize, left);
 
   return (
-    <section className={styles.lanes} aria-label={`Diagnosis by ${id}`}>
+    <section ref={element} className={styles.lanes} aria-label={`Diagnosis by ${id}`}>
       <div className={styles.toolbar}>
         <LanesHeadline id={id} names={names} switches={switches} />
         <LaneTools time={time} onWindow={onWindow} take={() => shown.current && printLanes(shown.current, id)} />
       </div>
       <LaneCanvas
-        label={`Probability of ${names.join(", ")} over time`}
+        label={`Probability of ${labels.join(", ")} over time`}
+        legend={hypothesesExplained(names)}
         signals={signals}
         time={time}
         left={edges.left}

@@ -22,6 +22,8 @@ export interface LanePainting {
 
 interface LaneCanvasProps {
   label: string;
+  /** What the names at the left stand for. */
+  legend?: string;
   signals: string[];
   time: LaneTime;
   /** CSS pixels left free beside the field of time. */
@@ -34,7 +36,7 @@ interface LaneCanvasProps {
 }
 
 /** Signals over time on a canvas that shares its window with others: pans, zooms, and says what was clicked. */
-export function LaneCanvas({ label, signals, time, left, right, paint, onPick }: LaneCanvasProps) {
+export function LaneCanvas({ label, legend, signals, time, left, right, paint, onPick }: LaneCanvasProps) {
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const visible = usePanelVisible();
   const over = useRef<HTMLDivElement>(null);
@@ -108,6 +110,7 @@ export function LaneCanvas({ label, signals, time, left, right, paint, onPick }:
   return (
     <div className={styles.plot}>
       <canvas ref={canvas} className={styles.canvas} role="img" aria-label={label} />
+      {legend && <div className={styles.legend} style={{ width: left }} title={legend} />}
       <div
         ref={over}
         className={styles.over}

@@ -16,7 +16,7 @@ export function LaneTools({ time, onWindow, take }: LaneToolsProps) {
     <>
       <NativeSelect
         size="xs"
-        w={84}
+        w={96}
         aria-label="Time window"
         value={String(time.windowMs)}
         data={windowItems(TIME_WINDOWS_MS.lanes, time.windowMs)}

@@ -1,3 +1,4 @@
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { formatCount, formatPercent, formatSi } from "../../ui/format";
@@ -22,10 +23,12 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
           </button>
         </dt>
         {stopped ? (
-          <dd title={`The board has stopped. The last verdict was ${winner ?? "none"}.`}>stopped</dd>
+          <dd title={`The board has stopped. The last verdict was ${winner ? hypothesisWords(winner) : "none"}.`}>
+            stopped
+          </dd>
         ) : (
-          <dd className={styles.winner} data-right={right}>
-            {winner ?? "–"}
+          <dd className={styles.winner} data-right={right} title={winner}>
+            {winner ? hypothesisWords(winner) : "–"}
             {score?.unexplained && <FitsNone least={score.least_nis} />}
           </dd>
         )}

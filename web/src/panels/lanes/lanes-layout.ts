@@ -10,7 +10,7 @@ export interface LanesLayout {
   axis: number;
 }
 
-export function lanesLayout(width: number, height: number, lanes: number, fontSize: number): LanesLayout {
+export function lanesLayout(width: number, height: number, lanes: number, fontSize: number, left: number): LanesLayout {
   const band = fontSize + 6;
   const axisHeight = fontSize + 10;
   const bands = 3 * (band + 3) + 4;
@@ -18,7 +18,7 @@ export function lanesLayout(width: number, height: number, lanes: number, fontSi
   const each = room / Math.max(1, lanes);
   const winner = 4 + room + 4;
   return {
-    left: fontSize * 6,
+    left,
     right: width - fontSize * 5.6,
     lanes: Array.from({ length: lanes }, (_, i) => ({ top: 4 + i * each, height: each })),
     winner,

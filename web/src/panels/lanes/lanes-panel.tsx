@@ -1,8 +1,10 @@
 import { NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
+import { longestStep, useSteps } from "../../bench/steps";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { TIME_WINDOWS_MS } from "../../ui/time-windows";
 import { contestants } from "./contestants";
 import { DiagnoserLanes } from "./diagnoser-lanes";
 import { LaneTools } from "./lane-tools";
@@ -13,12 +15,26 @@ import { useLaneTime } from "./use-lane-time";
 
 const ALL = "";
 
+const USUAL_MS = 20;
+/** What a window shows of a step and of what was before it, in steps. */
+const AROUND = 1.5;
+
+/** A window that shows each step of a scenario whole. */
+function usualWindow(step: number | undefined, dtMs: number | undefined): number {
+  if (!step || !dtMs) return USUAL_MS;
+  const windows = TIME_WINDOWS_MS.lanes;
+  return windows.find((ms) => ms >= AROUND * step * dtMs) ?? windows[windows.length - 1];
+}
+
 /** What the diagnosers of the bench believe, against what is true: all of them in a race, or one in full. */
 export function LanesPanel() {
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const signals = useBench((s) => s.bench?.signals);
   const dtMs = useBench((s) => s.bench?.dt_ms);
-  const [windowMs, setWindowMs] = useState(20);
+  const end = useBench((s) => s.bench?.samples);
+  const step = longestStep(useSteps(), end);
+  const [chosenMs, setWindowMs] = useState<number | undefined>(undefined);
+  const windowMs = chosenMs ?? usualWindow(step, dtMs);
   const [wanted, setWanted] = useState(ALL);
   const time = useLaneTime(windowMs, dtMs);
   const picture = useRef<TakePicture>(null);

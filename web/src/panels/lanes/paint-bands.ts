@@ -1,3 +1,4 @@
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { fillHatched } from "../../picture/hatch";
 import type { Pen } from "../../picture/pen";
 import type { PanelFrame } from "../../stream/panel-frame";
@@ -11,6 +12,7 @@ import type { LanesLayout } from "./lanes-layout";
 import type { runs } from "./runs";
 
 const FITS_NONE = "fits none";
+const NO_NAME = "none of these";
 
 /** What every picture of lanes has: a span of time, the truth's changes in it, and where things lie. */
 export interface LanesGround {
@@ -44,10 +46,14 @@ export function paintBand(
       ctx.fillStyle = run.value < 0 ? colours.axis : colour(run.value);
       ctx.fillRect(left, top, width, height);
     } else fillHatched(ctx, left, top, width, height, colour(run.value));
-    const label = names[run.value] ?? "none of these";
+    const name = names[run.value];
     const at = Math.max(left, columnX(0)) + 6;
+    const room = left + width - at - 6;
+    const label = (name === undefined ? [NO_NAME] : [hypothesisWords(name), name]).find(
+      (words) => ctx.measureText(words).width <= room,
+    );
+    if (label === undefined) continue;
     const needed = ctx.measureText(label).width;
-    if (left + width - at < needed + 6) continue;
     if (!solid) {
       ctx.fillStyle = colours.panel;
       ctx.fillRect(at - 4, top + 2, needed + 8, height - 4);

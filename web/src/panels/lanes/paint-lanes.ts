@@ -9,6 +9,8 @@ import { runs } from "./runs";
 
 export interface LanesPicture extends LanesGround {
   names: string[];
+  /** What the lanes are called: the hypotheses in words, or by name where words have no room. */
+  labels: string[];
   hover: number | undefined;
   /** Whether the signals end with what says that no hypothesis fits. */
   withUnexplained: boolean;
@@ -78,13 +80,13 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
   }
   ctx.restore();
 
-  names.forEach((name, i) => {
+  names.forEach((_, i) => {
     const { top, height } = layout.lanes[i];
     const y = top + height / 2;
     ctx.font = fontFor(fontSize, 1, i === truthNow ? 700 : 450);
     ctx.fillStyle = i === truthNow || i === winnerNow ? colours.text : colours.muted;
     ctx.textAlign = "right";
-    ctx.fillText(name, layout.left - 10, y);
+    ctx.fillText(picture.labels[i], layout.left - 10, y);
     ctx.font = fontFor(fontSize, 1, i === winnerNow ? 700 : 450);
     ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 5.4, y);
   });

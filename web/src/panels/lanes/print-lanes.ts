@@ -12,7 +12,8 @@ const BANDS = 100;
 /** The lanes of a diagnoser as a picture. */
 export function printLanes(shown: LanesPicture, id: string): Picture {
   const lanes = shown.names.length;
-  const layout = ({ width, height }: Box) => lanesLayout(width, height, lanes, FONT);
+  const left = (shown.layout.left * FONT) / shown.fontSize;
+  const layout = ({ width, height }: Box) => lanesLayout(width, height, lanes, FONT, left);
   const ofPaper = { ...shown, scheme: "light", fontSize: FONT, hover: undefined, picked: undefined } as const;
   return {
     ...pictureName(`Diagnosis by ${id.replaceAll("_", " ")}`),

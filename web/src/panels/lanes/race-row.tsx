@@ -1,5 +1,6 @@
 import { useMemo } from "react";
 import { useCatalog } from "../../api/use-catalog";
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { pickSample } from "../../bench/why";
 import { useBench } from "../../stream/bench-store";
@@ -87,8 +88,12 @@ function Verdict({ contestant: { id, names } }: { contestant: Contestant }) {
   const score = useBench((s) => s.scores[id]);
   if (!score) return null;
   return (
-    <strong className={styles.verdict} data-right={score.winner === score.truth && !score.unexplained}>
-      {names[score.winner] ?? "–"}
+    <strong
+      className={styles.verdict}
+      title={names[score.winner]}
+      data-right={score.winner === score.truth && !score.unexplained}
+    >
+      {names[score.winner] === undefined ? "–" : hypothesisWords(names[score.winner])}
       {score.unexplained && <FitsNone least={score.least_nis} />}
     </strong>
   );

@@ -26,7 +26,7 @@ interface RaceProps {
 /** All diagnosers of the bench on one axis of time, under the truth: who finds it first, and who is right longest. */
 export function Race({ contestants, time, picture }: RaceProps) {
   const scheme = useScheme();
-  const fontSize = useView((s) => (s.large ? 15 : 12));
+  const fontSize = useView((s) => s.fontPx);
   const events = useBench((s) => s.events);
   const switches = useMemo(() => {
     const current = currentEvents(events);

@@ -38,7 +38,7 @@ interface LocusPlotProps {
 /** The canvas of a locus, and the tilt of each trace in words. */
 export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotProps) {
   const scheme = useScheme();
-  const large = useView((s) => s.large);
+  const fontSize = useView((s) => s.fontPx);
   const visible = usePanelVisible();
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const names = useMemo(() => masses.flatMap(({ x, y }) => [x, y]), [masses]);
@@ -92,7 +92,7 @@ export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotPro
           tiltDeg: tiltDeg(path.x, path.y),
         })),
         scheme,
-        fontSize: large ? 15 : 12,
+        fontSize,
       };
       paintLocus(ctx, painted.current);
       const now = performance.now();
@@ -103,7 +103,7 @@ export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotPro
         if (place) place.textContent = tiltText(degrees);
       });
     });
-  }, [visible, canvas, size, traces, names, masses, stretched, scheme, large]);
+  }, [visible, canvas, size, traces, names, masses, stretched, scheme, fontSize]);
 
   return (
     <>

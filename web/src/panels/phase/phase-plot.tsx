@@ -33,7 +33,7 @@ interface PhasePlotProps {
 /** The canvas of a phase plane: every tick of the window is a point. */
 export function PhasePlot({ x, y, windowMs, map, fits, picture }: PhasePlotProps) {
   const scheme = useScheme();
-  const large = useView((s) => s.large);
+  const fontSize = useView((s) => s.fontPx);
   const visible = usePanelVisible();
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const names = useMemo(() => (x === y ? [x] : [x, y]), [x, y]);
@@ -103,11 +103,11 @@ export function PhasePlot({ x, y, windowMs, map, fits, picture }: PhasePlotProps
         fits,
         colour: second.name.endsWith("velocity") ? first.colour : second.colour,
         scheme,
-        fontSize: large ? 15 : 12,
+        fontSize,
       };
       paintPhase(ctx, painted.current);
     });
-  }, [visible, canvas, size, traces, map, fits.folds, fits.boundary, scheme, large, fits]);
+  }, [visible, canvas, size, traces, map, fits.folds, fits.boundary, scheme, fontSize, fits]);
 
   return (
     <div className={styles.plot}>

@@ -1,7 +1,7 @@
 import "uplot/dist/uPlot.min.css";
 import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { marksNow } from "../../bench/marks";
-import { useView } from "../../bench/view-store";
+import { NORMAL_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { onBench, type ScopeConfig } from "../../stream/scope-config";
 import { stream } from "../../stream/stream";
@@ -36,7 +36,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const controller = useBench((s) => s.bench?.controller);
   const config = useMemo(() => onBench(kept, signals ?? [], controller ?? ""), [kept, signals, controller]);
   const scheme = useScheme();
-  const large = useView((s) => s.large);
+  const fontSize = useView((s) => s.fontPx);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const traces = useTraces(config.signals);
   const host = useRef<HTMLDivElement>(null);
@@ -67,8 +67,8 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       host: host.current,
       traces,
       scheme,
-      lineWidth: large ? 2.6 : 1.6,
-      fontSize: large ? 15 : 12,
+      lineWidth: fontSize > NORMAL_PX ? 0.17 * fontSize : 1.6,
+      fontSize,
       marks: marksNow,
       strained: () => stream.loop.strained,
       gestures: { onSpan: look, onLive: goLive },
@@ -90,7 +90,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       made.destroy();
       plot.current = undefined;
     };
-  }, [traces, scheme, large, look, goLive, feed]);
+  }, [traces, scheme, fontSize, look, goLive, feed]);
 
   const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
   const sayTime = (share: number) => {

@@ -34,7 +34,7 @@ interface SpectrumPlotProps {
 /** The canvas of a spectrum, and the strongest tone in words. */
 export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: SpectrumPlotProps) {
   const scheme = useScheme();
-  const large = useView((s) => s.large);
+  const fontSize = useView((s) => s.fontPx);
   const visible = usePanelVisible();
   const names = useMemo(() => [signal], [signal]);
   const [trace] = useTraces(names);
@@ -87,11 +87,11 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
         unit: trace.unit,
         colour: trace.colour,
         scheme,
-        fontSize: large ? 15 : 12,
+        fontSize,
       };
       paintSpectrum(ctx, shown.current);
     });
-  }, [visible, canvas, size, trace, dtMs, highest, scheme, large]);
+  }, [visible, canvas, size, trace, dtMs, highest, scheme, fontSize]);
 
   return (
     <>

@@ -26,7 +26,7 @@ export function TwinsPanel() {
   const axes = useBench((s) => s.bench?.axes);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const scheme = useScheme();
-  const fontSize = useView((s) => (s.large ? 15 : 12));
+  const fontSize = useView((s) => s.fontPx);
   const [windowMs, setWindowMs] = useState(4);
   const time = useLaneTime(windowMs, dtMs);
   const boards = useMemo(

@@ -1,0 +1,86 @@
+import { hasAxes } from "../api/fits";
+import type { Bench, LogEntry } from "../api/types";
+
+/** Something to try, and the event that says that it was done. */
+export interface Hint {
+  id: string;
+  text: string;
+  isDone(event: LogEntry): boolean;
+}
+
+/** What a stranger is told of a bench: what it is, what to try, and which scenario shows it all. */
+export interface Hints {
+  intro: string;
+  hints: Hint[];
+  guided: { scenario: string; label: string } | undefined;
+}
+
+type Shown = Pick<Bench, "axes" | "controllers" | "diagnosers" | "replay_of" | "signals">;
+
+const byHand = ({ actor }: LogEntry) => actor !== "scenario" && actor !== "board";
+const found = ({ kind, new: label }: LogEntry) => kind === "recognised" && label !== "healthy";
+const sets = ({ command }: LogEntry, table: string) =>
+  Boolean(command && "set" in command && Object.keys(command.set).some((path) => path.startsWith(`${table}.`)));
+
+const FIND: Hint = { id: "find", text: "watch Diagnosis find it", isDone: found };
+const SWITCH: Hint = {
+  id: "switch",
+  text: "change the controller",
+  isDone: (event) => event.kind === "switch" && byHand(event),
+};
+
+/** What to say of a bench; nothing where nothing can be tried. */
+export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
+  if (bench.replay_of) return undefined;
+  const diagnosed = Object.keys(bench.diagnosers).length > 0;
+  const axes = hasAxes(bench);
+  if (!axes && !bench.signals.some((signal) => signal.name === "plant.displacement")) return undefined;
+  return {
+    intro: axes
+      ? "A live gyroscope: a plate swings along x, and turning it pushes it along y. The controllers read the rate of turn from that."
+      : `A live comb resonator: a voltage shakes a plate on thin beams.${diagnosed ? " Diagnosis says what is wrong with it: the fuller a lane, the surer." : ""}`,
+    hints: [
+      ...(axes ? ofAxes(bench) : hasSteps ? [] : ofResonator(bench, diagnosed)),
+      ...(hasSteps ? ofSteps(diagnosed) : []),
+    ],
+    guided: hasSteps
+      ? undefined
+      : axes
+        ? { scenario: "gyro-diagnosis", label: "Run four faults, step by step" }
+        : { scenario: "ch5-seven-step", label: "Run the seven steps" },
+  };
+}
+
+function ofSteps(diagnosed: boolean): Hint[] {
+  return [
+    ...(diagnosed ? [{ ...FIND, text: "watch Diagnosis find each fault" }] : []),
+    {
+      id: "skip",
+      text: "skip to the next step",
+      isDone: (event) => event.kind === "fast_forward" && byHand(event),
+    },
+  ];
+}
+
+function ofAxes({ controllers }: Shown): Hint[] {
+  return [
+    {
+      id: "rate",
+      text: "change the angular rate under Controllers, and watch the estimate follow",
+      isDone: (event) => sets(event, "rate") && byHand(event),
+    },
+    ...(controllers.length > 1 ? [{ ...SWITCH, text: "let another sense controller read it" }] : []),
+  ];
+}
+
+function ofResonator({ controllers }: Shown, diagnosed: boolean): Hint[] {
+  return [
+    {
+      id: "mass",
+      text: "inject Added mass +5\u00a0% under Faults",
+      isDone: (event) => event.kind === "inject" && byHand(event),
+    },
+    ...(diagnosed ? [FIND] : []),
+    ...(controllers.length > 1 ? [SWITCH] : []),
+  ];
+}

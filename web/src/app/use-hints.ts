@@ -1,0 +1,38 @@
+import { useEffect, useMemo, useState } from "react";
+import { useSteps } from "../bench/steps";
+import { useBench } from "../stream/bench-store";
+import { type Hints, hintsOf } from "./hints";
+
+const DISMISSED = "combbench.hint.seen";
+const DONE = "combbench.hints.done";
+
+interface TickedHints extends Hints {
+  done: ReadonlySet<string>;
+  dismiss(): void;
+}
+
+const storedDone = () => (localStorage.getItem(DONE) ?? "").split(" ").filter(Boolean);
+
+/** What to try on the bench of the page, ticked off as it is done; nothing once it was dismissed, or all was done. */
+export function useHints(): TickedHints | undefined {
+  const bench = useBench((s) => s.bench);
+  const events = useBench((s) => s.events);
+  const hasSteps = useSteps().length > 1;
+  const [dismissed, setDismissed] = useState(() => localStorage.getItem(DISMISSED) !== null);
+  const [before] = useState(storedDone);
+  const hints = useMemo(() => bench && hintsOf(bench, hasSteps), [bench, hasSteps]);
+  const now = (hints?.hints ?? []).filter((hint) => before.includes(hint.id) || events.some(hint.isDone));
+  const done = now.map((hint) => hint.id).join(" ");
+  useEffect(() => {
+    localStorage.setItem(DONE, [...new Set([...storedDone(), ...done.split(" ").filter(Boolean)])].join(" "));
+  }, [done]);
+  if (dismissed || !hints || hints.hints.every((hint) => before.includes(hint.id))) return undefined;
+  return {
+    ...hints,
+    done: new Set(done.split(" ")),
+    dismiss: () => {
+      localStorage.setItem(DISMISSED, "yes");
+      setDismissed(true);
+    },
+  };
+}

@@ -1,0 +1,24 @@
+import { expect, it } from "vitest";
+import type { Bench } from "../api/types";
+import { hypothesisWords } from "./hypothesis-words";
+
+const DIAGNOSERS: Bench["diagnosers"] = {
+  kalman: {
+    kind: "mmae",
+    names: ["healthy", "m+5", "both", "q500"],
+    factors: [{}, { mass: 1.05 }, { stiffness: 1.025, gain: 0.8 }, { quadrature_dps: 500 }] as Record<string, number>[],
+  },
+  imm: { kind: "imm", names: ["m+5", "b+30"], factors: [{ mass: 1.05 }, { damping: 1.3 }] as Record<string, number>[] },
+};
+
+it("says what a hypothesis changes, in percent or in the unit of what it adds", () => {
+  const words = (name: string) => hypothesisWords(name, DIAGNOSERS);
+  expect(words("m+5")).toBe("mass +5\u00a0%");
+  expect(words("both")).toBe("stiffness +2.5\u00a0%, drive gain −20\u00a0%");
+  expect(words("q500")).toBe("quadrature +500\u00a0deg/s");
+  expect(words("b+30")).toBe("damping +30\u00a0%");
+});
+
+it("keeps the name of one that changes nothing, or that is not known", () => {
+  expect(["healthy", "k+5"].map((name) => hypothesisWords(name, DIAGNOSERS))).toEqual(["healthy", "k+5"]);
+});

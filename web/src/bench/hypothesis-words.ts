@@ -1,0 +1,46 @@
+import type { Bench } from "../api/types";
+import { useBench } from "../stream/bench-store";
+import { formatChange } from "../ui/format";
+
+type Diagnosers = Bench["diagnosers"];
+
+/** Factors whose name says too little. */
+const NOUNS: Partial<Record<string, string>> = {
+  gain: "drive gain",
+  second_stiffness: "stiffness along y",
+};
+
+let known: { diagnosers: Diagnosers; words: Map<string, string> } | undefined;
+
+/** A hypothesis in words: "m+5" reads "mass +5 %"; one that says nothing of the device keeps its name. */
+export function hypothesisWords(name: string, diagnosers = useBench.getState().bench?.diagnosers): string {
+  if (!diagnosers) return name;
+  if (known?.diagnosers !== diagnosers) known = { diagnosers, words: wordsOf(diagnosers) };
+  return known.words.get(name) ?? name;
+}
+
+/** Hypotheses with their words, for a title: "m+5: mass +5 %". */
+export function hypothesesExplained(names: readonly string[]): string {
+  return names
+    .map((name) => [name, hypothesisWords(name)])
+    .map(([name, words]) => (name === words ? name : `${name}: ${words}`))
+    .join("\n");
+}
+
+function wordsOf(diagnosers: Diagnosers): Map<string, string> {
+  const words = new Map<string, string>();
+  for (const { names, factors } of Object.values(diagnosers))
+    names.forEach((name, i) => {
+      const said = Object.entries(factors[i] ?? {}).map(([factor, value]) => factorWords(factor, value));
+      if (said.length > 0 && !words.has(name)) words.set(name, said.join(", "));
+    });
+  return words;
+}
+
+/** A factor on the nominal device in percent, or what is added to it in its unit. */
+function factorWords(factor: string, value: number): string {
+  if (factor.endsWith("_dps")) return `${factor.slice(0, -4).replaceAll("_", " ")} ${formatChange(value, "deg/s", 0)}`;
+  const percent = (value - 1) * 100;
+  const noun = NOUNS[factor] ?? factor.replaceAll("_", " ");
+  return `${noun} ${formatChange(percent, "%", Math.abs(percent - Math.round(percent)) < 1e-6 ? 0 : 1)}`;
+}
