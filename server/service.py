@@ -14,6 +14,7 @@ from server.bench.benches import Benches
 from server.bench.engine import Engine
 from server.bench.experiment import THIS_VERSION, experiment_of
 from server.bench.portrait import bench_of
+from server.bench.recording import Records
 from server.bench.session import Session
 from server.bench.status import Bench, Opened
 from server.errors import ApiError, not_found
@@ -58,7 +59,8 @@ class Service:
         self.database = Database(settings.database_url or settings.data / "combbench.sqlite3")
         self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
         self.parameter_sets = ParameterSets(self.database)
-        self.benches = Benches(self.engine, self.recordings, settings, self.metrics)
+        self.benches = Benches(self.engine, settings, self.metrics)
+        self.records = Records(self.engine, self.recordings, settings.max_recording_ticks)
         self.links = Links(self.database, settings.max_links)
         self.idling = Idling(self._present, settings.idle_minutes)
         self.jobs = Jobs(self.database, settings, self.metrics)

@@ -48,13 +48,13 @@ async def start_recording(
     session: SessionDep, service: ServiceDep, caller: CallerDep, body: Wanted | None = None
 ) -> Recording:
     """Begin to record: now, or when a condition holds, with some of the past; `ticks: 0` keeps the past alone."""
-    return await service.benches.record(session, body or Wanted(), caller, await service.keeping.room())
+    return await service.records.begin(session, body or Wanted(), caller, await service.keeping.room())
 
 
 @router.post("/benches/{bench_id}/recordings/{recording_id}/stop", dependencies=[RateLimited])
 async def stop_recording(recording_id: str, session: SessionDep, service: ServiceDep) -> Recording:
     """End a recording; the answer comes when its file is whole."""
-    return await service.benches.stop_recording(session, recording_id)
+    return await service.records.end(session, recording_id)
 
 
 @router.get("/benches/{bench_id}/recordings")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
 import math
 from collections import Counter
@@ -15,7 +14,6 @@ from typing import Any
 import pyarrow.parquet as pq
 
 from core.board.board import Board
-from core.board.condition import parse_condition
 from core.board.history import History
 from core.errors import InputError
 from core.format import format_count
@@ -28,9 +26,8 @@ from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.experiment import Experiment, rebuilt, repeat
-from server.bench.portrait import design_of, document_of
-from server.bench.recorder import CLOSED, WANTED, Recorder
-from server.bench.recordings import Wanted
+from server.bench.portrait import design_of
+from server.bench.recorder import Recorder
 from server.bench.replay import Replay
 from server.bench.session import Session
 from server.bench.status import Opened
@@ -39,9 +36,7 @@ from server.bench.tick_source import TickSource
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
-from server.store.recordings import About, Recording, RecordingDetail, Recordings
-from server.store.traces import schema_of
-from server.version import VERSION
+from server.store.recordings import RecordingDetail
 
 AXES_SCALE = 0.1
 """Device seconds per wall second of a plant with axes."""
@@ -54,17 +49,14 @@ class Benches:
     ----------
     engine : Engine
         Advances the benches.
-    recordings : Recordings
-        Keeps the recordings of the benches.
     settings : Settings
         Limits.
     metrics : Metrics
         Where benches and commands are counted.
     """
 
-    def __init__(self, engine: Engine, recordings: Recordings, settings: Settings, metrics: Metrics) -> None:
-        self._engine, self._recordings = engine, recordings
-        self._settings, self._metrics = settings, metrics
+    def __init__(self, engine: Engine, settings: Settings, metrics: Metrics) -> None:
+        self._engine, self._settings, self._metrics = engine, settings, metrics
         self._sessions: dict[str, Session] = {}
         self._coming = 0
 
@@ -257,75 +249,6 @@ class Benches:
             raise
         self._metrics.commands.labels(kind, "done").inc()
         return event
-
-    async def record(self, session: Session, wanted: Wanted, actor: str, room_bytes: int) -> Recording:
-        """Begin to record every signal of a bench, now or when a condition holds.
-
-        Parameters
-        ----------
-        session : Session
-            The bench.
-        wanted : Wanted
-            The recording to make.
-        actor : str
-            The person or program that asks.
-        room_bytes : int
-            How large the recording may become.
-        """
-        if len(session.recordings) >= 2:
-            raise ApiError(409, "conflict", "two recordings of this bench are under way already")
-        condition = parse_condition(wanted.when, session.column_of) if wanted.when is not None else None
-        document = await self._engine.call(document_of, session)
-        file_says = {
-            "version": VERSION,
-            "scenario": document,
-            "bench": session.id,
-            "time_scale": session.pacer.scale,
-        }
-        schema = schema_of(
-            {signal.name: signal.unit for signal in session.signals}, json.loads(json.dumps(file_says, default=str))
-        )
-        title = session.scenario.head.title or session.scenario.id
-        about = About(
-            session.id,
-            wanted.name,
-            title,
-            session.dt_ms,
-            document,
-            session.board.spec.seed,
-            wanted.layout,
-            wanted.when or "",
-        )
-        recording, file = await self._recordings.open(about, schema)
-        row_bytes = 16 + 4 * len(session.signals)
-        close = self._recordings.closer(recording.id)
-
-        def ended(first: int, ticks: int, reason: str) -> None:
-            close(first, ticks, reason, reason not in WANTED)
-            with contextlib.suppress(RuntimeError):  # the engine may have stopped
-                self._engine.submit(session.recordings.forget, recording.id)
-
-        most = min(self._settings.max_recording_ticks, room_bytes // row_bytes)
-        recorder = Recorder(recording.id, file, schema, session.dt_ms, most, ended)
-        try:
-            tick = await self._engine.call(
-                session.recordings.begin, recorder, wanted.name, actor, wanted.past_ticks, wanted.ticks, condition
-            )
-        except BaseException:
-            recorder.stop(CLOSED)
-            raise
-        if tick is None:
-            return recording
-        if not recorder.is_open:
-            await asyncio.to_thread(recorder.join)
-            return await self._recordings.get(recording.id)
-        return await self._recordings.begin(recording.id, tick)
-
-    async def stop_recording(self, session: Session, recording_id: str) -> Recording:
-        """End a recording and wait until its file is whole."""
-        recorder = await self._engine.call(session.recordings.stop, recording_id)
-        await asyncio.to_thread(recorder.join)
-        return await self._recordings.get(recording_id)
 
     def count(self) -> None:
         """Bring the gauge of benches up to date."""

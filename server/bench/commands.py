@@ -108,6 +108,9 @@ class Loop(RunCommand):
     end_tick: int | None = Field(None, ge=0, le=2**53)
 
 
+RunsBench = Start | Pause | Step | StepPeriod | Undo | Redo | TimeScale | FastForward | Seek | Loop
+"""What a bench carries out itself, without a new board."""
+
 RUN_KINDS: dict[str, type[RunCommand]] = {
     "start": Start,
     "pause": Pause,

@@ -7,9 +7,9 @@ from concurrent.futures import Future
 
 from core.errors import InputError
 from scenarios.schema import Scenario
-from server.bench.commands import Loop, Seek, Start
+from server.bench.commands import Loop, RunsBench, Seek, Start
 from server.bench.events import Event
-from server.bench.session import RunsBench, Session
+from server.bench.session import Session
 from server.bench.tape import Tape
 from server.metrics import Metrics
 from server.store.recordings import RecordingDetail

@@ -18,20 +18,8 @@ from core.board.document import Document
 from core.errors import InputError
 from core.format import format_short
 from scenarios.schema import Scenario
+from server.bench import commands
 from server.bench.changes import Changes
-from server.bench.commands import (
-    MAX_PENDING,
-    FastForward,
-    Loop,
-    Pause,
-    Redo,
-    Seek,
-    Start,
-    Step,
-    StepPeriod,
-    TimeScale,
-    Undo,
-)
 from server.bench.events import Event, EventLog
 from server.bench.fast_forward import FastForwarding
 from server.bench.moment import Moment
@@ -47,7 +35,6 @@ from server.bench.timeline import Timeline
 from server.errors import not_found
 from server.metrics import Metrics
 
-RunsBench = Undo | Redo | Start | Pause | Step | StepPeriod | TimeScale | FastForward | Seek | Loop
 STATUS_S = 0.2
 
 
@@ -173,13 +160,13 @@ class Session(Timeline):
             If the command cannot be carried out; nothing has changed then.
         """
         self.must_be_open()
-        if isinstance(command, get_args(RunsBench)):
+        if isinstance(command, get_args(commands.RunsBench)):
             event = self._run_command(command, actor)
             if isinstance(event, Future):  # its end refreshes the status
                 return event
         else:
-            if len(self.board.pending) >= MAX_PENDING:
-                raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
+            if len(self.board.pending) >= commands.MAX_PENDING:
+                raise InputError(f"{commands.MAX_PENDING} commands wait for their moment already", code="limit")
             event = self.changes.apply(command, actor)
             self.fast_forward.end()
             self._running = self._running and self.board.trip is None
@@ -248,27 +235,29 @@ class Session(Timeline):
         self.steps.end()
         return self.recordings.close()
 
-    def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
+    def _run_command(self, command: commands.RunsBench, actor: str) -> Event | Future[Event]:
         """Carry out a command that runs the bench."""
         document = command.model_dump()
-        if isinstance(command, Undo | Redo):
-            return self.changes.back(actor) if isinstance(command, Undo) else self.changes.again(actor)
-        if isinstance(command, Seek | Loop):
+        if isinstance(command, commands.Undo | commands.Redo):
+            return self.changes.back(actor) if isinstance(command, commands.Undo) else self.changes.again(actor)
+        if isinstance(command, commands.Seek | commands.Loop):
             raise InputError("only a recording that is played can do that", "kind", code="conflict")
-        if isinstance(command, TimeScale):
+        if isinstance(command, commands.TimeScale):
             old, new = self.pacer.scale, command.value
             self.pacer.rescale(new, self.board.tick, self._clock(), self._running)
             text = f"time scale set to {format_short(new, 's/s')}" if new else "time runs as fast as possible"
             return self.events.add(self.board.tick, actor, "time_scale", text, document, old, new)
-        if isinstance(command, Pause):
+        if isinstance(command, commands.Pause):
             self._running = False
             self.steps.end()
             return self.note(actor, "pause", "paused", document)
         if self.board.trip is not None:
             text = f"the board has tripped: {self.board.trip.reason}"
             raise InputError(text, hint="reset the trip first", code="tripped")
-        if isinstance(command, Start | FastForward):
-            skips = isinstance(command, FastForward) and self.fast_forward.skip(command.before_tick, self._ends_at)
+        if isinstance(command, commands.Start | commands.FastForward):
+            skips = isinstance(command, commands.FastForward) and self.fast_forward.skip(
+                command.before_tick, self._ends_at
+            )
             self.steps.end()
             self._running = True
             self.pacer.anchor(self.board.tick, self._clock())
