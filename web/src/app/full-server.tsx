@@ -1,6 +1,6 @@
 import { Button } from "@mantine/core";
 import { api } from "../api/api";
-import { useAnswer } from "../api/use-answer";
+import { useAnswer } from "../api/queries";
 import { formatCount } from "../ui/format";
 import styles from "./full-server.module.css";
 
@@ -13,7 +13,7 @@ interface FullServerProps {
 
 /** There is no room for one more bench: which there are, when one goes, and what can be done now. */
 export function FullServer({ onJoin, onRetry }: FullServerProps) {
-  const { value: benches = [] } = useAnswer(api.benches, () => AGAIN_MS);
+  const { value: benches = [] } = useAnswer(["benches"], api.benches, () => AGAIN_MS);
   const leaving = benches.flatMap((b) => b.let_go_in_s ?? []);
   return (
     <main className={styles.full}>

@@ -3,7 +3,6 @@ import { IconPlayerPauseFilled, IconPlayerPlayFilled, IconShare2, IconX } from "
 import { useEffect, useRef, useState } from "react";
 import { hasAxes } from "../api/fits";
 import type { Bench } from "../api/types";
-import { usePageVisible } from "../api/use-page-visible";
 import { actions } from "../bench/actions";
 import { useView } from "../bench/view-store";
 import { ScopePanel } from "../panels/scope/scope-panel";
@@ -11,6 +10,7 @@ import { useBench } from "../stream/bench-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible } from "../ui/panel-visible";
+import { usePageVisible } from "../ui/use-page-visible";
 import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";
 import { PanelBody } from "./panel-body";

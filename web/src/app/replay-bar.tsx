@@ -1,9 +1,9 @@
 import { Button, NativeSelect, Slider } from "@mantine/core";
 import { IconArrowLeft, IconRepeat } from "@tabler/icons-react";
-import { useCallback, useState } from "react";
+import { useState } from "react";
 import { api } from "../api/api";
+import { useAnswer } from "../api/queries";
 import type { Bench } from "../api/types";
-import { useAnswer } from "../api/use-answer";
 import { restoreLayout } from "../bench/dock";
 import { openBench } from "../bench/open-bench";
 import { benchBefore } from "../bench/open-replay";
@@ -22,8 +22,7 @@ export function ReplayBar() {
 }
 
 function Bar({ recording, bench }: { recording: string; bench: Bench }) {
-  const ask = useCallback(() => api.recording(recording), [recording]);
-  const { value: about } = useAnswer(ask, () => undefined);
+  const { value: about } = useAnswer(["recording", recording], () => api.recording(recording));
   const [span, setSpan] = useState<[number, number] | undefined>(undefined);
   const [looping, setLooping] = useState(false);
   const [held, setHeld] = useState<number | undefined>(undefined);

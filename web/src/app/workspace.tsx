@@ -10,9 +10,9 @@ import {
 } from "dockview-react";
 import { type FunctionComponent, type KeyboardEvent, useEffect, useState } from "react";
 import { hasAxes } from "../api/fits";
-import { usePageVisible } from "../api/use-page-visible";
 import { useBench } from "../stream/bench-store";
 import { PanelVisible } from "../ui/panel-visible";
+import { usePageVisible } from "../ui/use-page-visible";
 import "./dock.css";
 import { addPanel, addScope, closePanel, dockNow } from "../bench/dock";
 import { DOCK_GAP } from "../bench/dock-gap";

@@ -2,7 +2,7 @@ import { Button, NativeSelect, Progress, TextInput } from "@mantine/core";
 import { IconFolderOpen } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
-import { useAnswer } from "../api/use-answer";
+import { useAnswer } from "../api/queries";
 import { useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
@@ -17,7 +17,7 @@ const isUnderWay = (state: string) => state === "queued" || state === "running";
 
 /** Every experiment of the library: what is claimed, what was measured, and whether that agrees. */
 export function GalleryPage() {
-  const { value, error, since, again } = useAnswer(api.gallery, (now) =>
+  const { value, error, since, again } = useAnswer(["gallery"], api.gallery, (now) =>
     now?.figures.is_making || now?.cards.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS,
   );
   const [filter, setFilter] = useState(EVERYTHING);

@@ -1,8 +1,8 @@
 import { MultiSelect } from "@mantine/core";
-import { useCallback, useState } from "react";
+import { useState } from "react";
 import { api } from "../api/api";
+import { useAnswer } from "../api/queries";
 import type { PointTally, SweepRun } from "../api/types";
-import { useAnswer } from "../api/use-answer";
 import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
@@ -23,9 +23,12 @@ const MOST_TRENDS = 6;
 /** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
   const active = sweep.state === "queued" || sweep.state === "running";
-  // biome-ignore lint/correctness/useExhaustiveDependencies: the end of a campaign is worth a question
-  const ask = useCallback(() => api.sweepPoints(sweep.id), [sweep.id, active]);
-  const { value, error, since, again } = useAnswer(ask, () => (active ? BUSY_MS : undefined));
+  // the end of a campaign is worth a question: it is part of this one
+  const { value, error, since, again } = useAnswer(
+    ["sweep points", sweep.id, active],
+    () => api.sweepPoints(sweep.id),
+    () => (active ? BUSY_MS : undefined),
+  );
   const [metrics, setMetrics] = useState<string[] | undefined>(undefined);
   const files = `./api/v1/sweeps/${sweep.id}`;
   const points = (value?.points ?? []).filter((point) => (point.runs ?? 0) > 0);

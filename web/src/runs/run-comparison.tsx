@@ -1,8 +1,8 @@
 import { Checkbox, Select } from "@mantine/core";
-import { useCallback, useState } from "react";
+import { useState } from "react";
 import { api } from "../api/api";
+import { useAnswer } from "../api/queries";
 import type { RunComparison as Comparison } from "../api/types";
-import { useAnswer } from "../api/use-answer";
 import { LineChart } from "../picture/line-chart";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatFigure, formatSi } from "../ui/format";
@@ -13,12 +13,9 @@ import { runName, seedText } from "./jobs";
 import styles from "./runs.module.css";
 
 const USUAL = ["plant.displacement", "plant.x"];
-const never = () => undefined;
-
 /** Finished runs side by side: their figures with the difference from the first, a signal of all over each other. */
 export function RunComparison({ ids }: { ids: string }) {
-  const ask = useCallback(() => api.compareRuns(ids.split(",")), [ids]);
-  const { value, error, since, again } = useAnswer(ask, never);
+  const { value, error, since, again } = useAnswer(["compare", ids], () => api.compareRuns(ids.split(",")));
   const [onlyDifferent, setOnlyDifferent] = useState(true);
   if (!value)
     return error ? (
@@ -85,11 +82,9 @@ function Traces({ ids, comparison, names }: { ids: string; comparison: Compariso
   const { signals, runs } = comparison;
   const first = USUAL.find((name) => signals.some((one) => one.name === name)) ?? signals[0]?.name ?? "";
   const [signal, setSignal] = useState(first);
-  const ask = useCallback(
-    () => (signal ? api.compareTraces(ids.split(","), signal) : Promise.resolve(undefined)),
-    [ids, signal],
+  const { value, error, since, again } = useAnswer(signal ? ["compare", ids, signal] : undefined, () =>
+    api.compareTraces(ids.split(","), signal ?? ""),
   );
-  const { value, error, since, again } = useAnswer(ask, never);
   if (!signal) return <p className={styles.note}>One of them is a study, which leaves no trace.</p>;
   return (
     <>

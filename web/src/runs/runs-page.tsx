@@ -2,8 +2,8 @@ import { Button } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
+import { useAnswer } from "../api/queries";
 import type { RunFilter } from "../api/types";
-import { useAnswer } from "../api/use-answer";
 import { showError } from "../bench/send";
 import { EmptyState } from "../ui/empty-state";
 import { Stale } from "../ui/stale";
@@ -33,9 +33,10 @@ async function jobsLike(filter: RunFilter): Promise<Job[]> {
 export function RunsPage() {
   const [filter, setFilter] = useState(ALL);
   const [wanted] = useDebouncedValue(filter, PAUSE_MS);
-  const ask = useCallback(() => jobsLike(wanted), [wanted]);
-  const { value, error, since, again } = useAnswer(ask, (jobs) =>
-    jobs?.some((job) => job.isActive) ? BUSY_MS : CALM_MS,
+  const { value, error, since, again } = useAnswer(
+    ["jobs", wanted],
+    () => jobsLike(wanted),
+    (jobs) => (jobs?.some((job) => job.isActive) ? BUSY_MS : CALM_MS),
   );
   const [chosen, choose] = useChosen();
   const [scenarios, setScenarios] = useState<string[]>([]);

@@ -2,7 +2,7 @@ import { ActionIcon, Button } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
-import { useAsked } from "../api/use-asked";
+import { useAsked } from "../api/queries";
 import { formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
@@ -27,7 +27,7 @@ export function Excitation() {
   const [tones, setTones] = useState(PRESETS[1].tones);
   const [a1, setA1] = useState(0.2);
   const body = { tones, gain: 1, a1, a2: 1, filter_pole: 1 };
-  const { answer, refusal, waiting } = useAsked(JSON.stringify(body), () => api.persistency(body));
+  const { answer, refusal, waiting } = useAsked(["persistency", body], () => api.persistency(body));
   const change = (index: number, part: Partial<Tone>) =>
     setTones(tones.map((tone, i) => (i === index ? { ...tone, ...part } : tone)));
   const largest = Math.max(...(answer?.eigenvalues ?? [1]));

@@ -1,8 +1,8 @@
 import { NativeSelect } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
+import { useAsked } from "../api/queries";
 import type { InstabilityMap, MapSource } from "../api/types";
-import { useAsked } from "../api/use-asked";
 import { PictureMenu } from "../picture/picture-menu";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
@@ -50,7 +50,7 @@ export function Instability() {
     frequencies: CELLS,
     gains: CELLS,
   };
-  const { answer, refusal, waiting } = useAsked(JSON.stringify(body), () => api.instabilityMap(body));
+  const { answer, refusal, waiting } = useAsked(["instability map", body], () => api.instabilityMap(body));
   const chosen = RULES.find((r) => r.value === rule) ?? RULES[0];
   return (
     <section className={styles.card} aria-label="Instability map">

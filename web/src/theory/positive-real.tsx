@@ -1,7 +1,7 @@
 import { Button, TextInput } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
-import { useAsked } from "../api/use-asked";
+import { useAsked } from "../api/queries";
 import { PictureMenu } from "../picture/picture-menu";
 import { formatShort, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
@@ -27,7 +27,7 @@ export function PositiveReal() {
   if (parsed.found && parsed.found !== last) setLast(parsed.found);
   const numerator = last ? highestFirst(last.numerator) : [1];
   const denominator = last ? highestFirst(last.denominator) : [1];
-  const { answer, refusal, waiting } = useAsked(JSON.stringify([numerator, denominator]), () =>
+  const { answer, refusal, waiting } = useAsked(["positive real", numerator, denominator], () =>
     api.positiveReal(numerator, denominator),
   );
   return (

@@ -1,7 +1,6 @@
 import { Button } from "@mantine/core";
-import { useCallback } from "react";
 import { api } from "../../api/api";
-import { useAnswer } from "../../api/use-answer";
+import { useAnswer } from "../../api/queries";
 import { openVariant } from "../../bench/open-variant";
 import { send, showError } from "../../bench/send";
 import { drawnSvg } from "../../picture/drawn-svg";
@@ -54,8 +53,11 @@ export function AllanPanel() {
 }
 
 function Readout({ bench, name }: { bench: string; name: string }) {
-  const ask = useCallback(() => api.readout(bench, name), [bench, name]);
-  const { value: readout, error } = useAnswer(ask, () => EVERY_MS);
+  const { value: readout, error } = useAnswer(
+    ["readout", bench, name],
+    () => api.readout(bench, name),
+    () => EVERY_MS,
+  );
   const scheme = useScheme();
   const limited = useBench((s) => s.bench?.time_scale !== null && !s.bench?.replay_of);
   const { element, size } = useSize<HTMLDivElement>();

@@ -3,7 +3,7 @@ import { IconPlus } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
 import { fits } from "../../api/fits";
-import { useAsked } from "../../api/use-asked";
+import { useAsked } from "../../api/queries";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-variant";
 import { showError } from "../../bench/send";
@@ -31,7 +31,7 @@ export function HypothesesPanel() {
   const list = drafts[key] ?? bank?.hypotheses ?? [];
   const wrong = refusal(list);
   const { answer, refusal: refused } = useAsked(
-    bench && id && !wrong ? `${key} ${JSON.stringify(list)} ${JSON.stringify(parameters?.reference)}` : undefined,
+    bench && id && !wrong ? ["aliases", key, list, parameters?.reference] : undefined,
     () => api.aliases(bench ?? "", id ?? "", { hypotheses: list.map(whole) }),
   );
   if (!bench || !id || !bank)

@@ -1,6 +1,6 @@
 import { useState } from "react";
 import { api } from "../../api/api";
-import { useAnswer } from "../../api/use-answer";
+import { useAnswer } from "../../api/queries";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { usePanelVisible } from "../../ui/panel-visible";
@@ -22,7 +22,7 @@ function Recordings() {
   const bench = useBench((s) => s.bench?.id);
   const replay = useBench((s) => s.bench?.replay_of);
   const underWay = useBench((s) => (s.bench?.recording.length ?? 0) + (s.bench?.armed.length ?? 0));
-  const { value, error, since, again } = useAnswer(api.recordings, (list) =>
+  const { value, error, since, again } = useAnswer(["recordings"], api.recordings, (list) =>
     underWay > 0 || list?.some((one) => !one.finished) ? BUSY_MS : CALM_MS,
   );
   const [first, setFirst] = useState<string | undefined>(undefined);

@@ -1,8 +1,8 @@
 import { CloseButton, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
+import { useAsked } from "../../api/queries";
 import type { ParameterSet } from "../../api/types";
-import { useAsked } from "../../api/use-asked";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { formatCount } from "../../ui/format";
@@ -26,7 +26,7 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
   const { block } = useCatalog();
   const list = useInstances();
   const query = other === BENCH ? { bench } : { other };
-  const { answer } = useAsked(JSON.stringify([first.id, query, event]), () =>
+  const { answer } = useAsked(["parameter sets", first.id, query, event], () =>
     api.compareParameterSets(first.id, query),
   );
   const options = others.filter(({ id }) => id !== first.id).map(({ id, name }) => ({ value: id, label: name }));

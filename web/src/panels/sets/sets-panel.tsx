@@ -1,7 +1,7 @@
 import { Button, TextInput } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
-import { useAnswer } from "../../api/use-answer";
+import { useAnswer } from "../../api/queries";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
@@ -20,7 +20,7 @@ export function SetsPanel() {
 
 function Sets() {
   const bench = useBench((s) => s.bench?.id) ?? "";
-  const { value: sets, error, since, again } = useAnswer(api.parameterSets, () => EVERY_MS);
+  const { value: sets, error, since, again } = useAnswer(["parameter sets"], api.parameterSets, () => EVERY_MS);
   const [name, setName] = useState("");
   const [chosen, setChosen] = useState<string | undefined>(undefined);
   const comparing = sets?.find((one) => one.id === chosen);

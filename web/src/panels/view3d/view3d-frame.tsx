@@ -1,7 +1,7 @@
 import { useEffect, useRef, useState } from "react";
-import { usePageVisible } from "../../api/use-page-visible";
 import { useBench } from "../../stream/bench-store";
 import { softwareGl } from "../../ui/software-gl";
+import { usePageVisible } from "../../ui/use-page-visible";
 import { useScheme } from "../../ui/use-scheme";
 import { CAMERAS, type Camera } from "./cameras";
 import styles from "./view3d.module.css";

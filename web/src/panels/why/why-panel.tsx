@@ -2,8 +2,8 @@ import { ActionIcon, Button, NativeSelect } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
+import { useAsked } from "../../api/queries";
 import type { Account, ApiErrorBody } from "../../api/types";
-import { useAsked } from "../../api/use-asked";
 import { useView } from "../../bench/view-store";
 import { askLatest, pickSample } from "../../bench/why";
 import { useBench } from "../../stream/bench-store";
@@ -28,11 +28,11 @@ export function WhyPanel() {
     answer: account,
     refusal,
     waiting,
-  } = useAsked(bench && sample && `${bench} ${sample.diagnoser} ${sample.tick}`, () =>
+  } = useAsked(bench && sample ? ["explanation", bench, sample.diagnoser, sample.tick] : undefined, () =>
     api.explanation(bench ?? "", sample?.diagnoser ?? "", sample?.tick ?? 0),
   );
   const { answer: turn } = useAsked(
-    account && sample && !refusal ? `${bench} ${sample.diagnoser} ${account.tick}` : undefined,
+    account && sample && !refusal ? ["turn", bench, sample.diagnoser, account.tick] : undefined,
     () => api.turn(bench ?? "", sample?.diagnoser ?? "", account?.tick ?? 0),
   );
   const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length ? [id] : []));

@@ -1,0 +1,77 @@
+import { keepPreviousData, QueryClient, useQuery } from "@tanstack/react-query";
+import { useCallback, useEffect, useState } from "react";
+import { ApiError } from "./api-error";
+
+/** What the page has asked the server, and when; one answer for all who ask the same. */
+export const queryClient = new QueryClient({
+  defaultOptions: {
+    queries: {
+      retry: false, // a refusal stays one; who asks again and again has a pace of its own
+      networkMode: "always", // the server may be this machine
+      throwOnError: (error) => !(error instanceof ApiError),
+    },
+  },
+});
+
+/** A question by its parts; undefined asks nothing. */
+type Question = readonly unknown[] | undefined;
+
+export interface Answer<T> {
+  value: T | undefined;
+  /** Why the newest question got no answer; what is shown is older then. */
+  error: ApiError | undefined;
+  /** When `value` came. */
+  since: Date | undefined;
+  /** Ask now. */
+  again(): void;
+}
+
+/**
+ * What the server answers to a question, asked again every so often while the page is in sight.
+ *
+ * @param every Milliseconds until it is asked again, given the answer; undefined: not again.
+ */
+export function useAnswer<T>(
+  question: Question,
+  ask: () => Promise<T>,
+  every: (value: T | undefined) => number | undefined = () => undefined,
+): Answer<T> {
+  const { data, error, dataUpdatedAt, refetch } = useQuery({
+    queryKey: question ?? [],
+    queryFn: ask,
+    enabled: question !== undefined,
+    refetchInterval: ({ state }) => every(state.data) ?? false,
+  });
+  return {
+    value: data,
+    error: refusal(error),
+    since: dataUpdatedAt ? new Date(dataUpdatedAt) : undefined,
+    again: useCallback(() => void refetch(), [refetch]),
+  };
+}
+
+interface Asked<T> {
+  answer: T | undefined;
+  refusal: ApiError | undefined;
+  /** The answer shown is to the question before. */
+  waiting: boolean;
+}
+
+/** The server's answer to a question that changes and is asked once; the last answer stays until the next has come. */
+export function useAsked<T>(question: Question, ask: () => Promise<T>): Asked<T> {
+  const { data, error, isFetching, isPlaceholderData } = useQuery({
+    queryKey: question ?? [],
+    queryFn: ask,
+    enabled: question !== undefined,
+    staleTime: Number.POSITIVE_INFINITY,
+    gcTime: 0, // asked again later, a bench may have gone back in time
+    placeholderData: keepPreviousData,
+  });
+  const [last, keep] = useState<T | undefined>(undefined);
+  useEffect(() => {
+    if (data !== undefined && !isPlaceholderData) keep(data);
+  }, [data, isPlaceholderData]);
+  return { answer: data ?? last, refusal: refusal(error), waiting: isFetching };
+}
+
+const refusal = (error: Error | null): ApiError | undefined => (error instanceof ApiError ? error : undefined);
