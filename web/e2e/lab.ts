@@ -15,7 +15,8 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
   server: [
     // biome-ignore lint/correctness/noEmptyPattern: the fixture depends on no other
     async ({}, use) => {
-      const server = await LabServer.create();
+      // the pictures of the documents show the gallery as it is after its figures have been made
+      const server = await LabServer.create(process.env.PICTURES ? { COMBBENCH_FIGURES: "true" } : {});
       await use(server);
       await server.destroy();
     },

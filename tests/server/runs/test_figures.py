@@ -13,6 +13,7 @@ import pytest
 
 from scenarios.edit import with_values
 from scenarios.library import get
+from scenarios.report.metric_name import micro
 from scenarios.run import run
 
 FEW = ("first-look", "ch1-beam-width", "ch3-ffrls-b30")
@@ -49,7 +50,7 @@ def test_figures_are_made_once_and_survive_a_restart(
             ]
             picture = live.http.get(f"/api/v1/gallery/{card['id']}/figure")
             assert picture.headers["content-type"].startswith("image/svg+xml")
-            assert ElementTree.fromstring(picture.text).attrib["aria-label"] == card["title"]
+            assert ElementTree.fromstring(picture.text).attrib["aria-label"] == micro(card["title"])
         assert live.http.get("/api/v1/runs").json()["runs"] == []  # figures are no runs that somebody asked for
         assert live.http.get("/api/v1/gallery/none/figure").status_code == 404
         assert live.http.get("/api/v1/gallery/appA-spr/figure").json()["error"]["code"] == "not_found"

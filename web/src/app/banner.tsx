@@ -3,6 +3,7 @@ import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler
 import type { ReactNode } from "react";
 import { useEffect, useState } from "react";
 import { actions } from "../bench/actions";
+import { showPanel } from "../bench/dock";
 import { showError } from "../bench/send";
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
@@ -86,6 +87,11 @@ export function Banner({ hints = true }: { hints?: boolean }) {
               ))}
             </ul>
             {tips.guided && <Guided {...tips.guided} />}
+            {tips.canHide && (
+              <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>
+                Find a hidden fault
+              </Button>
+            )}
           </div>
         </div>
         <CloseButton size="sm" aria-label="Dismiss the hints" onClick={tips.dismiss} />

@@ -13,6 +13,8 @@ export interface Hints {
   intro: string;
   hints: Hint[];
   guided: { scenario: string; label: string } | undefined;
+  /** Whether a fault can be hidden, to be found. */
+  canHide: boolean;
 }
 
 type Shown = Pick<Bench, "axes" | "controllers" | "diagnosers" | "replay_of" | "signals">;
@@ -48,6 +50,7 @@ export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
       : axes
         ? { scenario: "gyro-diagnosis", label: "Run four faults, step by step" }
         : { scenario: "ch5-seven-step", label: "Run the seven steps" },
+    canHide: diagnosed && !axes && !hasSteps,
   };
 }
 

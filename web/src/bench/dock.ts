@@ -101,9 +101,11 @@ export function reopenClosed(): boolean {
   return true;
 }
 
-/** Open another panel of a kind beside the active one. */
-export function addPanel(kind: string): void {
-  current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {} });
+/** Open another panel of a kind, among the panels of one of another kind if there is one, else beside the active one. */
+export function addPanel(kind: string, among?: string): void {
+  const near = current?.panels.find((p) => p.view.contentComponent === among);
+  const position = near && { referencePanel: near.id, direction: "within" as const };
+  current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position });
 }
 
 /** Open a scope on some signals beside the active panel. */
@@ -121,11 +123,11 @@ export function focusNextGroup(): void {
 }
 
 /** Bring the panel of a kind to the front, opening one if there is none; without a dock it takes the place for one. */
-export function showPanel(kind: string): void {
+export function showPanel(kind: string, among?: string): void {
   useView.setState({ extra: kind });
   const panel = current?.panels.find((p) => p.view.contentComponent === kind);
   if (panel) panel.api.setActive();
-  else addPanel(kind);
+  else addPanel(kind, among);
 }
 
 /**

@@ -1,5 +1,6 @@
 import { Button, Radio, Slider } from "@mantine/core";
 import { useState } from "react";
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
@@ -63,7 +64,7 @@ function Answer({ list, dtMs }: { list: Hypothesis[]; dtMs: number }) {
       <Radio.Group label="What is the device now?" value={said ?? ""} onChange={setSaid}>
         <div className={styles.answers}>
           {list.map(({ name }) => (
-            <Radio key={name} value={name} label={name} />
+            <Radio key={name} value={name} label={hypothesisWords(name)} />
           ))}
         </div>
       </Radio.Group>
@@ -98,16 +99,16 @@ function Outcome() {
   return (
     <div className={styles.outcome} role="status">
       <p className={styles.verdict} data-right={right}>
-        {right ? "Right" : "Wrong"}: it is {last.truth}. {formatCount(last.points, "point")}
+        {right ? "Right" : "Wrong"}: it is {hypothesisWords(last.truth)}. {formatCount(last.points, "point")}
       </p>
       <p className={styles.advice}>
-        You said {last.said} with {formatPercent(last.confidence, 0)}
+        You said {hypothesisWords(last.said)} with {formatPercent(last.confidence, 0)}
         {last.tookMs !== null
           ? `, ${formatSi(last.tookMs, "ms", 3)} of device time after the fault`
           : ", and no fault had come"}
         .{" "}
         {Object.entries(last.verdicts)
-          .map(([id, verdict]) => `${id.replaceAll("_", " ")} said ${verdict}`)
+          .map(([id, verdict]) => `${id.replaceAll("_", " ")} said ${hypothesisWords(verdict)}`)
           .join(", ")}
         .
       </p>
@@ -142,8 +143,8 @@ function Attempts() {
           // biome-ignore lint/suspicious/noArrayIndexKey: attempts are only ever added
           <tr key={i} data-right={attempt.said === attempt.truth}>
             <td>{attempt.seed}</td>
-            <td>{attempt.said}</td>
-            <td>{attempt.truth}</td>
+            <td>{hypothesisWords(attempt.said)}</td>
+            <td>{hypothesisWords(attempt.truth)}</td>
             <td>{formatPercent(attempt.confidence, 0)}</td>
             <td>{formatNumber(attempt.points, 0)}</td>
           </tr>

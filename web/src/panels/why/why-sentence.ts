@@ -1,4 +1,5 @@
 import type { Account, ModelAccount, Turn } from "../../api/types";
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { formatNumber } from "../../ui/format";
 
 /** Recorded and worked out, they part by more than rounding: the bank did not take the sample for evidence. */
@@ -7,20 +8,27 @@ const PARTED = 0.01;
 /** The verdict at a sample in one sentence, from what the bank itself computed there. */
 export function whySentence({ models, evidence, residuals }: Account, turn: Turn | undefined, tick: number): string {
   const winner = likeliest(models);
+  const first = atStart(winner.name);
   if (models.some((m) => Math.abs(m.recorded - m.posterior) > PARTED))
-    return `${winner.name} stays ahead: this sample did not count, because the drive was too small or nothing was measured.`;
+    return `${first} stays ahead: this sample did not count, because the drive was too small or nothing was measured.`;
   if (models.every((m) => m.recorded === winner.recorded)) return "No hypothesis is ahead: they are all alike so far.";
-  if (models.some((m) => m.log_likelihood === null)) return `${winner.name} stays ahead: this sample tells nothing.`;
+  if (models.some((m) => m.log_likelihood === null)) return `${first} stays ahead: this sample tells nothing.`;
   const others = models.filter((m) => m !== winner);
   const beaten = turn?.tick === tick ? others.find((m) => m.name === turn.before) : undefined;
   const rival = beaten ?? (winner === models[0] ? likeliest(others) : models[0]);
+  const second = hypothesisWords(rival.name);
   const [own, other] = [sigmas(winner), sigmas(rival)];
   const how = evidence ? " the tone of the drive" : residuals.length > 1 ? " on both axes together" : "";
-  if (own === other)
-    return `${winner.name} wins by the samples before: here it and ${rival.name} both miss${how} by ${own}.`;
+  if (own === other) return `${first} wins by the samples before: here it and ${second} both miss${how} by ${own}.`;
   if (winner.missed_sigma < rival.missed_sigma)
-    return `${winner.name} wins: it misses${how} by ${own}, ${rival.name} by ${other}.`;
-  return `${winner.name} wins by the samples before: here it misses${how} by ${own}, ${rival.name} only by ${other}.`;
+    return `${first} wins: it misses${how} by ${own}, ${second} by ${other}.`;
+  return `${first} wins by the samples before: here it misses${how} by ${own}, ${second} only by ${other}.`;
+}
+
+/** A hypothesis at the beginning of a sentence: its words with a capital, a mere name as it is. */
+function atStart(name: string): string {
+  const words = hypothesisWords(name);
+  return words === name ? name : words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 const sigmas = ({ missed_sigma }: ModelAccount) => `${formatNumber(missed_sigma, 1)} σ`;
@@ -33,7 +41,7 @@ export function likeliest(models: ModelAccount[]): ModelAccount {
 /** Where the verdict last turned, in words. */
 export function turnWords({ tick, before, since }: Turn, shown: number): string {
   if (tick === null) return `The verdict has not turned since sample ${since}, the first one kept.`;
-  const from = before ? `, from ${before}` : "";
+  const from = before ? `, from ${hypothesisWords(before)}` : "";
   return tick === shown
     ? `The verdict turned at this sample${from}.`
     : `The verdict last turned at sample ${tick}${from}.`;

@@ -1,0 +1,80 @@
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Locator, Page } from "@playwright/test";
+import { expect, test } from "./lab";
+
+const DOCS = join(import.meta.dirname, "..", "..", "docs");
+const TEXT = readFileSync(join(DOCS, "walk-through.md"), "utf8");
+const HEADINGS = [...TEXT.matchAll(/^## (.*)$/gm)].map(([, heading]) => heading);
+
+test.use({ viewport: { width: 1366, height: 768 }, colorScheme: "light" });
+
+test("the walk-through of the documents can be walked, in as many clicks as it says", async ({
+  page,
+  server,
+}, info) => {
+  const walked: string[] = [];
+  let clicks = 0;
+  const click = async (what: Locator) => {
+    await what.click();
+    clicks += 1;
+  };
+  /** A part of the text, its picture, and its clicks. */
+  const part = async (heading: string, picture: string, most: number, walk: () => Promise<void>) => {
+    clicks = 0;
+    await walk();
+    expect(clicks, heading).toBe(most);
+    walked.push(heading);
+    expect(TEXT).toContain(`pictures/${picture}.jpg`);
+    // `PICTURES=docs npm run e2e walk-through` takes the pictures of the documents anew
+    const path = process.env.PICTURES ? join(DOCS, "pictures", `${picture}.jpg`) : info.outputPath(`${picture}.jpg`);
+    await page.screenshot({ path, type: "jpeg", quality: 82 });
+  };
+  const button = (name: string | RegExp) => page.getByRole("button", { name }).first();
+  const traces = (within: Page | Locator) => within.getByText(/\d\s(µm|nm)$/).first();
+  const benches: string[] = [];
+  const remember = () => benches.push(new URL(page.url()).searchParams.get("bench") ?? "");
+
+  await part("What you see first", "first-page", 0, async () => {
+    await page.goto(server.url);
+    await expect(page.getByTestId("bench-state")).toHaveText("running");
+    await expect(traces(page)).toBeVisible();
+    await page.waitForFunction(
+      () => Number(document.querySelector("[role=timer] small")?.textContent?.replace(/\D/g, "")) > 800,
+    );
+    remember();
+  });
+  await part("Inject a fault", "fault", 1, async () => {
+    await click(button(/^Inject \+5.*Added mass$/));
+    await expect(page.getByText(/^\d+\ssamples · [1-9]\d{0,2}(\.\d+)?\s(µs|ms)$/).first()).toBeVisible();
+    await expect(page.getByText("1 fault acts")).toBeVisible();
+  });
+  await part("Ask why", "why", 0, async () => {
+    await page.keyboard.press("w");
+    await expect(page.getByRole("region", { name: "Why" }).getByText(/wins/).first()).toBeVisible();
+  });
+  await part("Share what you did", "share", 2, async () => {
+    await click(button("More"));
+    await click(page.getByRole("menuitem", { name: /^Share this experiment/ }));
+    await expect(page.getByRole("img", { name: /^QR code of/ })).toBeVisible();
+  });
+  await page.keyboard.press("Escape");
+  await part("Look for a hidden fault", "hidden-fault", 2, async () => {
+    await click(button("Find a hidden fault"));
+    await click(button("Hide a fault"));
+    await expect(page.getByText("Hidden while you look for the fault").first()).toBeVisible();
+  });
+  await page.getByRole("button", { name: "Give up" }).click();
+  await part("Run the seven steps", "seven-steps", 1, async () => {
+    await click(button("Run the seven steps"));
+    await expect(page.getByRole("region", { name: "Steps of the scenario" })).toContainText(/3 of 7/);
+    remember();
+  });
+  await part("Compare with what was printed", "gallery", 1, async () => {
+    await click(page.getByRole("navigation").getByRole("button", { name: "Gallery" }));
+    await expect(page.getByRole("list", { name: "Experiments" }).getByRole("listitem").nth(20)).toBeAttached();
+    if (process.env.PICTURES) await expect(page.getByRole("img", { name: /^Figure of/ }).nth(5)).toBeVisible();
+  });
+  expect(walked).toEqual(HEADINGS);
+  for (const bench of benches) await server.ask("DELETE", `/benches/${bench}`);
+});
