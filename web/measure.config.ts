@@ -2,4 +2,10 @@ import { defineConfig } from "@playwright/test";
 import tests from "./playwright.config";
 
 /** How fast the page is: measured by hand on a quiet machine (`make page-speed`), never a test of a suite. */
-export default defineConfig({ ...tests, testDir: "measure", testMatch: "*.measure.ts", timeout: 60 * 60_000 });
+export default defineConfig({
+  ...tests,
+  testDir: "measure",
+  testMatch: "*.measure.ts",
+  workers: 1,
+  timeout: 60 * 60_000,
+});

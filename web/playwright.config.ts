@@ -1,11 +1,11 @@
 import { defineConfig } from "@playwright/test";
 
-/** One browser and one server at a time: the board shares the machine with a WebGL drawn in software. */
+/** Two browsers, each with a server of its own: they mostly wait, and each board shares the machine with a WebGL drawn in software. */
 export default defineConfig({
   testDir: "e2e",
   timeout: 90_000,
   expect: { timeout: 20_000 },
-  workers: 1,
+  workers: 2,
   fullyParallel: false,
   retries: 0,
   reporter: [["list"]],

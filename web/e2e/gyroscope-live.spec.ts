@@ -11,11 +11,11 @@ const BENCH = {
 
 /** The faults a bank knows, and the hypothesis it must come to. */
 const KNOWN = [
-  ["Quadrature", "quadrature+500"],
-  ["Loss of drive", "drive-50"],
-  ["Stiffness of the sensing axis", "sense+1"],
-  ["Leak of the package", "damping-x2"],
-];
+  ["Quadrature", /^quadrature \+500\s/],
+  ["Loss of drive", /^drive gain −50\s%$/],
+  ["Stiffness of the sensing axis", /^stiffness along y \+1\s%$/],
+  ["Leak of the package", /^damping \+100\s%$/],
+] as const;
 
 const DRIVE = ["Drive tracking", "Forced drive", "Drive loop (amplitude and phase)"];
 const SENSE = [

@@ -27,7 +27,7 @@ const isResized = ({ grid: a }: SerializedDockview, { grid: b }: SerializedDockv
   a.width !== b.width || a.height !== b.height;
 
 /** Changes of the layout that can be taken back and made again. */
-class LayoutHistory {
+export class LayoutHistory {
   private past: Kept[] = [];
   private future: Kept[] = [];
   private now: Kept | undefined;

@@ -12,6 +12,9 @@ const NOUNS: Partial<Record<string, string>> = {
 
 let known: { diagnosers: Diagnosers; words: Map<string, string> } | undefined;
 
+/** Abbreviations have a number in them; a name of words is somebody's choice, and stays. */
+const ABBREVIATION = /\d/;
+
 /** A hypothesis in words: "m+5" reads "mass +5 %"; one that says nothing of the device keeps its name. */
 export function hypothesisWords(name: string, diagnosers = useBench.getState().bench?.diagnosers): string {
   if (!diagnosers) return name;
@@ -32,7 +35,7 @@ function wordsOf(diagnosers: Diagnosers): Map<string, string> {
   for (const { names, factors } of Object.values(diagnosers))
     names.forEach((name, i) => {
       const said = Object.entries(factors[i] ?? {}).map(([factor, value]) => factorWords(factor, value));
-      if (said.length > 0 && !words.has(name)) words.set(name, said.join(", "));
+      if (said.length > 0 && ABBREVIATION.test(name) && !words.has(name)) words.set(name, said.join(", "));
     });
   return words;
 }
