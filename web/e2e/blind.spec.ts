@@ -1,5 +1,5 @@
 import type { Page } from "@playwright/test";
-import { expect, HYPOTHESES, test } from "./lab";
+import { expect, HYPOTHESES, inWords, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
 interface Shown {
@@ -24,14 +24,8 @@ const readable = (page: Page) =>
       .filter((text) => text.trim() !== "");
   });
 
-/** What a hypothesis is called: "m+5" is "mass +5 %". */
-const words = (name: string) =>
-  name.replace(/^([mkb])\+(\d+)$/, (_, factor, percent) => `${FACTORS[factor]} +${percent}\u00a0%`);
-
-const FACTORS: Record<string, string> = { m: "mass", k: "stiffness", b: "damping" };
-
 const TELLING = [
-  ...HYPOTHESES.map(({ name }) => words(name)).filter((name) => name !== "healthy"),
+  ...HYPOTHESES.map(({ name }) => inWords(name)).filter((name) => name !== "healthy"),
   ...HYPOTHESES.map(({ name }) => name).filter((name) => name !== "healthy"),
   ...["healthy", "added_mass", "acts", "found ", "the truth is", "false switches"],
 ];
@@ -77,9 +71,9 @@ test("no panel tells the fault or a verdict until an answer is committed", async
   const said = await verdict();
   await page.getByRole("tab", { name: "Blind diagnosis" }).click();
   const panel = page.getByRole("region", { name: "Blind diagnosis" });
-  await panel.getByRole("radio", { name: words(said), exact: true }).check();
+  await panel.getByRole("radio", { name: inWords(said), exact: true }).check();
   await panel.getByRole("button", { name: "Commit the answer" }).click();
-  await expect(panel.getByText(new RegExp(`kalman said ${words(said).replace("+", "\\+")}`))).toBeVisible();
+  await expect(panel.getByText(new RegExp(`kalman said ${inWords(said).replace("+", "\\+")}`))).toBeVisible();
   await page.getByRole("tab", { name: "Diagnosis", exact: true }).click();
   await expect(page.getByRole("region", { name: "Diagnosis by kalman" })).toBeVisible();
   await page.getByRole("tab", { name: "Events" }).click();
@@ -112,7 +106,7 @@ test("the game stays with its bench, and ends with truth and points", async ({ p
   const letter: Record<string, string> = { added_mass: "m", stiffness: "k", damping: "b" };
   const truth = `${letter[faults[0].name]}+${Math.round(100 * faults[0].severity)}`;
   const panel = page.getByRole("region", { name: "Blind diagnosis" });
-  await panel.getByRole("radio", { name: words(truth), exact: true }).check();
+  await panel.getByRole("radio", { name: inWords(truth), exact: true }).check();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
   await panel.getByRole("button", { name: "Commit the answer" }).click();
   await expect(panel.getByText(/^Right: it is .* [89]\d\spoints$/)).toBeVisible();

@@ -71,3 +71,9 @@ export const HYPOTHESES = [
   { name: "k+10", stiffness: 1.1 },
   { name: "b+30", damping: 1.3 },
 ];
+
+const FACTORS: Record<string, string> = { m: "mass", k: "stiffness", b: "damping" };
+
+/** What the page calls a hypothesis: "m+5" is "mass +5 %". */
+export const inWords = (name: string): string =>
+  name.replace(/^([mkb])\+(\d+)$/, (_, factor, percent) => `${FACTORS[factor]} +${percent}\u00a0%`);

@@ -11,7 +11,7 @@ test("a panel is closed at its tab and comes back in its place", async ({ page, 
   await named("Voltage").locator(".dock-close").click(); // alone in its group, which goes with it
   await expect(named("Voltage")).toHaveCount(0);
   await expect(page.getByText("Voltage closed.")).toBeVisible();
-  await page.getByRole("button", { name: "Undo" }).click();
+  await page.getByRole("alert").getByRole("button", { name: "Undo" }).click();
   await expect.poll(() => tabs.allTextContents()).toEqual(before);
   expect((await named("Voltage").boundingBox())?.y).toBeCloseTo(place?.y ?? 0, -1);
 
@@ -23,7 +23,7 @@ test("a panel is closed at its tab and comes back in its place", async ({ page, 
   await expect(named("Events")).toHaveCount(0);
   await expect(page.locator("[role=tab]:focus")).toHaveAttribute("aria-selected", "true");
   await named("Environment").click(); // something else has changed meanwhile
-  await page.getByRole("button", { name: "Undo" }).click();
+  await page.getByRole("alert").getByRole("button", { name: "Undo" }).click();
   await expect(named("Events")).toHaveAttribute("aria-selected", "true");
   expect((await tabs.allTextContents()).sort()).toEqual(before.sort());
 });

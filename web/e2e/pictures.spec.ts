@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import type { Locator, Page } from "@playwright/test";
-import { expect, HYPOTHESES, pictureOf, test } from "./lab";
+import { expect, HYPOTHESES, inWords, pictureOf, test } from "./lab";
 
 test.use({ colorScheme: "dark" });
 
@@ -64,10 +64,10 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
   };
   const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
-  await expect(lanes.getByText(/^m\+5/).first()).toBeVisible();
+  await expect(lanes.getByText(/^mass \+5/).first()).toBeVisible();
   const told = await svgOf(page, lanes);
   expect(told).toEqual(expect.arrayContaining(["probability of each hypothesis, 0 to 1", "time of the device, ms"]));
-  expect(told).toEqual(expect.arrayContaining(HYPOTHESES.map(({ name }) => name)));
+  expect(told).toEqual(expect.arrayContaining(HYPOTHESES.map(({ name }) => inWords(name))));
   expect(told.some((text) => /^at [\d\s.]+\sms: .*mass/i.test(text))).toBe(true);
 
   const spectrum = await front("Spectrum");

@@ -20,6 +20,6 @@ test("diagnosers race on one axis: each with its delay, its place and its score"
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 
   await page.getByRole("combobox", { name: "Diagnosers shown" }).selectOption("imm");
-  await expect(page.getByRole("img", { name: /^Probability of healthy, m\+5/ })).toBeVisible();
+  await expect(page.getByRole("img", { name: /^Probability of healthy, mass \+5/ })).toBeVisible();
   await expect(kalman).toHaveCount(0);
 });

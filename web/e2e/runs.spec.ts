@@ -8,11 +8,11 @@ test("a run is started from the page, and its files are offered", async ({ page,
   await page.getByRole("combobox", { name: "With other values 1: path" }).fill("sensor.noise");
   await page.getByRole("option", { name: "sensor.noise_um" }).click();
   await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("-1");
-  await page.getByRole("button", { name: "Run", exact: true }).click();
+  await page.getByRole("form", { name: "Start" }).getByRole("button", { name: "Run", exact: true }).click();
   await expect(page.getByRole("form").getByRole("alert")).toContainText("sensor.noise_um");
 
   await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("0.06");
-  await page.getByRole("button", { name: "Run", exact: true }).click();
+  await page.getByRole("form", { name: "Start" }).getByRole("button", { name: "Run", exact: true }).click();
   const result = page.getByRole("region", { name: "Result" });
   await expect(page).toHaveURL(/[?&]run=/);
   const id = new URL(page.url()).searchParams.get("run");

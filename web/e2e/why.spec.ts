@@ -88,7 +88,7 @@ test("why opens beside the lanes in every layout, and goes to where the verdict 
 
   const faults = page.locator("section[aria-label='Faults']");
   await faults.getByRole("button", { name: /^Inject .*: Added mass$/ }).click();
-  await expect(lanesOf(page).locator("dd").first()).toHaveText("m+5");
+  await expect(lanesOf(page).locator("dd").first()).toHaveText(/^mass \+5\s%$/);
   await page.getByRole("button", { name: "Pause" }).click();
   const why = whyOf(page);
   await why.getByRole("button", { name: "Latest" }).click();
@@ -96,7 +96,7 @@ test("why opens beside the lanes in every layout, and goes to where the verdict 
   const turn = why.getByRole("button", { name: "The sample where it turned" });
   await turn.click();
   await expect(why.getByText(/The verdict turned at this sample, from /)).toBeVisible();
-  await expect(why.getByText(/^m\+5 wins/)).toBeVisible();
+  await expect(why.getByText(/^Mass \+5\s% wins/)).toBeVisible();
   await expect(turn).toBeDisabled();
   expect(Number(await why.getByRole("textbox", { name: "Sample" }).inputValue())).toBeLessThan(last);
   await why.getByRole("textbox", { name: "Sample" }).fill("1");

@@ -4,6 +4,7 @@ import { api } from "../../api/api";
 import type { Comparison, Recording } from "../../api/types";
 import { showError } from "../../bench/send";
 import { formatCount, formatNumber, formatShort, formatSi } from "../../ui/format";
+import shared from "../../ui/row-list.module.css";
 import styles from "./recordings.module.css";
 
 const SHOWN = 60;
@@ -29,7 +30,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
   const failed = rows.filter((row) => !row.ok).length;
   return (
     <section className={styles.compare} aria-label="Comparison">
-      <div className={styles.form}>
+      <div className={shared.form}>
         <b>{first.name} with</b>
         <NativeSelect
           size="xs"

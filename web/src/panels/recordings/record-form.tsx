@@ -5,8 +5,8 @@ import { api } from "../../api/api";
 import { layoutNow } from "../../bench/dock";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
+import rows from "../../ui/row-list.module.css";
 import { ConditionFields } from "../condition/condition-fields";
-import styles from "./recordings.module.css";
 import { NEW_DRAFT, wantedOf } from "./wanted";
 
 /** What to record: now or when a condition holds, with how much of the past, and for how long. */
@@ -36,7 +36,7 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
 
   return (
     <form
-      className={styles.form}
+      className={rows.form}
       aria-label="Record"
       onSubmit={(event) => {
         event.preventDefault();

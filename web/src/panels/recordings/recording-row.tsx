@@ -7,6 +7,7 @@ import { openReplay } from "../../bench/open-replay";
 import { showError } from "../../bench/send";
 import { Downloads, TRACE_FORMATS } from "../../ui/downloads";
 import { formatCount, formatMoment, formatSi } from "../../ui/format";
+import rows from "../../ui/row-list.module.css";
 import styles from "./recordings.module.css";
 
 /** How a recording ended that did not end as it was meant to. */
@@ -39,8 +40,8 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
       api.removeRecording(id).then(onChanged, showError);
   };
   return (
-    <li className={styles.row} data-state={state}>
-      <div className={styles.what}>
+    <li className={`${rows.row} ${styles.recording}`} data-state={state}>
+      <div className={rows.what}>
         <b>{name}</b>
         <span>
           {state === "armed"
@@ -63,7 +64,7 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
         </span>
       </div>
       {!open && (
-        <div className={styles.do}>
+        <div className={rows.do}>
           <Downloads href={(format) => `./api/v1/recordings/${id}/trace?format=${format}`} formats={TRACE_FORMATS} />
           <Button
             size="compact-xs"

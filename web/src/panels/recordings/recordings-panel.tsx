@@ -4,11 +4,11 @@ import { useAnswer } from "../../api/queries";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { usePanelVisible } from "../../ui/panel-visible";
+import rows from "../../ui/row-list.module.css";
 import { Stale } from "../../ui/stale";
 import { CompareView } from "./compare-view";
 import { RecordForm } from "./record-form";
 import { RecordingRow } from "./recording-row";
-import styles from "./recordings.module.css";
 
 const BUSY_MS = 1000;
 const CALM_MS = 10_000;
@@ -29,7 +29,7 @@ function Recordings() {
   const comparing = value?.find((one) => one.id === first);
 
   return (
-    <section className={styles.panel} aria-label="Recordings">
+    <section className={rows.panel} aria-label="Recordings">
       {bench && !replay && <RecordForm onChanged={again} />}
       <Stale error={error} since={since} onRetry={again} />
       {comparing && value && (
@@ -40,7 +40,7 @@ function Recordings() {
           Record now, or set a condition and leave it waiting: the moments before it are kept too.
         </EmptyState>
       ) : (
-        <ul className={styles.list}>
+        <ul className={rows.list}>
           {value?.map((recording) => (
             <RecordingRow
               key={recording.id}

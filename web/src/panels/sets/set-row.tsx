@@ -7,7 +7,7 @@ import { announce } from "../../bench/announce";
 import { send, showError } from "../../bench/send";
 import { tellUndoable } from "../../bench/tell";
 import { formatCount } from "../../ui/format";
-import styles from "./sets.module.css";
+import rows from "../../ui/row-list.module.css";
 
 interface SetRowProps {
   set: ParameterSet;
@@ -41,9 +41,9 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
       void api.removeParameterSet(set.id).then(onChanged, showError);
   };
   return (
-    <li className={styles.row}>
+    <li className={rows.row}>
       {name === undefined ? (
-        <div className={styles.what}>
+        <div className={rows.what}>
           <b>{set.name}</b>
           <span>
             from {set.scenario}, {new Date(set.created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
@@ -51,7 +51,7 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
         </div>
       ) : (
         <TextInput
-          className={styles.what}
+          className={rows.what}
           size="xs"
           aria-label={`New name of ${set.name}`}
           autoFocus
@@ -62,7 +62,7 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
           onKeyDown={(e) => e.key === "Enter" && rename()}
         />
       )}
-      <div className={styles.do}>
+      <div className={rows.do}>
         <Button size="compact-xs" onClick={apply} aria-label={`Put ${set.name} on the bench`}>
           Put on the bench
         </Button>

@@ -6,10 +6,10 @@ import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { usePanelVisible } from "../../ui/panel-visible";
+import rows from "../../ui/row-list.module.css";
 import { Stale } from "../../ui/stale";
 import { SetDifference } from "./set-difference";
 import { SetRow } from "./set-row";
-import styles from "./sets.module.css";
 
 const EVERY_MS = 10_000;
 
@@ -34,9 +34,9 @@ function Sets() {
     }
   };
   return (
-    <section className={styles.panel} aria-label="Parameter sets">
+    <section className={rows.panel} aria-label="Parameter sets">
       <form
-        className={styles.form}
+        className={rows.form}
         onSubmit={(event) => {
           event.preventDefault();
           void keep();
@@ -64,7 +64,7 @@ function Sets() {
           in one tick.
         </EmptyState>
       ) : (
-        <ul className={styles.list}>
+        <ul className={rows.list}>
           {sets?.map((one) => (
             <SetRow key={one.id} set={one} bench={bench} onCompare={() => setChosen(one.id)} onChanged={again} />
           ))}
