@@ -37,7 +37,7 @@ for (const prefix of ["", "/bench"]) {
       const first = await drawn();
       await expect.poll(drawn, { timeout: 60_000 }).not.toBe(first);
 
-      await page.getByRole("button", { name: "Share this experiment" }).click();
+      await page.locator("body").press("Shift+S");
       await expect(page.getByRole("textbox", { name: "Link", exact: true })).toHaveValue(
         new RegExp(`^${base}\\?link=[2-9a-z]{8}$`),
       );

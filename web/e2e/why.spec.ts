@@ -96,7 +96,7 @@ test("why opens beside the lanes in every layout, and goes to where the verdict 
   const turn = why.getByRole("button", { name: "The sample where it turned" });
   await turn.click();
   await expect(why.getByText(/The verdict turned at this sample, from /)).toBeVisible();
-  await expect(why.getByText(/^Mass \+5\s% wins/)).toBeVisible();
+  await expect(why.getByText(/^Mass \+5\s% (wins|stays ahead)/)).toBeVisible();
   await expect(turn).toBeDisabled();
   expect(Number(await why.getByRole("textbox", { name: "Sample" }).inputValue())).toBeLessThan(last);
   await why.getByRole("textbox", { name: "Sample" }).fill("1");
