@@ -32,6 +32,11 @@ class Expectation(Table):
     value: float | None = None
     tolerance: float | None = Field(None, ge=0)
     published: str = ""
+    published_value: float | None = None
+    published_range: tuple[float, float] | None = None
+    fitted: list[str] = []
+    compare: Literal["open_loop", "pid", "none"] | None = None
+    reason: str = ""
     verdict: Verdict | None = None
     note: str = ""
 
