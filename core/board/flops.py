@@ -72,7 +72,10 @@ class Counted(float):
     __rmul__ = __mul__
 
 
-COUNTED = (elementary.exp, elementary.log, elementary.sin, elementary.cos, elementary.atan2, math.sqrt)
+COUNTED = [
+    getattr(function, "py_func", function)
+    for function in (elementary.exp, elementary.log, elementary.sin, elementary.cos, elementary.atan2, math.sqrt)
+]
 """Functions that are counted; of others, as of rounding, it is not known what they cost."""
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 from core.block import Context, Oscillator
 from core.device.oscillator import held, within
+from core.elementary import exp
 from core.kernel import flush_tiny, kernel
 from core.ports import BlockPorts, output, reads
 from core.record import Record
@@ -158,7 +157,7 @@ def model_filter(context: Context) -> Tick:
 def lag(pole: float, h: float, analogue: bool) -> Lag:
     """Pack a lag with its pole in 1/w0, for an interval in 1/w0."""
     packed = Lag.blank()
-    packed.decay = math.exp(-pole * h)
+    packed.decay = exp(-pole * h)
     packed.push = (1.0 - packed.decay) / pole
     packed.middle, _, packed.end, _ = within(0.0, 1.0, pole, h) if analogue else (0.0, 0.0, 0.0, 0.0)
     return packed

@@ -7,7 +7,7 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, parameter
 from core.control.two_axis import RatePorts, Sense, components, fill_sense, share_kept, two_axis
-from core.elementary import cos, sin
+from core.elementary import atan2, cos, sin
 from core.ports import output, tap
 from core.record import Record
 
@@ -80,12 +80,12 @@ class ForceToRebalance(Block):
         device = two_axis(context)
         p = cls.Packed.blank()
         fill_sense(p.sense, device)
-        size, phase = abs(complex(p.sense.spring, p.sense.damper)), math.atan2(p.sense.damper, p.sense.spring)
+        size, phase = abs(complex(p.sense.spring, p.sense.damper)), atan2(p.sense.damper, p.sense.spring)
         gain = params.integral_gain_per_ms3
         if gain is None:
             gain = USUAL_SHARE * size / device.mass_y * device.damping_y / (2.0 * device.mass_y)
         per_sample = gain * device.mass_y * context.dt_ms
-        p.gain_cosine, p.gain_sine = per_sample * math.cos(phase), per_sample * math.sin(phase)
+        p.gain_cosine, p.gain_sine = per_sample * cos(phase), per_sample * sin(phase)
         p.lead = math.radians(params.phase_error_deg)
         p.ahead = 0.5 * context.dt_ms if params.advance else 0.0
         p.kept = share_kept(1e3 / (2.0 * math.pi * params.bandwidth_hz), context.dt_ms)

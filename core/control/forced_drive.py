@@ -7,7 +7,7 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, parameter
 from core.control.two_axis import DrivePorts, two_axis
-from core.phase import sine_of
+from core.elementary import sin_of_turns
 from core.ports import output
 from core.record import Record
 from core.units import hz_of_rad_ms
@@ -65,11 +65,11 @@ class ForcedDrive(Block):
     def step(p: Packed, s: Record, x: ForcedDrive.Ports) -> None:
         """Play the sine."""
         turns = p.cycles * x.time_ms + p.start
-        x.x = p.force * sine_of(turns)
-        x.x_middle = p.force * sine_of(turns + 0.5 * p.cycles * p.dt_ms)
-        x.x_end = p.force * sine_of(turns + p.cycles * p.dt_ms)
-        x.sine = sine_of(turns - 0.25)
-        x.cosine = sine_of(turns)
+        x.x = p.force * sin_of_turns(turns)
+        x.x_middle = p.force * sin_of_turns(turns + 0.5 * p.cycles * p.dt_ms)
+        x.x_end = p.force * sin_of_turns(turns + p.cycles * p.dt_ms)
+        x.sine = sin_of_turns(turns - 0.25)
+        x.cosine = sin_of_turns(turns)
         omega = 2.0 * math.pi * p.cycles
         w = x.x_velocity / omega if omega > 0.0 else 0.0
         x.amplitude = math.sqrt(x.x_measured * x.x_measured + w * w)

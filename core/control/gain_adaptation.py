@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Literal
 
 from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
 from core.control.controller import ControllerPorts
+from core.elementary import exp
 from core.kernel import flush_tiny
 from core.ports import reads, tap
 from core.record import Record
@@ -121,7 +121,7 @@ class GainAdaptation(Block):
         p = cls.Packed.blank()
         p.rule = RULES[rule]
         p.h = context.dt_ms * context.device.natural_frequency
-        p.decay = math.exp(-p.h / params.filter_time)
+        p.decay = exp(-p.h / params.filter_time)
         p.ideal = context.model.static_gain / context.device.static_gain
         p.algebraic = params.rule == "mit" and params.form == "printed"
         return p

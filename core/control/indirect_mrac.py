@@ -20,6 +20,7 @@ from core.control.controller import (
     true_plant,
     unsuited_second_order,
 )
+from core.elementary import exp
 from core.estimation import (
     DrivenFilter,
     diagonal,
@@ -144,7 +145,7 @@ class IndirectMrac(Block):
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
         fill_normalised(p, context)
-        p.forgetting = math.exp(-1e-3 * params.forgetting_rate * context.dt_ms)
+        p.forgetting = exp(-1e-3 * params.forgetting_rate * context.dt_ms)
         p.noise = p.forgetting / p.h
         floor = params.gain_floor * p.plant.gain
         p.low, p.high = (floor, math.inf) if p.plant.gain > 0.0 else (-math.inf, floor)

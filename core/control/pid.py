@@ -7,6 +7,7 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
 from core.control.controller import FIRST_ORDER, ControllerPorts, normalised
+from core.elementary import exp
 from core.kernel import flush_tiny
 from core.ports import tap
 from core.record import Record
@@ -81,7 +82,7 @@ class Pid(Block):
         p = cls.Packed.blank()
         p.kp, p.ki, p.kd = gains
         p.dt_ms = context.dt_ms
-        p.decay = math.exp(-context.dt_ms * w0 / params.derivative_filter)
+        p.decay = exp(-context.dt_ms * w0 / params.derivative_filter)
         p.limit_v = context.limit_v
         return p
 

@@ -8,6 +8,7 @@ from typing import Literal
 from core.block import BlockParams, Context, Equation, parameter
 from core.control.controller import ControllerPorts, NormalisedPacked, VelocityPorts, fill_normalised, saturated
 from core.control.velocity import PackedVelocity, Source, VelocityState, velocity_of, velocity_source
+from core.elementary import exp
 from core.kernel import flush_tiny, kernel
 from core.ports import tap
 from core.record import Record
@@ -115,7 +116,7 @@ def fill_switching(p: SwitchingPacked, params: SwitchingParams, context: Context
     fill_normalised(p, context)
     p.sign = math.copysign(1.0, p.plant.gain)
     p.surface_gain = math.sqrt(params.surface_weight)
-    p.fade = math.exp(-p.h / FADING)
+    p.fade = exp(-p.h / FADING)
     p.velocity = velocity_of(params.velocity, context)
 
 

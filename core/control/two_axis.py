@@ -8,11 +8,11 @@ The drive slot swings x as :math:`x=A\sin\theta`; its controllers put out the ca
 
 from __future__ import annotations
 
-import math
 from typing import cast
 
 from core.block import Context
 from core.device.two_axis import TwoAxis
+from core.elementary import exp
 from core.kernel import inlined
 from core.ports import BlockPorts, output, reads
 from core.record import Record
@@ -97,4 +97,4 @@ def components(q: float, v: float, omega: float, sine: float, cosine: float) -> 
 
 def share_kept(time_ms: float, dt_ms: float) -> float:
     """Return the share that a low-pass with this time constant keeps from sample to sample."""
-    return math.exp(-dt_ms / time_ms)
+    return exp(-dt_ms / time_ms)

@@ -14,8 +14,8 @@ from typing import Any
 
 from core.block import Context
 from core.control.two_axis import MeasuredPorts, two_axis
+from core.elementary import sin_of_turns
 from core.kernel import inlined
-from core.phase import sine_of
 from core.ports import output, tap
 from core.record import Record
 from core.units import RAD_MS_PER_DEG_S
@@ -103,10 +103,10 @@ def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
     x = p.cycles_x * t
     y = p.cycles_y * t
     return (
-        p.amplitude_x * sine_of(x),
-        p.amplitude_y * sine_of(y),
-        p.amplitude_x * p.omega_x * sine_of(x + 0.25),
-        p.amplitude_y * p.omega_y * sine_of(y + 0.25),
+        p.amplitude_x * sin_of_turns(x),
+        p.amplitude_y * sin_of_turns(y),
+        p.amplitude_x * p.omega_x * sin_of_turns(x + 0.25),
+        p.amplitude_y * p.omega_y * sin_of_turns(y + 0.25),
     )
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Literal
 
 import numpy as np
 
 from core.block import Context, parameter
 from core.device.oscillator import held, within
+from core.elementary import exp
+from core.errors import InputError
 from core.kernel import flush_tiny, kernel
+from core.matrix import product, solved
 from core.record import Record, Vector, vector
 from core.voltage import Motion, Tick, add_moves
 
@@ -68,11 +70,11 @@ def velocity_of(source: Source, context: Context) -> PackedVelocity:
         p.source = TRUE  # a law for a plant without mass feeds back no velocity
         return p
     phi = np.array([[p.phi11, p.phi12, p.by_acceleration1], [p.phi21, p.phi22, p.by_acceleration2], [0.0, 0.0, 1.0]])
-    shifted = phi - math.exp(-OBSERVER_POLE * p.rate * h) * np.eye(3)
-    seen = np.array([phi[0], (phi @ phi)[0], (phi @ phi @ phi)[0]])
+    shifted = phi - exp(-OBSERVER_POLE * p.rate * h) * np.eye(3)
+    seen = np.array([phi[0], product(phi, phi)[0], product(phi, phi, phi)[0]])
     try:
-        p.correct[:] = shifted @ shifted @ shifted @ np.linalg.solve(seen, np.array([0.0, 0.0, 1.0]))
-    except np.linalg.LinAlgError:
+        p.correct[:] = product(shifted, shifted, shifted, solved(seen, np.array([[0.0], [0.0], [1.0]])))[:, 0]
+    except InputError:
         p.correct[0] = 1.0  # all motion dies within a sample: samples show only the displacement
     return p
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, parameter
 from core.control.two_axis import MeasuredPorts, share_kept, two_axis
-from core.elementary import atan2, floor
+from core.elementary import atan2, cos, floor, sin
 from core.ports import output, tap
 from core.record import Record
 from core.units import RAD_MS_PER_DEG_S
@@ -131,8 +131,8 @@ class WholeAngle(Block):
         p.energy_gain, p.area_gain = params.energy_gain_per_ms, params.area_gain_per_ms
         p.tuning, p.dt_ms = params.tuning_gain * context.dt_ms, context.dt_ms
         half = 0.5 * omega * context.dt_ms
-        p.cosine, p.sine = math.cos(half), math.sin(half)
-        held = math.sin(half) / half
+        p.cosine, p.sine = cos(half), sin(half)
+        held = sin(half) / half
         p.mass_x, p.mass_y = device.mass / held, mean / held
         p.kept = share_kept(1e3 / (2.0 * math.pi * params.bandwidth_hz), context.dt_ms)
         return p

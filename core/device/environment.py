@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from core.elementary import exp, log
 from core.kernel import kernel
 
 GAS_CONSTANT_AIR = 287.05
@@ -138,7 +139,7 @@ def squeezed_share(pressure_pa: float, temperature_k: float, gap_um: float) -> f
     paths. The gap is taken at rest; the gas in a gap that closes is rarefied a little more.
     """
     knudsen = mean_free_path_um(pressure_pa, temperature_k) / gap_um
-    rarefied = 1.0 + 9.638 * math.exp(1.159 * math.log(knudsen))
+    rarefied = 1.0 + 9.638 * exp(1.159 * log(knudsen))
     return viscosity(temperature_k) / viscosity(ROOM_K) / rarefied
 
 
@@ -160,8 +161,8 @@ def adhesion_j_m2(humidity_pct: float) -> float:
 
     The ends are recalled, the shape between them is assumed; the text says only that humidity increases stiction.
     """
-    wet = 1.0 / (1.0 + math.exp(-(humidity_pct - CONDENSES_PCT) / CONDENSES_OVER_PCT))
-    return DRY_J_M2 * math.pow(WET_J_M2 / DRY_J_M2, wet)
+    wet = 1.0 / (1.0 + exp(-(humidity_pct - CONDENSES_PCT) / CONDENSES_OVER_PCT))
+    return DRY_J_M2 * exp(wet * log(WET_J_M2 / DRY_J_M2))
 
 
 def friction_scale(humidity_pct: float) -> float:
@@ -200,4 +201,4 @@ def ageing_ratio(weeks: float) -> float:
     The text gives the 42.8 % after four weeks (3.1.3.2); the exponential and its time constant are assumed. As the
     displacement at rest is F/k, ageing is modelled as a stiffness k/r.
     """
-    return 1.0 - AGED_SHARE * (1.0 - math.exp(-weeks / AGEING_WEEKS)) / (1.0 - math.exp(-AGED_WEEKS / AGEING_WEEKS))
+    return 1.0 - AGED_SHARE * (1.0 - exp(-weeks / AGEING_WEEKS)) / (1.0 - exp(-AGED_WEEKS / AGEING_WEEKS))

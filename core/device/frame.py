@@ -8,6 +8,7 @@ lateral stiffness with travel.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from core.block import FloatArray
 from core.device.geometry import Geometry
+from core.matrix import product, solved
 
 Beam = Literal["inner", "outer"]
 SEGMENT = (-1.5, -0.5, 0.5, 1.5)
@@ -116,16 +118,16 @@ def stiffness(geometry: Geometry, damage: Damage | None = None) -> FloatArray:
         In (x, y, theta): N/m, uN/rad for the couplings, uN um/rad for the rotation.
     """
     whole, carried = _assembled(geometry, _mesh(geometry, damage or Damage()))
-    reduced = carried.T @ whole @ carried
+    reduced = product(carried.T, whole, carried)
     edge, corner = reduced[:-3, -3:], reduced[-3:, -3:]
-    return np.asarray(corner + edge.T @ _following(reduced))
+    return corner + product(edge.T, _following(reduced))
 
 
 def shape(geometry: Geometry, damage: Damage | None = None) -> Shape:
     """Return the displacement of every node of the suspension when the shuttle moves slowly."""
     mesh = _mesh(geometry, damage or Damage())
     whole, carried = _assembled(geometry, mesh)
-    response = carried @ np.vstack([_following(carried.T @ whole @ carried), np.eye(3)])
+    response = product(carried, np.vstack([_following(product(carried.T, whole, carried)), np.eye(3)]))
     return Shape(np.array(mesh.points), [(a, b) for a, b, _, _ in mesh.elements], response.reshape(-1, 3, 3))
 
 
@@ -151,13 +153,13 @@ def _assembled(geometry: Geometry, mesh: _Mesh) -> tuple[FloatArray, FloatArray]
 
 def _following(reduced: FloatArray) -> FloatArray:
     """Return the displacement of the free nodes per displacement of the shuttle."""
-    return np.asarray(-np.linalg.lstsq(reduced[:-3, :-3], reduced[:-3, -3:], rcond=None)[0])
+    return -solved(reduced[:-3, :-3], reduced[:-3, -3:])
 
 
 def along_x(stiffness: FloatArray) -> float:
     """Return the stiffness along x with the shuttle free to move sideways and to turn, N/m."""
     side = stiffness[1:, 0]
-    return float(stiffness[0, 0] - side @ np.linalg.solve(stiffness[1:, 1:], side))
+    return float(stiffness[0, 0] - product(side[None], solved(stiffness[1:, 1:], side[:, None])).item())
 
 
 def stiffness_ratio(geometry: Geometry, damage: Damage) -> float:
@@ -168,7 +170,7 @@ def stiffness_ratio(geometry: Geometry, damage: Damage) -> float:
 def _element(a: tuple[float, float], b: tuple[float, float], modulus: float, width: float, depth: float) -> FloatArray:
     """Return the stiffness of one beam element in the axes of the device."""
     dx, dy = b[0] - a[0], b[1] - a[1]
-    length = float(np.hypot(dx, dy))
+    length = math.sqrt(dx * dx + dy * dy)
     axial = modulus * width * depth / length
     bend = modulus * depth * width * width * width / 12.0 / (length * length * length)
     near, far = 4.0 * length * length * bend, 2.0 * length * length * bend
@@ -186,4 +188,4 @@ def _element(a: tuple[float, float], b: tuple[float, float], modulus: float, wid
     c, s = dx / length, dy / length
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     both = np.kron(np.eye(2), turn)
-    return np.asarray(both.T @ local @ both)
+    return product(both.T, local, both)

@@ -11,6 +11,7 @@ from core.block import BlockParams, parameter
 from core.device.environment import ROOM_K
 from core.device.ranges import DampingNsM, LengthUm, MassKg, StiffnessNM
 from core.device.two_axis import TwoAxis
+from core.elementary import cos, sin
 from core.units import (
     PM_PER_UM,
     damping_un_ms_um,
@@ -138,6 +139,6 @@ class GyroscopeTable(BlockParams):
 
 def turned(x: float, xy: float, y: float, angle_deg: float) -> tuple[float, float, float]:
     r"""Return the entries of a symmetric matrix turned by an angle, :math:`RAR^T` (6.1.3)."""
-    c, s = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
+    c, s = cos(math.radians(angle_deg)), sin(math.radians(angle_deg))
     cross = (x - y) * s * c + xy * (c * c - s * s)
     return x * c * c + y * s * s - 2.0 * xy * s * c, cross, x * s * s + y * c * c + 2.0 * xy * s * c

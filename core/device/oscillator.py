@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.linalg import expm
 
+from core.elementary import cos, exp, expm1, sin
 from core.kernel import kernel
+from core.matrix import exponential
 
 
 @kernel
@@ -43,14 +44,14 @@ def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple
         apart = math.copysign(2.0 * math.sqrt(-discriminant), sigma)
         fast = sigma + 0.5 * apart
         slow = square / fast
-        c = 0.5 * (math.exp(-slow * h) + math.exp(-fast * h))
-        s = math.exp(-slow * h) * -math.expm1(-apart * h) / apart
+        c = 0.5 * (exp(-slow * h) + exp(-fast * h))
+        s = exp(-slow * h) * -expm1(-apart * h) / apart
         return c + sigma * s, s, -square * s, c - sigma * s
-    decay = math.exp(-sigma * h)
+    decay = exp(-sigma * h)
     if discriminant > 0.0:
         omega = math.sqrt(discriminant)
-        c = math.cos(omega * h)
-        s = math.sin(omega * h) / omega
+        c = cos(omega * h)
+        s = sin(omega * h) / omega
     else:
         c = 1.0
         s = h
@@ -82,8 +83,8 @@ def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float
         phi11, phi12, phi21, phi22, gamma1 (um/uN), gamma2 (um/ms/uN); without mass all but phi11 and gamma1 are 0.
     """
     if mass == 0.0:
-        decay = math.exp(-stiffness * h / damping)
-        reach = h / damping if stiffness == 0.0 else -math.expm1(-stiffness * h / damping) / stiffness
+        decay = exp(-stiffness * h / damping)
+        reach = h / damping if stiffness == 0.0 else -expm1(-stiffness * h / damping) / stiffness
         return decay, 0.0, 0.0, 0.0, reach, 0.0
     a, b, c, d = transition(mass, damping, stiffness, h)
     if stiffness != 0.0:
@@ -117,7 +118,7 @@ def parabola(
         a[1, :3] = np.array([-stiffness, -damping, gain]) / mass
     else:
         a[0, :3] = np.array([-stiffness, 0.0, gain]) / damping
-    states = expm(a * h)
+    states = exponential(a * h)
     return states[0, 3], states[1, 3], states[0, 4], states[1, 4]
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.block import FloatArray, Oscillator
+from core.elementary import atan2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +106,7 @@ class TwoAxis(Oscillator):
         """Return the squared frequencies of the undamped modes, the lowest first, without cancellation."""
         x, y = self.stiffness / self.mass, self.stiffness_y / self.mass_y
         cross = self.stiffness_xy * self.stiffness_xy / (self.mass * self.mass_y)
-        reach = 0.5 * math.hypot(x - y, 2.0 * math.sqrt(cross))
+        reach = 0.5 * math.sqrt((x - y) * (x - y) + 4.0 * cross)
         shift = 2.0 * cross / (abs(x - y) + 2.0 * reach) if cross > 0.0 else 0.0
         return min(x, y) - shift, max(x, y) + shift
 
@@ -115,7 +116,9 @@ class TwoAxis(Oscillator):
         if self.stiffness_xy == 0.0:
             return 0.0
         apart = self.stiffness - self.stiffness_y
-        return 0.5 * math.atan(2.0 * self.stiffness_xy / apart) if apart != 0.0 else 0.25 * math.pi
+        if apart == 0.0:
+            return 0.25 * math.pi
+        return 0.5 * atan2(math.copysign(2.0, apart) * self.stiffness_xy, abs(apart))
 
     def sense(self, omega: float) -> complex:
         r"""Return the dynamic stiffness of y, uN/um, :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`."""
@@ -128,7 +131,7 @@ class TwoAxis(Oscillator):
     def tilt(self, omega: float) -> float:
         r"""Return the angle of the long axis of the locus, rad, :math:`\tfrac12\arctan2\mathrm{Re}G/(1-|G|^2)`."""
         g = self.coupled(omega)
-        return 0.5 * math.atan2(2.0 * g.real, 1.0 - abs(g) ** 2)
+        return 0.5 * atan2(2.0 * g.real, 1.0 - abs(g) ** 2)
 
     def scale(self, omega: float) -> float:
         r"""Return y over x and rate, ms/rad, the size of :math:`2m_c\omega/(k_{yy}-m_y\omega^2+j\omega d_{yy})`."""

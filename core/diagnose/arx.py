@@ -18,6 +18,7 @@ from core.diagnose.hypothesis import BankParams, assumed_noise
 from core.diagnose.kalman import shuttle_memory
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored
+from core.elementary import log
 from core.estimation import diagonal, triangle
 from core.kernel import flush_tiny, kernel
 from core.ports import output, tap
@@ -212,7 +213,7 @@ class ArxBank(Bank):
         for i, theta in enumerate(coefficients_of(params, context)):
             error = variance if filtered else variance * (1.0 + theta[2] ** 2 + theta[3] ** 2)
             p.b0[i], p.b1[i], p.a1[i], p.a2[i] = theta
-            p.variance[i], p.half_log[i] = error, 0.5 * math.log(error)
+            p.variance[i], p.half_log[i] = error, 0.5 * log(error)
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:
@@ -250,7 +251,7 @@ class WeighedBank(ArxBank):
     def fill_alike(cls, s: State, params: Any) -> None:
         """Begin with all hypotheses alike."""
         n = len(params.hypotheses)
-        s.log[:n] = -math.log(n)
+        s.log[:n] = -log(n)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

@@ -13,6 +13,7 @@ from core.diagnose.axes_model import FORCES, AxesModel, fill
 from core.diagnose.bank import Bank
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax, winner_of
+from core.elementary import exp, log
 from core.kernel import flush_tiny
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record, Records, Vector, tail, vector
@@ -158,7 +159,7 @@ class AxesBank(Bank):
     def prior(cls, params: Any, before: list[float]) -> list[float]:
         r"""Return the probabilities with that of the winner times :math:`e^\epsilon`, the least evidence."""
         raised = list(before)
-        raised[before.index(max(before))] *= math.exp(params.least_evidence_nat)
+        raised[before.index(max(before))] *= exp(params.least_evidence_nat)
         return [share / sum(raised) for share in raised]
 
     @classmethod
@@ -173,7 +174,7 @@ class AxesBank(Bank):
         p = cls.Packed.blank(len(params.hypotheses))
         p.count, p.every = len(params.hypotheses), context.every
         p.walk = rate_rad_ms(params.rate_walk_dps_rt_s) ** 2 * context.dt_ms / MS_PER_S
-        p.kept = math.exp(-context.dt_ms * nominal.natural_frequency / (2.0 * math.pi))
+        p.kept = exp(-context.dt_ms * nominal.natural_frequency / (2.0 * math.pi))
         p.least = params.least_swing_um**2
         p.least_evidence = params.least_evidence_nat
         p.probability_floor, p.log_floor = floored(params.probability_floor)
@@ -188,7 +189,7 @@ class AxesBank(Bank):
     def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike."""
         s = cls.State.zeros(len(params.hypotheses))
-        s.weight[:] = -math.log(len(params.hypotheses))
+        s.weight[:] = -log(len(params.hypotheses))
         for f in s.filters:
             f.variance = rate_rad_ms(params.rate_std_dps) ** 2
         return s

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm, expm_frechet, solve_discrete_are
 
 from core.block import Context, FloatArray
 from core.device.two_axis import TwoAxis
 from core.diagnose.kalman import over_ticks
+from core.matrix import exponential, product, riccati, solved
 from core.record import Record, Vector, vector
 from core.units import thermal_force_un
 
@@ -57,22 +57,23 @@ def over_a_tick(device: TwoAxis, h: float) -> Tick:
     h : float
         Length of the tick, ms.
     """
-    inverse = np.linalg.inv(device.masses)
+    inverse = np.diag([1.0 / device.mass, 1.0 / device.mass_y])
     system, swirl = np.zeros((4, 4)), np.zeros((4, 4))
     system[:2, 2:] = np.eye(2)
-    system[2:, :2], system[2:, 2:] = -inverse @ device.stiffnesses, -inverse @ device.dampings
-    swirl[2:, 2:] = -2.0 * device.coriolis_mass * inverse @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    system[2:, :2], system[2:, 2:] = -product(inverse, device.stiffnesses), -product(inverse, device.dampings)
+    swirl[2:, 2:] = -2.0 * device.coriolis_mass * product(inverse, np.array([[0.0, -1.0], [1.0, 0.0]]))
     # the force with its first and second derivative by a, two of each, in a chain behind the motion
     chain = np.zeros((10, 10))
     chain[:4, :4] = system * h
-    chain[2:4, 4:6] = h * inverse @ np.diag([device.force, 1.0])
+    chain[2:4, 4:6] = h * product(inverse, np.diag([device.force, 1.0]))
     chain[4:6, 6:8] = chain[6:8, 8:10] = np.eye(2)
-    moved = expm(chain)
+    moved = exponential(chain)
     start, slope, bend = moved[:4, 4:6], moved[:4, 6:8], 2.0 * moved[:4, 8:10]
     middle, end = 4.0 * (slope - bend), 2.0 * bend - slope
     push = np.column_stack([part[:, axis] for axis in (0, 1) for part in (start, middle, end)])
-    turn: FloatArray = expm_frechet(system * h, swirl * h, compute_expm=False)  # type: ignore[assignment]
-    return Tick(moved[:4, :4], turn, push)
+    # the derivative of an exponential is a corner of the exponential of both (Van Loan 1978)
+    both = np.block([[system * h, swirl * h], [np.zeros((4, 4)), system * h]])
+    return Tick(moved[:4, :4], exponential(both)[:4, 4:], push)
 
 
 def force_noise(device: TwoAxis, assumed_un: tuple[float, float], context: Context) -> FloatArray:
@@ -103,11 +104,10 @@ def steady(tick: Tick, forces: FloatArray, noise_um: float, omega: float, ticks:
     size = noise_um * np.array([1.0, 1.0, omega, omega])
     phi = tick.phi * size / size[:, None]
     held = tick.push[:, [0, 3]] / size[:, None]
-    phi, noise = over_ticks(phi, held @ forces @ held.T, ticks)
-    seen = np.eye(4)[:, :2]
-    prior = solve_discrete_are(phi.T, seen, noise + SMALLEST * np.eye(4), np.eye(2))
+    phi, noise = over_ticks(phi, product(held, forces, held.T), ticks)
+    prior = riccati(phi, np.eye(4)[:2], noise + SMALLEST * np.eye(4), np.eye(2))
     psi = prior[:2, :2] + np.eye(2)
-    gain = np.linalg.solve(psi, prior[:2]).T * size[:, None] / noise_um
+    gain = solved(psi, prior[:2]).T * size[:, None] / noise_um
     return gain, psi * noise_um * noise_um
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from core.block import Block, Context, FloatArray, Oscillator
 from core.diagnose.hypothesis import lacking
+from core.elementary import log
 
 
 def gaussian(residual: FloatArray, covariance: FloatArray) -> float:
@@ -20,7 +21,7 @@ def gaussian(residual: FloatArray, covariance: FloatArray) -> float:
     covariance : array of shape (n, n)
     """
     square = float(residual @ np.linalg.solve(covariance, residual))
-    return -0.5 * (square + math.log(float(np.linalg.det(2.0 * math.pi * covariance))))
+    return -0.5 * (square + log(float(np.linalg.det(2.0 * math.pi * covariance))))
 
 
 class Bank(Block):

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from scipy.special import chdtri
-
 from core.block import Context, Equation, parameter
 from core.diagnose import window
+from core.diagnose.chance import chi_square
 from core.diagnose.filters import between_updates, driven, filters_step
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.elementary import cos, sin
@@ -92,8 +91,8 @@ class Consistency(KalmanBank):
         """Pack the parameters for the step."""
         p = cls.filters(cls.Packed.blank(), params, context)
         window.fill(p, params, context, params.window, params.window)
-        p.power_limit = chdtri(params.window, params.significance)
-        p.tone_limit = chdtri(2, params.significance)
+        p.power_limit = chi_square(params.window, params.significance)
+        p.tone_limit = chi_square(2.0, params.significance)
         return p
 
     @classmethod

@@ -6,14 +6,15 @@ import math
 from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
-from scipy.linalg import solve_discrete_are
 
 from core.block import BlockParams, Context, FloatArray, parameter
 from core.diagnose.bank import Bank
 from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
 from core.diagnose.lanes import Filters, PackedFilters
+from core.elementary import cos, exp, sin
 from core.format import format_short
+from core.matrix import product, riccati
 from core.voltage import MOST_LOST, tick_of
 
 P = TypeVar("P", bound=PackedFilters)
@@ -128,7 +129,7 @@ class KalmanBank(Bank):
         if not context.analogue or params.voltage == "parabola" or x <= 0.0:
             return ""
         late = x if params.voltage == "start" else 0.0
-        lost = abs(1.0 - math.sin(x) / x * complex(math.cos(late), -math.sin(late)))
+        lost = abs(1.0 - sin(x) / x * complex(cos(late), -sin(late)))
         text = f"takes the {params.voltage} of a tick of an analogue drive for held"
         share, drive = format_short(100.0 * lost, "%", 2), format_short(hz, "Hz")
         return f"{text}: {share} of the drive at {drive} are lost to it" if lost > MOST_LOST else ""
@@ -146,7 +147,7 @@ def shuttle_memory(context: Context) -> float:
     device = context.device
     cycle = 2.0 * math.pi / device.natural_frequency
     lasting = max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
-    return math.exp(-context.dt_ms / lasting)
+    return exp(-context.dt_ms / lasting)
 
 
 def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatArray, FloatArray]:
@@ -167,9 +168,9 @@ def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatAr
     if ticks == 1:
         return tick, noise
     half, part = over_ticks(tick, noise, ticks // 2)
-    phi, total = half @ half, part + half @ part @ half.T
+    phi, total = product(half, half), part + product(half, part, half.T)
     if ticks % 2:
-        phi, total = tick @ phi, noise + tick @ total @ tick.T
+        phi, total = product(tick, phi), noise + product(tick, total, tick.T)
     return phi, total
 
 
@@ -186,6 +187,6 @@ def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> 
         Leave R out of the residual covariance, as the text does.
     """
     # a little noise on both states keeps the Riccati equation solvable when none is assumed
-    prior = solve_discrete_are(phi.T, np.array([[1.0], [0.0]]), noise + np.eye(2) * 1e-18, np.array([[r]]))
+    prior = riccati(phi, np.array([[1.0, 0.0]]), noise + np.eye(2) * 1e-18, np.array([[r]]))
     psi = prior[0, 0] + r
     return prior[0, 0] / psi, prior[1, 0] / psi, max(prior[0, 0], LEAST * r) if printed else psi

@@ -11,7 +11,7 @@ from core.diagnose.filters import between_updates, filters_step, informed
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
-from core.elementary import cos, sin
+from core.elementary import cos, log, sin
 from core.ports import tap
 from core.record import Vector, vector
 
@@ -91,7 +91,7 @@ class LockIn(KalmanBank):
     def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike, the window empty."""
         s = cls.at_rest(cls.State.zeros(window.room(params)), params, context)
-        s.log[:] = -math.log(len(params.hypotheses))
+        s.log[:] = -log(len(params.hypotheses))
         return s
 
     @staticmethod

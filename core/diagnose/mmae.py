@@ -11,7 +11,7 @@ from core.diagnose.filters import between_updates, filters_step, informed, judge
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
-from core.elementary import exp
+from core.elementary import exp, log
 from core.kernel import kernel
 from core.ports import tap
 from core.record import Vector, vector
@@ -146,7 +146,7 @@ class Mmae(KalmanBank):
         """All filters at rest, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         n = len(params.hypotheses)
-        s.weight[:] = 1.0 / n if params.arithmetic == "linear" else -math.log(n)
+        s.weight[:] = 1.0 / n if params.arithmetic == "linear" else -log(n)
         return s
 
     @staticmethod

@@ -133,7 +133,7 @@ class MovingBank(KalmanBank):
         """All filters at rest, the nominal one in the centre."""
         s = cls.at_rest(cls.State.zeros(len(params.models)), params, context)
         s.centre = params.reach
-        s.log[:] = -math.log(3.0)
+        s.log[:] = -log(3.0)
         return s
 
     @staticmethod

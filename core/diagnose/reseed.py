@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from core.block import Context, Equation, parameter
@@ -10,6 +9,7 @@ from core.diagnose.filters import between_updates, filters_step, hand_over, info
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE, Filters
 from core.diagnose.weights import floored, take_floored_softmax, winner_of
+from core.elementary import log
 from core.kernel import kernel
 from core.record import Vector, vector
 
@@ -81,7 +81,7 @@ class Reseed(KalmanBank):
     def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike; the samples since the last seeding."""
         s = cls.at_rest(cls.State.zeros(), params, context)
-        s.log[:] = -math.log(len(params.hypotheses))
+        s.log[:] = -log(len(params.hypotheses))
         return s
 
     @staticmethod

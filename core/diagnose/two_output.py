@@ -105,7 +105,7 @@ class TwoOutput(KalmanBank):
     def state(cls, params: Any, context: Context) -> State:
         """All filters at rest, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
-        s.log[:] = -math.log(len(params.hypotheses))
+        s.log[:] = -log(len(params.hypotheses))
         return s
 
     @staticmethod

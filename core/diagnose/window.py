@@ -22,7 +22,7 @@ from typing import Any
 from core.block import Context
 from core.diagnose.kalman import KalmanBank
 from core.diagnose.lanes import LANE
-from core.elementary import floor
+from core.elementary import cos, floor, sin
 from core.kernel import inlined, kernel
 from core.record import Record, Records, Vector, tail, vector
 
@@ -93,14 +93,14 @@ def lean(params: Any, context: Context, samples: int) -> tuple[float, float, flo
     cycles = tone_hz(params, context) / 1e3 * context.dt_ms
     step = 2.0 * math.pi * (cycles - math.floor(cycles))
     back = (samples - 1) * step
-    sine = math.sin(step)
-    share = math.sin(samples * step) / sine / samples if abs(sine) > 1e-9 else math.cos(back)
+    sine = sin(step)
+    share = sin(samples * step) / sine / samples if abs(sine) > 1e-9 else cos(back)
     if abs(share) < 1e-9:
         share = 0.0
     span = samples * (1.0 - share * share)
     if abs(share) > 1.0 - 1e-6:
         share, span = -math.copysign(1.0, share), 4.0 * samples
-    return share * math.cos(back), share * math.sin(back), span
+    return share * cos(back), share * sin(back), span
 
 
 def fill(p: Packed, params: Any, context: Context, samples: int, capacity: int) -> None:

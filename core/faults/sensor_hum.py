@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import Context, Equation, parameter
+from core.elementary import sin_of_turns
 from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
-from core.phase import sine_of
 from core.ports import BlockPorts
 from core.record import Record
 
@@ -57,5 +57,5 @@ class SensorHum(Fault):
         x.severity = amplitude
         if amplitude != 0.0:
             turns = p.turns_per_ms * x.time_ms
-            x.sensor_offset += amplitude * sine_of(turns)
+            x.sensor_offset += amplitude * sin_of_turns(turns)
             x.other += 1.0

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from core import voltage
 from core.block import Context, Oscillator, parameter
 from core.device.oscillator import held
-from core.elementary import log
+from core.elementary import atan2, log
 from core.estimation import diagonal, trace_of, triangle
 from core.identify.identifier import (
     EstimatePorts,
@@ -215,7 +215,8 @@ def report(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports, residual: f
         sigma = -0.5 * log(a2) / p.dt_ms
         turn = -0.5 * a1 / math.sqrt(a2)
         if turn > -1.0:
-            angle = (math.acos(turn) if turn <= 1.0 else math.acosh(turn)) / p.dt_ms
+            reach = math.sqrt(abs((1.0 - turn) * (1.0 + turn)))  # of the inverse cosine, or the hyperbolic one
+            angle = (atan2(reach, turn) if turn <= 1.0 else log(turn + reach)) / p.dt_ms
             square = sigma * sigma + (angle * angle if turn <= 1.0 else -angle * angle)
             stiffness = p.force * whole / (b0 + b1)
             mass = stiffness / square

@@ -6,7 +6,6 @@ import math
 from typing import Any, Literal
 
 import numpy as np
-from scipy.linalg import solve_discrete_lyapunov
 
 from core.block import Context, FloatArray, parameter
 from core.estimation import (
@@ -31,6 +30,7 @@ from core.identify.identifier import (
     worst,
 )
 from core.kernel import kernel
+from core.matrix import lyapunov
 from core.ports import tap
 from core.record import Vector, vector
 from core.voltage import Motion, moves
@@ -158,7 +158,7 @@ def noise_gram(pole: float, h: float, held: float, noise_um: float) -> list[floa
         [advanced((1.0, 0.0), 0.0, 0.0), advanced((0.0, 1.0), 0.0, 0.0), advanced((0.0, 0.0), 1.0, held)]
     )
     new = np.append(advanced((0.0, 0.0), 0.0, 1.0 - held), 1.0)
-    covariance = noise_um**2 * solve_discrete_lyapunov(whole, np.outer(new, new))
+    covariance = noise_um**2 * lyapunov(whole, np.outer(new, new))
     return [0.0, 0.0, float(covariance[1, 1]), 0.0, float(covariance[1, 0]), float(covariance[0, 0])]
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from core.block import Context, Equation, parameter
+from core.elementary import exp
 from core.estimation import diagonal, estimate, project_onto, trace_of, triangle
 from core.identify.filtered import (
     FilteredEstimator,
@@ -90,7 +90,7 @@ class LeastSquares(FilteredEstimator):
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
         cls.fill_nominal(p, params, context)
-        p.decay = math.exp(-params.forgetting_rate * 1e-3 * context.dt_ms)
+        p.decay = exp(-params.forgetting_rate * 1e-3 * context.dt_ms)
         return p
 
     @classmethod

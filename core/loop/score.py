@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from pydantic import BaseModel
-from scipy.special import chdtri
 
 from core.block import Block, Context, Equation
+from core.diagnose.chance import chi_square
 from core.diagnose.hypothesis import BankParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import winner_of
@@ -149,7 +149,7 @@ class Score(Block):
 def take_turns(p: Turns, n: int, context: Context) -> None:
     """Pack what a score of so many hypotheses has whatever they say."""
     samples = 2.0 * SPAN - 1.0
-    p.count, p.every, p.limit = n, context.every, float(chdtri(samples, CHANCE)) / samples
+    p.count, p.every, p.limit = n, context.every, chi_square(samples, CHANCE) / samples
 
 
 def nothing_counted(n: int) -> Score.State:

@@ -6,6 +6,7 @@ import math
 
 from core.block import Context
 from core.device.two_axis import TwoAxis
+from core.elementary import sin
 from core.errors import InputError
 from core.kernel import kernel
 from core.noise import key
@@ -111,7 +112,7 @@ def terms_for(share: float) -> int:
 
 def held_density(share: float) -> float:
     r"""Return the spectrum of a held white force at :math:`\omega h` over that of white noise."""
-    return math.sin(0.5 * share) / (0.5 * share)
+    return sin(0.5 * share) / (0.5 * share)
 
 
 @kernel

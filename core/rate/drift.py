@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 
 from core.block import BlockParams, Context, parameter
-from core.elementary import floor
+from core.elementary import exp, expm1, floor, log
 from core.kernel import kernel
 from core.noise import key, normal
 from core.record import Record, Vector, vector
@@ -72,10 +72,10 @@ def pack_drift(p: PackedDrift, params: DriftParams, context: Context) -> None:
     held = max(1, round(SHORTEST_MS / context.dt_ms))
     p.white = params.angle_random_walk_deg_rt_h / DEG_RT_H_PER_DEG_RT_S / math.sqrt(held * dt_s)
     p.held = held * context.every
-    p.flicker = params.bias_instability_deg_h / DEG_H_PER_DEG_S * math.sqrt(math.log(10.0) / math.pi)
+    p.flicker = params.bias_instability_deg_h / DEG_H_PER_DEG_S * math.sqrt(log(10.0) / math.pi)
     p.walk = params.rate_random_walk_deg_h_rt_h / DEG_H_RT_H_PER_DEG_S_RT_S * math.sqrt(dt_s)
     samples = max(SHORTEST_MS / context.dt_ms, SHORTEST_SAMPLES)
-    p.decay, p.kick = math.exp(-1.0 / samples), math.sqrt(-math.expm1(-2.0 / samples))
+    p.decay, p.kick = exp(-1.0 / samples), math.sqrt(-expm1(-2.0 / samples))
     p.every = context.every
     p.white_key, p.walk_key = key(context.seed, "rate.white"), key(context.seed, "rate.walk")
     for i in range(PROCESSES):

@@ -6,8 +6,8 @@ from typing import Any
 
 from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
+from core.elementary import sin_of_turns
 from core.kernel import kernel
-from core.phase import sine_of
 from core.rate.drift import DriftParams
 from core.rate.generator import NOISE, RateGenerator
 
@@ -43,4 +43,4 @@ class Sine(RateGenerator):
     @kernel
     def shape(p: Packed, t: float) -> float:
         """Sine of frequency and phase."""
-        return p.deg_per_s * sine_of(p.frequency_per_ms * t + p.phase)
+        return p.deg_per_s * sin_of_turns(p.frequency_per_ms * t + p.phase)

@@ -8,9 +8,8 @@ from pydantic import model_validator
 
 from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
-from core.elementary import floor
+from core.elementary import floor, sin_of_turns
 from core.kernel import kernel
-from core.phase import sine_of
 from core.reference.waveform import ReferenceParams, Waveform
 
 
@@ -56,4 +55,4 @@ class Chirp(Waveform):
         f1 = p.start_per_ms
         sweep = p.duration_ms
         tau = t - sweep * floor(t / sweep)
-        return sine_of(f1 * tau + 0.5 * (p.stop_per_ms - f1) * tau * tau / sweep)
+        return sin_of_turns(f1 * tau + 0.5 * (p.stop_per_ms - f1) * tau * tau / sweep)

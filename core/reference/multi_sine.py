@@ -6,8 +6,8 @@ from typing import Any
 
 from core.block import BlockParams, Context, Equation, parameter
 from core.device.ranges import Sized
+from core.elementary import sin_of_turns
 from core.kernel import kernel
-from core.phase import sine_of
 from core.record import Record, Records, tail
 from core.reference.waveform import ReferenceParams, Waveform, line
 
@@ -72,5 +72,5 @@ class MultiSine(Waveform):
         total = 0.0
         for i in range(int(p.count)):
             tone = p.tones[i]
-            total += tone.amplitude * sine_of(tone.frequency_per_ms * t + tone.phase)
+            total += tone.amplitude * sin_of_turns(tone.frequency_per_ms * t + tone.phase)
         return total

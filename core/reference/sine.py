@@ -6,8 +6,8 @@ from typing import Any
 
 from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
+from core.elementary import sin_of_turns
 from core.kernel import kernel
-from core.phase import sine_of
 from core.reference.waveform import ReferenceParams, Waveform, line
 
 
@@ -50,4 +50,4 @@ class Sine(Waveform):
     @kernel
     def shape(p: Packed, t: float) -> float:
         """Sine of frequency and phase."""
-        return sine_of(p.frequency_per_ms * t + p.phase)
+        return sin_of_turns(p.frequency_per_ms * t + p.phase)

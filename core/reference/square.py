@@ -7,7 +7,7 @@ from typing import Any
 
 from core.block import Context, Equation, parameter
 from core.device.ranges import Sized
-from core.elementary import floor
+from core.elementary import floor, sin
 from core.kernel import kernel
 from core.reference.waveform import ReferenceParams, Waveform
 
@@ -47,7 +47,7 @@ class Square(Waveform):
         r"""Return the constant and the odd or even harmonics, :math:`a_n=\frac{4}{n\pi}|\sin n\pi d|`."""
         if params.frequency_hz == 0.0:
             return [(0.0, 1.0)]
-        harmonics = [(n, 4.0 / (n * math.pi) * abs(math.sin(n * math.pi * params.duty))) for n in range(1, 8)]
+        harmonics = [(n, 4.0 / (n * math.pi) * abs(sin(n * math.pi * params.duty))) for n in range(1, 8)]
         lines = [(n * params.frequency_hz, share) for n, share in harmonics if share > 1e-9]
         return [(0.0, 2.0 * params.duty - 1.0), *lines]
 

@@ -9,6 +9,7 @@ from typing import Any, Self
 from pydantic import model_validator
 
 from core.block import Block, BlockParams, Context, parameter
+from core.elementary import sin
 from core.errors import InputError
 from core.ports import BlockPorts, output
 from core.record import Record
@@ -107,7 +108,7 @@ class Waveform(Block):
 
 def line(hz: float, phase_deg: float, share: float = 1.0) -> tuple[float, float]:
     """Return the line of a sine; at 0 Hz it is a constant given by the phase."""
-    return hz, share if hz > 0.0 else share * math.sin(math.radians(phase_deg))
+    return hz, share if hz > 0.0 else share * sin(math.radians(phase_deg))
 
 
 def playing(shape: Callable[[Any, float], float]) -> Callable[[Any, Any, Any], None]:

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from core.block import Context, Equation, parameter
+from core.elementary import exp
 from core.kernel import flush_tiny
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads
@@ -74,7 +75,7 @@ class Doppler(Sensor):
         p: Doppler.Packed = params.packed(cls.Packed, context)
         p.key = key(context.seed, "sensor.doppler")
         p.dt_ms = context.dt_ms
-        p.decay = math.exp(-context.dt_ms / params.leak_ms)
+        p.decay = exp(-context.dt_ms / params.leak_ms)
         return p
 
     @staticmethod

@@ -17,7 +17,7 @@ from functools import lru_cache
 from typing import TypeVar
 
 from core.block import Context, parameter
-from core.elementary import cos, sin
+from core.elementary import cos, exp, sin
 from core.kernel import kernel
 from core.noise import key, uniform
 from core.record import Record, Vector, tail
@@ -25,6 +25,7 @@ from core.sense.sensor import SensorParams
 
 HARMONICS = 64
 NEGLIGIBLE = 1e-9
+LN10 = 2.302585092994046
 
 
 class Grating(Record):
@@ -45,8 +46,8 @@ def amplitudes(pitch: float, spot: float, opening: float) -> tuple[float, ...]:
     """Return the amplitudes a of the harmonics that are large enough to matter."""
     harmonics = []
     for m in range(1, HARMONICS + 1):
-        smooth = math.exp(-0.5 * (math.pi * m * spot / pitch) ** 2)
-        harmonics.append(2.0 / (math.pi * m) * math.sin(math.pi * m * opening) * smooth)
+        smooth = exp(-0.5 * (math.pi * m * spot / pitch) ** 2)
+        harmonics.append(2.0 / (math.pi * m) * sin(math.pi * m * opening) * smooth)
     while len(harmonics) > 1 and abs(harmonics[-1]) <= NEGLIGIBLE * abs(harmonics[0]):
         harmonics.pop()
     return tuple(harmonics)
@@ -101,12 +102,12 @@ class BeamParams(GratingParams):
     @property
     def noise(self) -> float:
         r"""Standard deviation of the intensity, :math:`\frac{c_1}{\sqrt2}10^{-SNR/20}`."""
-        return abs(self.harmonics[0]) / math.sqrt(2.0) * math.pow(10.0, -self.snr_db / 20.0)
+        return abs(self.harmonics[0]) / math.sqrt(2.0) * exp(-self.snr_db / 20.0 * LN10)
 
     @property
     def phase_noise_um(self) -> float:
         r"""Displacement noise of a pair in quadrature, :math:`\frac{\Lambda}{2\pi\sqrt2}10^{-SNR/20}`."""
-        return self.pitch_um / (2.0 * math.pi * math.sqrt(2.0)) * math.pow(10.0, -self.snr_db / 20.0)
+        return self.pitch_um / (2.0 * math.pi * math.sqrt(2.0)) * exp(-self.snr_db / 20.0 * LN10)
 
     def packed(self, kind: type[G], context: Context) -> G:
         """Return the packed grating of the intensity; all other fields of the record are blank."""

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from core.block import Context, Equation, parameter
-from core.elementary import atan2, floor
+from core.elementary import atan2, cos, floor, sin
 from core.ports import BlockPorts, reads, tap
 from core.record import Record
 from core.sense.dual_beam import DualBeam
@@ -32,8 +32,8 @@ def separation(spacing_um: float, pitch_um: float) -> tuple[float, float]:
     Beams half a pitch apart do not show the direction; the unit then amplifies noise, but stays finite.
     """
     delta = TWO_PI * spacing_um / pitch_um
-    sine = math.sin(delta)
-    return math.cos(delta), math.copysign(max(abs(sine), 1e-3), sine)
+    sine = sin(delta)
+    return cos(delta), math.copysign(max(abs(sine), 1e-3), sine)
 
 
 class Quadrature(Sensor):

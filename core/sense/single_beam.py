@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from core.block import Context, Equation, parameter
+from core.elementary import exp
 from core.ports import BlockPorts, reads, tap
 from core.record import Records
 from core.sense.hypotheses import MOST, YES, Followed, Odds, follow, sift, turns
@@ -121,7 +122,7 @@ class SingleBeam(Tracker):
         noise = max(beam.noise, 1e-4 * abs(beam.harmonics[0]), 1e-30)
         p = beam.packed(cls.Packed, context)
         p.noise = noise * noise
-        p.forgetting = math.exp(-context.dt_ms / params.memory_ms)
+        p.forgetting = exp(-context.dt_ms / params.memory_ms)
         p.same_x = 0.0125 * beam.pitch_um
         p.same_v = 0.025 * beam.pitch_um * context.device.natural_frequency
         p.model = model_of(params, context)
