@@ -167,7 +167,7 @@ def _settled(p: FloatArray, more: FloatArray) -> bool:
             p[i, j] += more[i, j]
             largest = max(largest, abs(p[i, j]))
             added = max(added, abs(more[i, j]))
-    return added <= NEGLIGIBLE * largest
+    return largest < np.inf and added <= NEGLIGIBLE * largest
 
 
 @kernel
