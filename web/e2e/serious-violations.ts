@@ -12,3 +12,14 @@ export async function seriousViolations(page: Page): Promise<string[]> {
     .filter((v) => v.impact === "serious" || v.impact === "critical")
     .map((v) => `${v.id}: ${v.help}: ${v.nodes.map((n) => n.target.join(" ")).join(" | ")}`);
 }
+
+/** Letters that are too faint to read, in the colours of now. */
+export async function contrastFaults(page: Page, within = "body"): Promise<string[]> {
+  const builder = new AxeBuilder({ page })
+    .include(within)
+    .exclude("iframe")
+    .withRules("color-contrast")
+    .setLegacyMode();
+  const { violations } = await builder.analyze();
+  return violations.flatMap((v) => v.nodes.map((n) => `${n.target.join(" ")}: ${n.any[0]?.message}`));
+}

@@ -72,8 +72,18 @@ export const theme = createTheme({
       },
     },
     Notification: { defaultProps: { closeButtonProps: { "aria-label": "Dismiss" } } },
+    // no letters below the smallest size of the page
+    InputWrapper: {
+      vars: () => ({ label: {}, error: {}, description: { "--input-description-size": "var(--size-0)" } }),
+    },
+    Pill: { styles: { root: { fontSize: "var(--size-0)" } } },
     Slider: { defaultProps: { thumbSize: "var(--thumb)" } },
     Popover: { defaultProps: { shadow: "md", withinPortal: true } },
+    // a menu longer than the window scrolls
+    Menu: {
+      defaultProps: { middlewares: { flip: true, shift: true, size: { padding: 8 } } },
+      styles: { dropdown: { overflowY: "auto" } },
+    },
   },
 });
 
