@@ -114,9 +114,10 @@ function findFaults(within: string): string[] {
       if (across > 1.5 && !e.matches("[role=tab]")) found.add(`${name(e)} is cut by ${Math.round(across)} px across`);
       if (along > 1.5) found.add(`${name(e)} is cut by ${Math.round(along)} px along`);
       const inline = e.tagName === "A" && styleOf(e).display === "inline";
-      const target =
-        e.closest("label, .mantine-Input-wrapper, [role=option]") ?? (e as HTMLInputElement).labels?.[0] ?? e;
-      const { width, height } = target.getBoundingClientRect();
+      const label = (e as HTMLInputElement).labels?.[0];
+      const target = (e.closest("label, .mantine-Input-wrapper") ?? e).getBoundingClientRect();
+      const width = Math.max(target.width, label?.offsetWidth ?? 0);
+      const height = Math.max(target.height, label?.offsetHeight ?? 0);
       if (touch && !inline && !e.matches(":disabled") && Math.min(width, height) < SMALLEST_TARGET)
         found.add(`${name(e)} is ${Math.round(width)} x ${Math.round(height)} px for a finger`);
       if (!whole(seen, box)) continue;
@@ -175,7 +176,7 @@ function findFaults(within: string): string[] {
   for (const e of roots.flatMap((root) => Array.from(root.querySelectorAll("*")))) {
     const over = e.scrollWidth - e.clientWidth;
     if (over <= 1 || e.clientWidth === 0 || !/auto|scroll/.test(styleOf(e).overflowX) || !shown(e)) continue;
-    if (!e.matches("[role=tablist], input, textarea, :has(> table, > .katex, > .katex-display)"))
+    if (!e.matches("[role=tablist], input, textarea, :has(> table, > .katex, > .katex-display, > svg)"))
       found.add(`${name(e)} scrolls sideways by ${over} px`);
   }
   return [...found];

@@ -1,4 +1,7 @@
 import type { CDPSession, Page } from "@playwright/test";
+import { expect } from "./lab";
+import { layoutFaults } from "./layout-faults";
+import { faintLetters } from "./serious-violations";
 
 type Scheme = "light" | "dark";
 
@@ -16,7 +19,7 @@ export const SCREENS: Screen[] = [
   { width: 390, height: 844, scheme: "dark" },
 ];
 
-export const other = (scheme: Scheme): Scheme => (scheme === "dark" ? "light" : "dark");
+export const nameOf = ({ width, height }: Screen): string => `${width} x ${height}`;
 
 const sessions = new WeakMap<Page, CDPSession>();
 
@@ -28,4 +31,17 @@ export async function showOn(page: Page, { width, height, scheme }: Screen): Pro
   await session.send("Emulation.setTouchEmulationEnabled", { enabled: width < 1000 });
   await page.emulateMedia({ colorScheme: scheme });
   await page.setViewportSize({ width, height });
+}
+
+/** Nothing overlaps or is cut; what comes or goes may do so for a moment. */
+export async function expectClean(page: Page, where: string, within?: string): Promise<void> {
+  await expect.soft.poll(() => layoutFaults(page, within), { message: where, timeout: 3000 }).toEqual([]);
+}
+
+/** Whatever is written can be read in both schemes. */
+export async function expectReadable(page: Page, where: string, within?: string): Promise<void> {
+  for (const colorScheme of ["dark", "light"] as const) {
+    await page.emulateMedia({ colorScheme });
+    expect.soft(await faintLetters(page, within), `${where}, ${colorScheme}`).toEqual([]);
+  }
 }

@@ -35,7 +35,7 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
   const width = drawing.width + 2 * MARGIN;
   const height = drawing.height + 2 * MARGIN + 26;
   // of the drawing's own units, so that a large device has no small letters
-  const letters = { fontSize: width / 22 };
+  const letters = { fontSize: width / 13 };
   const bar = SCALE_BARS.filter((um) => um < width / 3).at(-1) ?? SCALE_BARS[0];
   return (
     <>
