@@ -10,7 +10,7 @@ const DIALOGS = [
 ];
 const MENUS = [/: change bench$/, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
 
-test.describe.configure({ timeout: 150_000 });
+test.describe.configure({ timeout: 240_000 });
 
 /** A page as it is now, on every screen and in both schemes. */
 async function expectFits(page: Page, what: string, within?: string): Promise<void> {

@@ -16,7 +16,7 @@ const GYROSCOPE = { scenario: "gyro-diagnosis", set: { "readouts.allan": { kind:
 /** What has a place in no laboratory, or in the research layout alone. */
 const ADDED = ["Controllers", "Parameter sets", "Scoreboard", "3D"];
 
-test.describe.configure({ timeout: 150_000 });
+test.describe.configure({ timeout: 240_000 });
 
 async function openIn(page: Page, server: LabServer, id: string): Promise<void> {
   await page.request.get(server.url);
