@@ -12,7 +12,7 @@ import { LaneCanvas } from "./lane-canvas";
 import { LaneTools } from "./lane-tools";
 import styles from "./lanes.module.css";
 import { LanesHeadline } from "./lanes-headline";
-import { lanesLayout } from "./lanes-layout";
+import { lanesLayout, leastHeight } from "./lanes-layout";
 import { type LanesPicture, paintLanes } from "./paint-lanes";
 import { printLanes } from "./print-lanes";
 import type { LaneTime } from "./use-lane-time";
@@ -49,9 +49,10 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
   );
   const { labels, left } = useMemo(() => {
     const words = names.map((name) => hypothesisWords(name, diagnosers));
-    const wide = Math.max(...words.map((text) => textWidth(text, fontSize, 700, "IBM Plex Sans Variable"))) + 22;
-    const fits = wide <= size.width * WORDS_SHARE;
-    return { labels: fits ? words : names, left: Math.max(fontSize * 6, fits ? wide : 0) };
+    const widthOf = (texts: string[]) =>
+      Math.max(...texts.map((text) => textWidth(text, fontSize, 700, "IBM Plex Sans Variable"))) + 22;
+    const labels = widthOf(words) <= size.width * WORDS_SHARE ? words : names;
+    return { labels, left: Math.max(fontSize * 6, widthOf(labels)) };
   }, [names, diagnosers, fontSize, size.width]);
   const shown = useRef<LanesPicture | undefined>(undefined);
   const paint = useMemo<Parameters<typeof LaneCanvas>[0]["paint"]>(
@@ -77,7 +78,12 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
   const edges = lanesLayout(1000, 400, names.length, fontSize, left);
 
   return (
-    <section ref={element} className={styles.lanes} aria-label={`Diagnosis by ${id}`}>
+    <section
+      ref={element}
+      className={styles.lanes}
+      style={{ "--least": `${leastHeight(names.length, fontSize)}px` } as React.CSSProperties}
+      aria-label={`Diagnosis by ${id}`}
+    >
       <div className={styles.toolbar}>
         <LanesHeadline id={id} names={names} switches={switches} />
         <LaneTools time={time} onWindow={onWindow} take={() => shown.current && printLanes(shown.current, id)} />

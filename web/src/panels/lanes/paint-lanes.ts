@@ -88,7 +88,7 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
     ctx.textAlign = "right";
     ctx.fillText(picture.labels[i], layout.left - 10, y);
     ctx.font = fontFor(fontSize, 1, i === winnerNow ? 700 : 450);
-    ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 5.4, y);
+    ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 6, y);
   });
   ctx.font = fontFor(fontSize, 1, 450);
   ctx.fillStyle = colours.muted;

@@ -77,7 +77,7 @@ export function PhasePanel() {
         fits={fits}
         picture={picture}
       />
-      <p className={styles.words}>
+      <p className={`${styles.words} ${styles.beside}`}>
         {failed ??
           (!isFlat ? (
             "The turn of a moving mass about its rest; nothing pulls it in."

@@ -60,8 +60,8 @@ export function AxesLoop({ axes, slots }: Pick<Bench, "axes" | "slots">) {
       say={(box, value) => (box === "plant" ? formatIn(value, "°", 3) : undefined)}
       faults={{
         titles: acting.map((fault) => fault.title),
-        arrows: faulted.has("plant") ? ["M236 133 H223"] : [],
-        at: hasPartner ? undefined : [240, 118],
+        arrows: faulted.has("plant") ? ["M236 112 H224"] : [],
+        at: hasPartner ? undefined : [241, 102],
       }}
     />
   );

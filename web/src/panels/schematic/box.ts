@@ -23,4 +23,7 @@ export interface Wire {
   at: [number, number];
 }
 
-export const BOX = { width: 102, height: 66 };
+/** Letters are drawn at least at 0.88 of their size: below that the drawing scrolls. */
+export const DRAWING = { width: 348, height: 226 };
+
+export const BOX = { width: 104, height: 56 };

@@ -61,7 +61,7 @@ export function ResonatorLoop({ controller, diagnosers }: Pick<Bench, "controlle
       faults={{
         titles: acting.map((fault) => fault.title),
         arrows: Object.entries(FAULT_ARROWS).flatMap(([box, d]) => (faulted.has(box) ? [d] : [])),
-        at: [229, 212],
+        at: [232, 181],
       }}
     />
   );

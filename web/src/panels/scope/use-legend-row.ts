@@ -40,6 +40,7 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
     measure();
     const observer = new ResizeObserver(measure);
     observer.observe(place);
+    for (const entry of box.children) observer.observe(entry); // a value may grow
     return () => observer.disconnect();
   }, [traces]);
   return { list, ...row, fits: Math.min(row.fits, traces.length) };
