@@ -5,14 +5,7 @@ import { fontFor } from "../ui/canvas-font";
 import { formatMoment } from "../ui/format";
 import { CANVAS } from "../ui/palette";
 import { timeUnit } from "../ui/time-axis";
-import type { Box, Pen } from "./pen";
-
-export interface Field {
-  left: number;
-  right: number;
-  top: number;
-  bottom: number;
-}
+import type { Box, Field, Pen } from "./pen";
 
 /** An axis of device time and what happened along it. */
 export interface EventAxis {

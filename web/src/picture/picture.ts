@@ -2,7 +2,7 @@ import { fontFor } from "../ui/canvas-font";
 import { CANVAS } from "../ui/palette";
 import { type EventAxis, eventsWithin, listEvents, markEvents, timeTitle } from "./event-marks";
 import { type LegendEntry, paintLegend } from "./legend";
-import type { Box } from "./pen";
+import { type Box, type Look, PAPER, type Pen } from "./pen";
 import { SvgPen } from "./svg-pen";
 
 /** What a panel shows, to be kept as a file: its own painter, in light colours, and what stands around it. */
@@ -16,7 +16,7 @@ export interface Picture {
   legend?: readonly LegendEntry[];
   /** Of the plot, px. */
   height: number;
-  paint(pen: SvgPen, box: Box): void;
+  paint(pen: Pen, box: Box, look: Look): void;
   /** An axis of time gets its title and the events of its span. */
   time?: EventAxis;
 }
@@ -42,7 +42,7 @@ export function pictureSvg({ title, across, up, legend = [], height, paint, time
 
   pen.save();
   pen.translate(left, top);
-  paint(pen, { width, height });
+  paint(pen, { width, height }, PAPER);
   if (time) markEvents(pen, events, time, time.field({ width, height }));
   pen.restore();
 

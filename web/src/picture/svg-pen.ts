@@ -46,11 +46,6 @@ export class SvgPen implements Pen {
     );
   }
 
-  /** SVG from elsewhere, at the origin. */
-  add(markup: string): void {
-    this.out.push(markup);
-  }
-
   save(): void {
     this.saved.push(Object.fromEntries(STATE.map((key) => [key, this[key]])));
     this.opened = 0;

@@ -1,5 +1,5 @@
-import type { EventAxis, Field } from "../../picture/event-marks";
-import type { Box, Pen } from "../../picture/pen";
+import type { EventAxis } from "../../picture/event-marks";
+import type { Box, Field, Pen } from "../../picture/pen";
 import type { Picture } from "../../picture/picture";
 import { fontFor } from "../../ui/canvas-font";
 import { labelsOn } from "../../ui/format";
