@@ -142,7 +142,7 @@ export function paintColumns(pen: Pen, { left, right, top, bottom }: Field, axis
   const { fontSize } = look;
   const ink = CANVAS[look.scheme];
   const place = placeOn(axis, left, right);
-  const ticks = axis.ticks((right - left) / (fontSize * 5.5));
+  const ticks = axis.ticks((right - left) / (fontSize * 5));
   const labels = axis.say(ticks);
   const middle = bottom + 2 + fontSize * 0.75;
   pen.font = fontFor(fontSize, 1);

@@ -1,11 +1,12 @@
 import type { LogEntry } from "../api/types";
 import { eventTone } from "../bench/event-tone";
-import type { Marks } from "../bench/marks";
+import { type Marks, marksNow } from "../bench/marks";
+import type { PanelFrame } from "../stream/panel-frame";
 import { fontFor } from "../ui/canvas-font";
 import { formatMoment } from "../ui/format";
 import { CANVAS } from "../ui/palette";
 import { timeUnit } from "../ui/time-axis";
-import type { Box, Field, Pen } from "./pen";
+import { type Box, type Field, type Look, PAPER, type Pen } from "./pen";
 
 /** An axis of device time and what happened along it. */
 export interface EventAxis {
@@ -19,6 +20,12 @@ export interface EventAxis {
   /** Where the axis lies in a plot of a size. */
   field(box: Box): Field;
 }
+
+/** The axis of a frame of device time, with what has happened on the bench. */
+export const eventAxis = (
+  { frame, span }: { frame: PanelFrame; span: { start: number; end: number } },
+  fieldOf: (box: Box, look: Look) => Field,
+): EventAxis => ({ span, dtMs: frame.dtMs, marks: marksNow(), field: (box) => fieldOf(box, PAPER) });
 
 const INK = CANVAS.light;
 const LINE = 18;

@@ -102,7 +102,7 @@ export function paintPoints(
  * Columns of minima and maxima: a bar wherever a column spans more than a line is thick, and a line through the middles.
  * A spike of one tick is a bar, so it can never be missed; columns without data are bridged.
  */
-export function paintEnvelope(
+export function strokeEnvelope(
   pen: Pen,
   { x, y }: { x: Place; y: Place },
   { low, high }: { low: Float32Array; high: Float32Array },

@@ -5,7 +5,6 @@ import { pickSample } from "../../bench/why";
 import { textWidth } from "../../picture/text-width";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/current-events";
-import { useScheme } from "../../ui/use-scheme";
 import { useSize } from "../../ui/use-size";
 import { truthSwitches } from "./delays";
 import { LaneCanvas } from "./lane-canvas";
@@ -13,8 +12,7 @@ import { LaneTools } from "./lane-tools";
 import styles from "./lanes.module.css";
 import { LanesHeadline } from "./lanes-headline";
 import { lanesLayout } from "./lanes-layout";
-import { type LanesPicture, paintLanes } from "./paint-lanes";
-import { printLanes } from "./print-lanes";
+import { type LanesShown, lanesPicture, paintLanes } from "./paint-lanes";
 import type { LaneTime } from "./use-lane-time";
 
 /** Share of the panel that the words of the hypotheses may take; otherwise their names stand there. */
@@ -29,7 +27,6 @@ interface DiagnoserLanesProps {
 
 /** The lanes of one diagnoser: one for each hypothesis. */
 export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProps) {
-  const scheme = useScheme();
   const picked = useView((s) => (s.sample?.diagnoser === id ? s.sample.tick : undefined));
   const events = useBench((s) => s.events);
   const fontSize = useView((s) => s.fontPx);
@@ -53,26 +50,13 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
     const fits = wide <= size.width * WORDS_SHARE;
     return { labels: fits ? words : names, left: Math.max(fontSize * 6, fits ? wide : 0) };
   }, [names, diagnosers, fontSize, size.width]);
-  const shown = useRef<LanesPicture | undefined>(undefined);
+  const shown = useRef<LanesShown | undefined>(undefined);
   const paint = useMemo<Parameters<typeof LaneCanvas>[0]["paint"]>(
-    () =>
-      (ctx, { frame, span, width, height, hover }) => {
-        shown.current = {
-          frame,
-          span,
-          names,
-          labels,
-          layout: lanesLayout(width, height, names.length, fontSize, left),
-          scheme,
-          fontSize,
-          switches,
-          withUnexplained,
-          hover,
-          picked,
-        };
-        paintLanes(ctx, shown.current);
-      },
-    [names, labels, left, fontSize, scheme, switches, withUnexplained, picked],
+    () => (pen, box, now, look) => {
+      shown.current = { ...now, names, labels, gutter: left / fontSize, switches, withUnexplained, picked };
+      paintLanes(pen, box, shown.current, look);
+    },
+    [names, labels, left, fontSize, switches, withUnexplained, picked],
   );
   const edges = lanesLayout(1000, 400, names.length, fontSize, left);
 
@@ -80,7 +64,7 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
     <section ref={element} className={styles.lanes} aria-label={`Diagnosis by ${id}`}>
       <div className={styles.toolbar}>
         <LanesHeadline id={id} names={names} switches={switches} />
-        <LaneTools time={time} onWindow={onWindow} take={() => shown.current && printLanes(shown.current, id)} />
+        <LaneTools time={time} onWindow={onWindow} take={() => shown.current && lanesPicture(shown.current, id)} />
       </div>
       <LaneCanvas
         label={`Probability of ${labels.join(", ")} over time`}

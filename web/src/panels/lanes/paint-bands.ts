@@ -1,12 +1,12 @@
 import { hypothesisWords } from "../../bench/hypothesis-words";
+import { type Place, placeOn } from "../../picture/axes";
 import { fillHatched } from "../../picture/hatch";
-import type { Pen } from "../../picture/pen";
-import type { PanelFrame } from "../../stream/panel-frame";
+import type { Look, Pen } from "../../picture/pen";
+import { type PanelFrame, tickOf } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
 import { inkOn } from "../../ui/contrast";
 import { formatCount, formatNumber, formatSi } from "../../ui/format";
-import { CANVAS, type Scheme } from "../../ui/palette";
-import { timeLabels, timeSplits, timeUnit } from "../../ui/time-axis";
+import { CANVAS } from "../../ui/palette";
 import type { TruthSwitch } from "./delays";
 import type { LanesLayout } from "./lanes-layout";
 import type { runs } from "./runs";
@@ -15,13 +15,17 @@ const FITS_NONE = "fits none";
 const NO_NAME = "none of these";
 
 /** What every picture of lanes has: a span of time, the truth's changes in it, and where things lie. */
-export interface LanesGround {
+export interface LanesGround extends Look {
   frame: PanelFrame;
   span: { start: number; end: number };
   layout: LanesLayout;
-  scheme: Scheme;
-  fontSize: number;
   switches: TruthSwitch[];
+}
+
+/** Where ticks and columns lie. */
+export function placesOf({ span, frame, layout }: LanesGround): { x: Place; columnX: Place } {
+  const x = placeOn({ range: [span.start, span.end] }, layout.left, layout.right);
+  return { x, columnX: (column) => x(tickOf(frame, column)) };
 }
 
 /** Stretches of an index signal as a band with names: solid for what is known, otherwise a guess. */
@@ -130,31 +134,6 @@ export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) =>
     const text = delayWords(change, frame.dtMs).find((words) => ctx.measureText(words).width <= room);
     if (text) ctx.fillText(text, at, middle + 0.5);
   });
-}
-
-export function paintTime(
-  ctx: Pen,
-  { layout, span, frame, scheme, fontSize }: Omit<LanesGround, "switches">,
-  x: (tick: number) => number,
-): void {
-  const colours = CANVAS[scheme];
-  const startMs = span.start * frame.dtMs;
-  const endMs = span.end * frame.dtMs;
-  const splits = timeSplits(startMs, endMs, Math.max(2, (layout.right - layout.left) / (fontSize * 8)));
-  const labels = timeLabels(splits, endMs - startMs);
-  const y = layout.axis + fontSize / 2 + 4;
-  ctx.font = fontFor(fontSize, 1);
-  ctx.textAlign = "center";
-  splits.forEach((ms, i) => {
-    const at = x(ms / frame.dtMs);
-    ctx.fillStyle = colours.grid;
-    ctx.fillRect(Math.round(at), 0, 1, layout.axis);
-    ctx.fillStyle = colours.muted;
-    ctx.fillText(labels[i], at, y);
-  });
-  ctx.textAlign = "right";
-  ctx.font = fontFor(fontSize, 1, 600);
-  ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - fontSize * 2.4, y);
 }
 
 /** A delay in words, the longest first; the picture takes what fits. */

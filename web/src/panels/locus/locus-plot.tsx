@@ -13,8 +13,7 @@ import { useScheme } from "../../ui/use-scheme";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
 import { type LocusAxes, locusAxes, type Points } from "./locus-axes";
-import { type LocusPicture, paintLocus, tiltText } from "./paint-locus";
-import { printLocus } from "./print-locus";
+import { type LocusShown, locusPicture, paintLocus, tiltText } from "./paint-locus";
 import { tiltDeg } from "./tilt";
 
 const MOST_COLUMNS = 4096;
@@ -49,8 +48,8 @@ export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotPro
   const points = useRef<Points[]>([]);
   const axes = useRef<LocusAxes | undefined>(undefined);
   const dirty = useRef(true);
-  const painted = useRef<LocusPicture | undefined>(undefined);
-  useImperativeHandle(picture, () => () => painted.current && printLocus(painted.current), []);
+  const painted = useRef<LocusShown | undefined>(undefined);
+  useImperativeHandle(picture, () => () => painted.current && locusPicture(painted.current), []);
 
   const subscription = useMemo<Subscription | undefined>(() => {
     if (!dtMs) return undefined;
@@ -81,20 +80,16 @@ export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotPro
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
       painted.current = {
-        width: size.width,
-        height: size.height,
         axes: axes.current,
         scales: { x: unitScale(traces[0].unit, x[1]), y: unitScale(traces[1].unit, y[1]) },
         traces: points.current.map((path, i) => ({
           name: masses[i].name,
-          colour: traces[2 * i].colour,
+          slot: traces[2 * i].slot,
           points: path,
           tiltDeg: tiltDeg(path.x, path.y),
         })),
-        scheme,
-        fontSize,
       };
-      paintLocus(ctx, painted.current);
+      paintLocus(ctx, size, painted.current, { scheme, fontSize });
       const now = performance.now();
       if (now - said.current < WORDS_MS) return;
       said.current = now;

@@ -12,8 +12,8 @@ const MICRO = { factor: 1, unit: "µm", decimals: 3, exponent: "" };
 
 const PICTURE: ScopePicture = {
   traces: [
-    { name: "plant.displacement", unit: "um", colour: TRACE_COLOURS.dark[1], dash: 0 },
-    { name: "drive.voltage", unit: "V", colour: TRACE_COLOURS.dark[5], dash: 4 },
+    { name: "plant.displacement", unit: "um", slot: 1, colour: TRACE_COLOURS.dark[1], dash: 0 },
+    { name: "drive.voltage", unit: "V", slot: 5, colour: TRACE_COLOURS.dark[5], dash: 4 },
   ],
   envelopes: [flat([-1, 0, 1]), { low: Float32Array.of(0, -5, 0), high: Float32Array.of(0, 5, 0) }],
   bands: [1],

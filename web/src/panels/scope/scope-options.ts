@@ -9,6 +9,8 @@ import { type Envelope, envelopePath } from "./envelope-path";
 export interface PlotTrace {
   name: string;
   unit: string;
+  /** In `TRACE_COLOURS`; its colour on this screen. */
+  slot: number;
   colour: string;
   dash: number;
 }

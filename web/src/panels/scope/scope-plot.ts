@@ -1,14 +1,13 @@
 import uPlot from "uplot";
 import type { Marks } from "../../bench/marks";
-import type { PanelFrame } from "../../stream/panel-frame";
+import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
 import { hover } from "../../ui/hover";
 import { CANVAS } from "../../ui/palette";
 import { timeUnit } from "../../ui/time-axis";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
-import { columnAt } from "./column-at";
-import { columnTimes } from "./column-times";
+
 import { drawUnits } from "./draw-units";
 import type { Envelope } from "./envelope-path";
 import { type Banded, bandsOf } from "./envelope-rule";

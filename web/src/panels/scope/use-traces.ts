@@ -16,7 +16,7 @@ export function useTraces(names: string[]): PlotTrace[] {
       const signal = signals?.find((s) => s.name === name);
       if (!signal) return [];
       const style = traceStyle(name, all, hypotheses);
-      return [{ name, unit: signal.unit, colour: traceColour(style, scheme), dash: style.dash }];
+      return [{ name, unit: signal.unit, slot: style.slot, colour: traceColour(style, scheme), dash: style.dash }];
     });
   }, [names, signals, diagnosers, scheme]);
 }

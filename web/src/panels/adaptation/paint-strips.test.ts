@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { stripRange } from "./strip-range";
+import { stripRange } from "./paint-strips";
 
 it("holds all values with room, on round ends", () => {
   const [low, high] = stripRange([0.2, 0.81, Number.NaN]);
