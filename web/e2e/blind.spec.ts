@@ -43,6 +43,11 @@ test("no panel tells the fault or a verdict until an answer is committed", async
   await expect(page.getByText("Hidden while you look for the fault").first()).toBeVisible();
   // it comes within 8 ms of device time; seed 1 hides one that is not healthy
   await expect.poll(async () => (await bench()).faults.length, { timeout: 30_000 }).toBeGreaterThan(0);
+  await page.keyboard.press("Shift+S");
+  const sheet = page.getByRole("dialog", { name: "Share this experiment" });
+  await expect(sheet.getByText("Answer first")).toBeVisible();
+  await expect(sheet.getByRole("textbox")).toHaveCount(0);
+  await sheet.getByRole("button", { name: "Close" }).click();
   const verdict = async () => {
     const { scores, diagnosers } = await bench();
     return diagnosers.kalman.names[scores.kalman.winner];

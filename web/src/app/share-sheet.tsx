@@ -5,6 +5,7 @@ import { ApiError } from "../api/api-error";
 import { noteOwnLink } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { useBench } from "../stream/bench-store";
+import { veil } from "../stream/veil";
 import { EmptyState } from "../ui/empty-state";
 import { formatTick } from "../ui/format";
 import styles from "./dialogs.module.css";
@@ -29,6 +30,16 @@ interface Made {
 }
 
 function Share() {
+  if (!veil.on) return <MadeLink />;
+  return (
+    <EmptyState title="Answer first">
+      A link holds all that was done on this bench, the hidden fault too. Give your answer in Blind diagnosis, then
+      share.
+    </EmptyState>
+  );
+}
+
+function MadeLink() {
   const bench = useBench((s) => s.bench?.id);
   const [made, setMade] = useState<Made | undefined>(undefined);
   const [error, setError] = useState<ApiError | undefined>(undefined);

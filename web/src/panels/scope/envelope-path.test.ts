@@ -1,53 +1,85 @@
-import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { expect, it } from "vitest";
+import { SvgPen } from "../../picture/svg-pen";
+import { paintEnvelope } from "./envelope-path";
 
-vi.mock("uplot", () => ({ default: { pxRatio: 1 } }));
-
-import type uPlot from "uplot";
-import { envelopePath } from "./envelope-path";
-
-class FakePath {
-  rects: number[][] = [];
+/** Keeps what was inked instead of writing it down. */
+class Notes extends SvgPen {
+  bars: { x: number; top: number; width: number; bottom: number }[] = [];
   points: [number, number][] = [];
-  rect(...args: number[]) {
-    this.rects.push(args);
+  override fillRect(x: number, y: number, width: number, height: number) {
+    this.bars.push({ x, top: y, width, bottom: y + height });
   }
-  moveTo(x: number, y: number) {
+  override moveTo(x: number, y: number) {
     this.points.push([x, y]);
   }
-  lineTo(x: number, y: number) {
+  override lineTo(x: number, y: number) {
     this.points.push([x, y]);
   }
 }
 
-beforeEach(() => vi.stubGlobal("Path2D", FakePath));
-afterEach(() => vi.unstubAllGlobals());
-
-function draw(low: number[], high: number[]) {
-  const plot = {
-    series: [{}, { scale: "y0" }],
-    scales: { x: { min: 0, max: low.length - 1 }, y0: { min: 0, max: 10 } },
-    data: [low.map((_, i) => i)],
-    bbox: { left: 0, top: 0, width: 100, height: 100 },
-  } as unknown as uPlot;
+/** A field of 100 px by 100 px over values from 0 to 10. */
+function draw(low: number[], high: number[], { width = low.length - 1, dashes = [] as number[] } = {}) {
+  const pen = new Notes();
+  const field = { left: 0, top: 0, width, height: 100, from: 0, to: low.length - 1, min: 0, max: 10 };
   const columns = { low: Float32Array.from(low), high: Float32Array.from(high) };
-  const paths = envelopePath(() => columns)(plot, 1, 0, low.length - 1);
-  return paths as unknown as { stroke: FakePath; fill: FakePath };
+  paintEnvelope(
+    pen,
+    low.map((_, i) => i),
+    columns,
+    field,
+    { colour: "#123456", width: 2, dashes },
+  );
+  return pen;
 }
+
+const at = (bars: Notes["bars"], x: number) => bars.find((bar) => bar.x <= x && x < bar.x + bar.width);
 
 it("shows a spike of one tick in full height, however many ticks its column covers", () => {
-  const { fill } = draw([1, 1, 1, 1, 1], [1, 1, 9, 1, 1]);
-  expect(fill.rects).toHaveLength(1);
-  const [x, top, width, height] = fill.rects[0];
-  expect([x + width / 2, width]).toEqual([50.5, 1]);
-  expect(top).toBeCloseTo(10);
-  expect(height).toBeCloseTo(80);
+  for (const dashes of [[], [1, 50]]) {
+    const { bars } = draw([1, 1, 1, 1, 1], [1, 1, 9, 1, 1], { dashes });
+    const spike = bars.toSorted((a, b) => b.bottom - b.top - (a.bottom - a.top))[0];
+    expect(spike.top).toBeLessThanOrEqual(10);
+    expect(spike.bottom).toBeGreaterThanOrEqual(90);
+    expect(Math.abs(spike.x + spike.width / 2 - 2)).toBeLessThanOrEqual(0.5);
+  }
 });
 
-it("draws a plain line where columns hold one value, and bridges columns without data", () => {
-  const { fill, stroke } = draw([2, Number.NaN, 4], [2, Number.NaN, 4]);
-  expect(fill.rects).toEqual([]);
-  expect(stroke.points).toEqual([
+it("leaves no gap between columns that follow each other, up or down", () => {
+  const values = [1, 3, 9, 8, 2, 5];
+  const { bars, points } = draw(values, values);
+  expect(points).toEqual([]);
+  for (let c = 1; c < bars.length; c += 1) {
+    expect(bars[c].top).toBeLessThan(bars[c - 1].bottom);
+    expect(bars[c].bottom).toBeGreaterThan(bars[c - 1].top);
+  }
+});
+
+it("draws a line of its width, in the middle of its value", () => {
+  const { bars } = draw([4, 4, 4], [4, 4, 4]);
+  expect(at(bars, 1)).toMatchObject({ top: 59, bottom: 61 });
+});
+
+it("joins columns that lie apart by a plain line, and bridges columns without data", () => {
+  const { bars, points } = draw([2, Number.NaN, 4], [2, Number.NaN, 4], { width: 100 });
+  expect(bars).toEqual([]);
+  expect(points).toEqual([
     [0, 80],
     [100, 60],
   ]);
+});
+
+it("leaves out what lies between dashes", () => {
+  const flat = Array(20).fill(5);
+  const { bars } = draw(flat, flat, { dashes: [4, 6] });
+  const inked = (x: number) => bars.some((bar) => bar.x === x);
+  expect([1, 2, 3, 11, 12, 13].every(inked)).toBe(true);
+  expect([5, 6, 7, 8, 15, 16, 17, 18].some(inked)).toBe(false);
+});
+
+it("stays within its field", () => {
+  const { bars } = draw([-50, 3, 60], [-40, 3, 70]);
+  for (const { top, bottom } of bars) {
+    expect(top).toBeGreaterThanOrEqual(-1);
+    expect(bottom).toBeLessThanOrEqual(101);
+  }
 });

@@ -1,47 +1,106 @@
-import uPlot from "uplot";
+import type { Pen } from "../../picture/pen";
 
+/** The least and the most of a signal in each column; NaN where it has no data. */
 export type Envelope = { low: Float32Array; high: Float32Array };
 
+/** Where a trace lies: the field in pixels of the pen, and the time and the values at its edges. */
+export interface TraceField {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+  from: number;
+  to: number;
+  min: number;
+  max: number;
+}
+
+export interface TraceInk {
+  colour: string;
+  /** px of the pen, as are the dashes. */
+  width: number;
+  dashes: readonly number[];
+}
+
+/** Columns closer than this, px, are drawn as bars that meet; those further apart are joined by a line. */
+const CLOSE = 1.3;
+
 /**
- * uPlot path builder for min/max columns: a bar wherever a column spans more than a line is thick, and a line
- * through the middles. A spike of one tick is a bar of one pixel, so it can never be missed.
+ * Paint min/max columns: a bar for each column, as high as what it covers and up or down to the one before.
+ *
+ * Bars are rectangles and no path: eight scopes of six fast traces are drawn in a tenth of the time that a stroke takes
+ * where no graphics card helps. A spike of one tick is a bar of its full height, dashes or not, so it cannot be missed.
  */
-export function envelopePath(envelope: (series: number) => Envelope | undefined): uPlot.Series.PathBuilder {
-  return (u, index) => {
-    const columns = envelope(index);
-    const stroke = new Path2D();
-    const fill = new Path2D();
-    const paths = {
-      stroke,
-      fill,
-      clip: undefined,
-      band: undefined,
-      gaps: undefined,
-      flags: 1,
-    } as unknown as uPlot.Series.Paths;
-    const scale = u.scales[u.series[index].scale ?? "y"];
-    const time = u.data[0];
-    const { min: x0, max: x1 } = u.scales.x;
-    if (!columns || x0 == null || x1 == null || scale.min == null || scale.max == null) return paths;
-    const { left, top, width, height } = u.bbox;
-    const perX = width / (x1 - x0);
-    const perY = height / (scale.max - scale.min);
-    const bottom = top + height + scale.min * perY;
-    const bar = Math.max(1, Math.round(uPlot.pxRatio));
-    let drawing = false;
-    for (let c = 0; c < time.length; c += 1) {
-      const low = columns.low[c];
-      const high = columns.high[c];
-      if (Number.isNaN(low)) continue;
-      const x = left + (time[c] - x0) * perX;
-      const yHigh = bottom - high * perY;
-      const yLow = bottom - low * perY;
-      if (yLow - yHigh > bar) fill.rect(Math.round(x - bar / 2), yHigh, bar, yLow - yHigh);
-      const y = (yLow + yHigh) / 2;
-      if (drawing) stroke.lineTo(x, y);
-      else stroke.moveTo(x, y);
-      drawing = true;
+export function paintEnvelope(
+  pen: Pen,
+  times: ArrayLike<number>,
+  { low, high }: Envelope,
+  field: TraceField,
+  ink: TraceInk,
+): void {
+  const { left, top, width, height, from, to, min, max } = field;
+  const perTime = width / (to - from);
+  const perValue = height / (max - min);
+  const bottom = top + height;
+  const zero = bottom + min * perValue;
+  // as wide as a column and no wider: what is filled is what costs
+  const bar = Math.max(
+    1,
+    Math.ceil(Math.min(CLOSE, (perTime * (times[times.length - 1] - times[0])) / (times.length - 1))),
+  );
+  const half = ink.width / 2;
+  const isInk = dashing(ink.dashes);
+  pen.save();
+  pen.fillStyle = pen.strokeStyle = ink.colour;
+  pen.lineWidth = ink.width;
+  pen.lineJoin = "round";
+  pen.setLineDash([...ink.dashes]);
+  pen.beginPath();
+  const before = { x: Number.NaN, high: 0, low: 0 };
+  let drawing = false;
+  let hasLines = false;
+  for (let c = 0; c < times.length; c += 1) {
+    if (Number.isNaN(low[c])) continue;
+    const x = left + (times[c] - from) * perTime;
+    const yHigh = clamp(zero - high[c] * perValue, top, bottom);
+    const yLow = clamp(zero - low[c] * perValue, top, bottom);
+    const meets = x - before.x <= CLOSE;
+    if (meets && isInk(x - left)) {
+      const head = Math.min(yHigh, before.low) - half;
+      pen.fillRect(Math.round(x - bar / 2), head, bar, Math.max(yLow, before.high) + half - head);
+    } else if (standsOut(low, high, c) && yLow - yHigh > 1) {
+      pen.fillRect(Math.round(x - bar / 2), yHigh, bar, yLow - yHigh);
     }
-    return paths;
-  };
+    const isJoined = !meets && !Number.isNaN(before.x);
+    if (isJoined) {
+      if (!drawing) pen.moveTo(before.x, (before.low + before.high) / 2);
+      pen.lineTo(x, (yLow + yHigh) / 2);
+      hasLines = true;
+    }
+    drawing = isJoined;
+    before.x = x;
+    before.high = yHigh;
+    before.low = yLow;
+  }
+  if (hasLines) pen.stroke();
+  pen.restore();
+}
+
+const clamp = (y: number, top: number, bottom: number) => (y < top ? top : y > bottom ? bottom : y);
+
+/** Whether a column covers far more than those beside it: a spike, which the gap of a dashed line must not hide. */
+function standsOut(low: Float32Array, high: Float32Array, column: number): boolean {
+  const span = (c: number) => (c in low && !Number.isNaN(low[c]) ? high[c] - low[c] : 0);
+  return span(column) > 2 * Math.max(span(column - 1), span(column + 1));
+}
+
+/** Whether a dashed line has ink at a place along it. */
+function dashing(dashes: readonly number[]): (x: number) => boolean {
+  const period = dashes.reduce((sum, dash) => sum + dash, 0);
+  if (!period) return () => true;
+  const inked: boolean[] = [];
+  dashes.forEach((dash, i) => {
+    for (let px = 0; px < dash; px += 1) inked.push(i % 2 === 0);
+  });
+  return (x) => inked[Math.floor(x % period)];
 }

@@ -1,10 +1,9 @@
-import type uPlot from "uplot";
+import uPlot from "uplot";
 import { fontFor } from "../../ui/canvas-font";
 import { labelsOn } from "../../ui/format";
-import { CANVAS, DASHES, type Scheme } from "../../ui/palette";
+import { CANVAS, type Scheme } from "../../ui/palette";
 import { timeLabels, timeSplits } from "../../ui/time-axis";
 import type { UnitScale } from "../../ui/unit-scale";
-import { type Envelope, envelopePath } from "./envelope-path";
 
 export interface PlotTrace {
   name: string;
@@ -22,19 +21,19 @@ export interface ScopeModel {
   /** Units with an axis, at most three. */
   units: string[];
   scheme: Scheme;
-  lineWidth: number;
   fontSize: number;
   /** Time shown, in ms from the origin of the time axis. */
   time(): { start: number; span: number };
   range(axis: number): uPlot.Range.MinMax;
   scale(axis: number): UnitScale;
-  envelope(trace: number): Envelope | undefined;
+  /** Draw a trace; uPlot keeps its scales alone. */
+  trace(u: uPlot, trace: number): void;
   drawn(u: uPlot): void;
 }
 
 /** uPlot's options for a scope: device time below, one axis for each unit, min/max traces. */
 export function scopeOptions(model: ScopeModel): uPlot.Options {
-  const { traces, units, scheme, lineWidth, fontSize, host } = model;
+  const { traces, units, scheme, fontSize, host } = model;
   const colours = CANVAS[scheme];
   const axis = { font: fontFor(fontSize, 1), stroke: colours.muted, ticks: { show: false }, border: { show: false } };
   return {
@@ -65,7 +64,7 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
         size: fontSize + 9,
         gap: 4,
         grid: { stroke: colours.grid, width: 1 },
-        splits: (u, _i, min, max) => timeSplits(min, max, Math.max(2, u.over.clientWidth / (fontSize * 8))),
+        splits: (u, _i, min, max) => timeSplits(min, max, Math.max(2, u.bbox.width / uPlot.pxRatio / (fontSize * 8))),
         values: (_u, splits) => timeLabels(splits, model.time().span),
       },
       ...units.map(
@@ -88,14 +87,11 @@ export function scopeOptions(model: ScopeModel): uPlot.Options {
           show: units.includes(trace.unit),
           scale: `y${Math.max(0, units.indexOf(trace.unit))}`,
           stroke: trace.colour,
-          fill: `${trace.colour}b0`,
-          width: lineWidth,
-          dash: [...DASHES[trace.dash]],
           points: { show: false },
-          paths: envelopePath((series) => model.envelope(series - 1)),
+          paths: () => null,
         }),
       ),
     ],
-    hooks: { draw: [(u) => model.drawn(u)] },
+    hooks: { drawSeries: [(u, series) => model.trace(u, series - 1)], draw: [(u) => model.drawn(u)] },
   };
 }

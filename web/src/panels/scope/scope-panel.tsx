@@ -70,7 +70,6 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       lineWidth: fontSize > NORMAL_PX ? 0.17 * fontSize : 1.6,
       fontSize,
       marks: marksNow,
-      strained: () => stream.loop.strained,
       gestures: { onSpan: look, onLive: goLive },
     });
     plot.current = made;

@@ -3,13 +3,13 @@ import type { Marks } from "../../bench/marks";
 import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { fontFor } from "../../ui/canvas-font";
 import { hover } from "../../ui/hover";
-import { CANVAS } from "../../ui/palette";
+import { CANVAS, DASHES } from "../../ui/palette";
 import { timeUnit } from "../../ui/time-axis";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
 
 import { drawUnits } from "./draw-units";
-import type { Envelope } from "./envelope-path";
+import { type Envelope, paintEnvelope } from "./envelope-path";
 import { type Banded, bandsOf } from "./envelope-rule";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { drawMarks } from "./scope-marks";
@@ -18,10 +18,9 @@ import type { ScopePicture } from "./scope-picture";
 
 const MOST_AXES = 3;
 
-export interface ScopePlotOptions extends Pick<ScopeModel, "host" | "traces" | "scheme" | "lineWidth" | "fontSize"> {
+export interface ScopePlotOptions extends Pick<ScopeModel, "host" | "traces" | "scheme" | "fontSize"> {
+  lineWidth: number;
   marks: () => Marks;
-  /** Whether thin lines must do: they are drawn many times faster. */
-  strained: () => boolean;
   gestures: ScopeGestures;
 }
 
@@ -36,6 +35,7 @@ export class ScopePlot {
   private scales: UnitScale[];
   private ranges: (AxisRange | undefined)[] = [];
   private envelopes: Envelope[] = [];
+  private times: ArrayLike<number> = [];
   /** Tick that the time axis calls zero: 0, or the trigger. */
   private origin = 0;
   private hovered = false;
@@ -80,10 +80,8 @@ export class ScopePlot {
       low: data.subarray(i * 2 * columns, (i * 2 + 1) * columns),
       high: data.subarray((i * 2 + 1) * columns, (i * 2 + 2) * columns),
     }));
-    const { strained, lineWidth } = this.options;
-    const width = strained() ? Math.floor(lineWidth) : lineWidth;
-    for (const series of this.plot.series.slice(1)) series.width = width;
     const times = columnTimes(frame, this.origin);
+    this.times = times;
     this.plot.setData([times, ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
     if (this.hovered) hover.set(this.tickAt(this.plot.cursor.left ?? -1), this);
     else this.showHover(hover.tick);
@@ -145,15 +143,16 @@ export class ScopePlot {
     return {
       ...this.options,
       units: this.units,
-      time: () => ({
-        start: (this.span.start - this.origin) * this.dtMs,
-        span: (this.span.end - this.span.start) * this.dtMs,
-      }),
+      time: () => this.shownTime,
       range: (axis) => [this.ranges[axis]?.min ?? -1, this.ranges[axis]?.max ?? 1],
       scale: (axis) => this.scales[axis],
-      envelope: (trace) => this.envelopes[trace],
+      trace: (u, trace) => this.drawTrace(u, trace),
       drawn: (u) => this.drawn(u),
     };
+  }
+
+  private get shownTime(): { start: number; span: number } {
+    return { start: (this.span.start - this.origin) * this.dtMs, span: (this.span.end - this.span.start) * this.dtMs };
   }
 
   private get dtMs(): number {
@@ -201,6 +200,18 @@ export class ScopePlot {
       this.scales[axis] = unitScale(unit, Math.max(Math.abs(range.min), Math.abs(range.max)));
       this.ranges[axis] = range;
     });
+  }
+
+  private drawTrace({ ctx, bbox }: uPlot, trace: number): void {
+    const envelope = this.envelopes[trace];
+    const { traces, lineWidth } = this.options;
+    const { colour, dash, unit } = traces[trace];
+    const range = this.ranges[this.units.indexOf(unit)];
+    if (!envelope || !range) return;
+    const { start, span } = this.shownTime;
+    const ratio = uPlot.pxRatio;
+    const ink = { colour, width: lineWidth * ratio, dashes: DASHES[dash].map((px) => px * ratio) };
+    paintEnvelope(ctx, this.times, envelope, { ...bbox, from: start, to: start + span, ...range }, ink);
   }
 
   private drawn(u: uPlot): void {
