@@ -100,7 +100,7 @@ export function paintAxes(pen: Pen, box: Box, across: Axis, up: Axis, look: Look
   pen.font = fontFor(fontSize, 1);
   const hasNumbers = x.say(x.ticks(2)).length > 0;
   const bottom = box.height - (hasNumbers ? row + 2 : Math.round(fontSize * 0.6)) - (x.title ? row : 0);
-  const rows = y.ticks((bottom - TOP) / (fontSize * 2.8));
+  const rows = y.ticks(rowCount(bottom - TOP, fontSize));
   const widest = options.gutter ?? Math.max(fontSize * 2, ...y.say(rows).map((text) => pen.measureText(text).width));
   const left = Math.ceil((y.title ? row : 2) + widest + GAP);
   const whole = { left, right: Math.max(left + 20, box.width - RIGHT), top: TOP, bottom: Math.max(TOP + 20, bottom) };
@@ -128,6 +128,9 @@ export function paintAxes(pen: Pen, box: Box, across: Axis, up: Axis, look: Look
   }
   return plot;
 }
+
+/** How many numbers stand well above one another. */
+const rowCount = (tall: number, fontSize: number) => Math.min(8, tall / (fontSize * 1.9));
 
 const lengthOf = ({ range: [low, high] }: Axis) => high - low;
 
@@ -172,7 +175,7 @@ export function paintRows(pen: Pen, field: Field, axis: Axis, look: Look, rightO
   const { fontSize } = look;
   const ink = CANVAS[look.scheme];
   const place = placeOn(axis, field.bottom, field.top);
-  const ticks = axis.ticks((field.bottom - field.top) / (fontSize * 2.8));
+  const ticks = axis.ticks(rowCount(field.bottom - field.top, fontSize));
   pen.font = fontFor(fontSize, 1);
   pen.textBaseline = "middle";
   pen.textAlign = rightOf === undefined ? "right" : "left";

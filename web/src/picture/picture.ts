@@ -43,7 +43,7 @@ export function pictureSvg({ title, across, up, legend = [], height, paint, time
   pen.save();
   pen.translate(left, top);
   paint(pen, { width, height }, PAPER);
-  if (time) markEvents(pen, events, time, time.field({ width, height }));
+  if (time) markEvents(pen, time, time.field({ width, height }, PAPER), PAPER);
   pen.restore();
 
   pen.font = fontFor(13, 1, 600);
@@ -52,7 +52,7 @@ export function pictureSvg({ title, across, up, legend = [], height, paint, time
   pen.textBaseline = "middle";
   const below = across ?? (time && timeTitle(time));
   if (below) {
-    const field = time?.field({ width, height }) ?? { left: 0, right: width };
+    const field = time?.field({ width, height }, PAPER) ?? { left: 0, right: width };
     bottom += AXIS;
     pen.fillText(below, left + (field.left + field.right) / 2, bottom - AXIS / 2);
   }

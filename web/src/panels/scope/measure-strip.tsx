@@ -8,9 +8,9 @@ import { usePanelVisible } from "../../ui/panel-visible";
 import { SignalName } from "../../ui/signal-name";
 import { TraceSwatch } from "../../ui/trace-swatch";
 import { type Columns, type Measurement, measure, referenceFor } from "./measure";
+import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
 import type { CursorPair } from "./scope-cursors";
-import type { PlotTrace } from "./scope-options";
 import type { ScopePlot } from "./scope-plot";
 
 const EVERY_MS = 300;

@@ -98,7 +98,7 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
           aria-label={`Amplitude spectrum of ${words(signal)}`}
         />
       </div>
-      <p ref={reading} className={styles.words} />
+      <p ref={reading} className={styles.words} data-lines="1" />
     </>
   );
 }

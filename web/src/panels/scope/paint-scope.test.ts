@@ -2,15 +2,14 @@
 import { expect, it, vi } from "vitest";
 import { pictureSvg } from "../../picture/picture";
 import { TRACE_COLOURS } from "../../ui/palette";
-import { axisTitle, printScope } from "./print-scope";
-import type { ScopePicture } from "./scope-picture";
+import { axisTitle, type ScopeShown, scopePicture } from "./paint-scope";
 
 vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 
 const flat = (values: number[]) => ({ low: Float32Array.from(values), high: Float32Array.from(values) });
 const MICRO = { factor: 1, unit: "µm", decimals: 3, exponent: "" };
 
-const PICTURE: ScopePicture = {
+const PICTURE: ScopeShown = {
   traces: [
     { name: "plant.displacement", unit: "um", slot: 1, colour: TRACE_COLOURS.dark[1], dash: 0 },
     { name: "drive.voltage", unit: "V", slot: 5, colour: TRACE_COLOURS.dark[5], dash: 4 },
@@ -33,13 +32,13 @@ const PICTURE: ScopePicture = {
       { seq: 7, tick: 150, time_ms: 1.5, kind: "inject", text: "mass < 5 % & more", actor: "page" },
       { seq: 8, tick: 900, time_ms: 9, kind: "inject", text: "out of sight", actor: "page" },
       { seq: 9, tick: 160, time_ms: 1.6, kind: "pause", text: "quiet", actor: "page" },
-    ] as unknown as ScopePicture["marks"]["events"],
+    ] as unknown as ScopeShown["marks"]["events"],
     faults: [{ name: "added_mass", severity: 0.05, start: 150, end: undefined }],
   },
 };
 
 const drawn = (title: string) =>
-  new DOMParser().parseFromString(pictureSvg(printScope(PICTURE, title, "scope")), "image/svg+xml");
+  new DOMParser().parseFromString(pictureSvg(scopePicture(PICTURE, title, "scope")), "image/svg+xml");
 /** Left, top, width and height of the field of the traces. */
 const fieldOf = (document: Document) =>
   (/^M(\S+) (\S+)h(\S+)v(\S+)h/.exec(document.querySelector("clipPath path")?.getAttribute("d") ?? "") ?? [])
