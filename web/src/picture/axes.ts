@@ -1,6 +1,5 @@
-import { fontFor } from "../ui/canvas-font";
 import { labelsOn, tickLabels } from "../ui/format";
-import { CANVAS } from "../ui/palette";
+import { CANVAS, fontFor } from "../ui/palette";
 import { linearTicks, powerTicks } from "../ui/ticks";
 import { timeLabels, timeSplits, timeUnit } from "../ui/time-axis";
 import type { UnitScale } from "../ui/unit-scale";

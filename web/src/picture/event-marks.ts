@@ -1,10 +1,9 @@
 import type { LogEntry } from "../api/types";
-import { eventTone } from "../bench/event-tone";
+import { eventTone } from "../bench/flag-words";
 import { type Marks, marksNow } from "../bench/marks";
 import type { PanelFrame } from "../stream/panel-frame";
-import { fontFor } from "../ui/canvas-font";
 import { formatMoment } from "../ui/format";
-import { CANVAS } from "../ui/palette";
+import { CANVAS, fontFor } from "../ui/palette";
 import { timeUnit } from "../ui/time-axis";
 import { placeOn } from "./axes";
 import type { Box, Field, Look, Pen } from "./pen";

@@ -1,12 +1,12 @@
 import { useMemo, useState } from "react";
-import { useScheme } from "../ui/use-scheme";
+import { useScheme } from "../ui/use-canvas";
 import { Legend } from "./legend-list";
 import styles from "./line-chart.module.css";
 import { type LinesShown, lineEntries, nearestPoint, paintLines } from "./paint-lines";
 import { Painted } from "./painted";
 import type { Box, Look, Pen } from "./pen";
+import { fileStem } from "./picture";
 import { PictureMenu } from "./picture-menu";
-import { fileStem } from "./picture-name";
 
 interface LineChartProps extends LinesShown {
   title: string;

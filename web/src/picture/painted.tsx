@@ -1,7 +1,6 @@
 import { useEffect, useRef, useState } from "react";
 import { useView } from "../bench/view-store";
-import { useCanvas } from "../ui/use-canvas";
-import { useScheme } from "../ui/use-scheme";
+import { useCanvas, useScheme } from "../ui/use-canvas";
 import styles from "./painted.module.css";
 import type { Box, Look, Pen } from "./pen";
 

@@ -1,5 +1,5 @@
-import { fontFor } from "../ui/canvas-font";
-import { CANVAS } from "../ui/palette";
+import { useBench } from "../stream/bench-store";
+import { CANVAS, fontFor } from "../ui/palette";
 import { type EventAxis, eventsWithin, listEvents, markEvents, timeTitle } from "./event-marks";
 import { type LegendEntry, paintLegend } from "./legend";
 import { type Box, type Look, PAPER, type Pen } from "./pen";
@@ -65,4 +65,18 @@ export function pictureSvg({ title, across, up, legend = [], height, paint, time
   }
   if (time) bottom = listEvents(pen, events, time, EDGE, bottom, PICTURE_WIDTH - 2 * EDGE);
   return pen.svg(PICTURE_WIDTH, bottom + 12, title);
+}
+
+/** A name for a file. */
+export const fileStem = (name: string) =>
+  name
+    .toLowerCase()
+    .replaceAll(/[^a-z0-9]+/g, "-")
+    .replaceAll(/^-|-$/g, "");
+
+/** The title and the file name of a picture of the bench that is connected. */
+export function pictureName(what: string): { title: string; stem: string } {
+  const bench = useBench.getState().bench;
+  const stem = fileStem(`${bench?.scenario_id ?? "bench"}-${what}`);
+  return { title: bench ? `${what} · ${bench.title}` : what, stem };
 }

@@ -1,8 +1,7 @@
 import type { InstabilityMap } from "../api/types";
 import { linearAxis, type Plot, paintAxes } from "../picture/axes";
 import type { Box, Look, Pen } from "../picture/pen";
-import type { Picture } from "../picture/picture";
-import { fileStem } from "../picture/picture-name";
+import { fileStem, type Picture } from "../picture/picture";
 import { paintRule } from "../picture/traces";
 import { CANVAS } from "../ui/palette";
 

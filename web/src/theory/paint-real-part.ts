@@ -1,8 +1,7 @@
 import type { PositiveReal } from "../api/types";
 import { type Axis, linearAxis, logAxis, type Plot, paintAxes, type Range } from "../picture/axes";
 import type { Box, Field, Look, Pen } from "../picture/pen";
-import type { Picture } from "../picture/picture";
-import { fileStem } from "../picture/picture-name";
+import { fileStem, type Picture } from "../picture/picture";
 import { paintLine, paintRule, within } from "../picture/traces";
 import { formatShort } from "../ui/format";
 import { CANVAS } from "../ui/palette";

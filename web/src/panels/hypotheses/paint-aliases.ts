@@ -1,12 +1,10 @@
 import type { AliasReport } from "../../api/types";
 import { linearAxis, logAxis, paintAxes, type Range } from "../../picture/axes";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { Picture } from "../../picture/picture";
-import { pictureName } from "../../picture/picture-name";
+import { type Picture, pictureName } from "../../picture/picture";
 import { paintDot, paintLine, paintRule, within } from "../../picture/traces";
-import { fontFor } from "../../ui/canvas-font";
 import { formatSi } from "../../ui/format";
-import { CANVAS } from "../../ui/palette";
+import { CANVAS, fontFor } from "../../ui/palette";
 import { decadeTicks } from "../../ui/ticks";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 

@@ -8,10 +8,9 @@ import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { hover } from "../../ui/hover";
 import { usePanelVisible } from "../../ui/panel-visible";
-import { useCanvas } from "../../ui/use-canvas";
-import { useScheme } from "../../ui/use-scheme";
+import { useCanvas, useScheme } from "../../ui/use-canvas";
 import { listenForGestures } from "../scope/scope-gestures";
-import { scopeSubscription } from "../scope/time-window";
+import { scopeSubscription } from "../scope/use-time-view";
 import styles from "./lanes.module.css";
 import type { LaneTime } from "./use-lane-time";
 

@@ -1,15 +1,12 @@
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { type Place, placeOn } from "../../picture/axes";
-import { fillHatched } from "../../picture/hatch";
 import type { Look, Pen } from "../../picture/pen";
+import { fillHatched } from "../../picture/traces";
 import { type PanelFrame, tickOf } from "../../stream/panel-frame";
-import { fontFor } from "../../ui/canvas-font";
-import { inkOn } from "../../ui/contrast";
 import { formatCount, formatNumber, formatSi } from "../../ui/format";
-import { CANVAS } from "../../ui/palette";
+import { CANVAS, fontFor, inkOn } from "../../ui/palette";
 import type { TruthSwitch } from "./delays";
 import type { LanesLayout } from "./lanes-layout";
-import type { runs } from "./runs";
 
 const FITS_NONE = "fits none";
 const NO_NAME = "none of these";
@@ -147,4 +144,26 @@ function delayWords({ delay, findable }: TruthSwitch, dtMs: number): string[] {
     time,
     formatNumber(delay, 0),
   ];
+}
+
+/** A stretch of columns over which an index signal keeps one value. */
+export interface Run {
+  value: number;
+  from: number;
+  /** One past the last column. */
+  to: number;
+}
+
+/** Stretches of equal value; columns without data belong to the stretch before them. */
+export function runs(values: Float32Array): Run[] {
+  const found: Run[] = [];
+  for (let c = 0; c < values.length; c += 1) {
+    const value = values[c];
+    const last = found.at(-1);
+    if (Number.isNaN(value)) {
+      if (last) last.to = c + 1;
+    } else if (last && last.value === value) last.to = c + 1;
+    else found.push({ value, from: c, to: c + 1 });
+  }
+  return found;
 }

@@ -1,19 +1,16 @@
 import { paintColumns, timeAxis } from "../../picture/axes";
 import { eventAxis } from "../../picture/event-marks";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { Picture } from "../../picture/picture";
-import { pictureName } from "../../picture/picture-name";
+import { type Picture, pictureName } from "../../picture/picture";
 import { within } from "../../picture/traces";
 import { columnAt, largest, lowest } from "../../stream/panel-frame";
-import { fontFor } from "../../ui/canvas-font";
 import { formatPercent } from "../../ui/format";
-import { CANVAS } from "../../ui/palette";
+import { CANVAS, fontFor } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import type { TruthSwitch } from "./delays";
 import type { LaneShown } from "./lane-canvas";
 import { lanesLayout } from "./lanes-layout";
-import { paintBand, paintDelays, paintPicked, paintUnexplained, placesOf } from "./paint-bands";
-import { runs } from "./runs";
+import { paintBand, paintDelays, paintPicked, paintUnexplained, placesOf, runs } from "./paint-bands";
 
 export interface LanesShown extends LaneShown {
   switches: TruthSwitch[];

@@ -7,9 +7,7 @@ import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import type { TruthSwitch } from "./delays";
 import type { LaneShown } from "./lane-canvas";
 import type { LanesLayout } from "./lanes-layout";
-import { paintBand, paintDelays, paintPicked, placesOf } from "./paint-bands";
-import { runs } from "./runs";
-import { stack } from "./stack";
+import { paintBand, paintDelays, paintPicked, placesOf, runs } from "./paint-bands";
 
 export interface RaceShown extends LaneShown {
   switches: TruthSwitch[];
@@ -98,4 +96,20 @@ function fillBelow(ctx: Pen, edge: Float32Array, columnX: (c: number) => number,
     }
     from = c;
   }
+}
+
+/** Upper edges of probabilities stacked on one another, column by column; together they fill the height. */
+export function stack(layers: readonly Float32Array[]): Float32Array[] {
+  const columns = layers[0]?.length ?? 0;
+  const edges = layers.map(() => new Float32Array(columns));
+  for (let c = 0; c < columns; c += 1) {
+    let total = 0;
+    for (const layer of layers) total += layer[c];
+    let sum = 0;
+    layers.forEach((layer, i) => {
+      sum += layer[c] / total;
+      edges[i][c] = sum;
+    });
+  }
+  return edges;
 }

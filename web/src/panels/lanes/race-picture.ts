@@ -1,11 +1,9 @@
 import { paintColumns, timeAxis } from "../../picture/axes";
 import { eventAxis } from "../../picture/event-marks";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { Picture } from "../../picture/picture";
-import { pictureName } from "../../picture/picture-name";
+import { type Picture, pictureName } from "../../picture/picture";
 import { within } from "../../picture/traces";
-import { fontFor } from "../../ui/canvas-font";
-import { CANVAS } from "../../ui/palette";
+import { CANVAS, fontFor } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { paintRow, paintTruth, type RaceShown } from "./paint-race";
 

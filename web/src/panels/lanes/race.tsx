@@ -3,15 +3,14 @@ import { useView } from "../../bench/view-store";
 import type { Box, Look, Pen } from "../../picture/pen";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
-import { currentEvents } from "../../stream/current-events";
+import { currentEvents } from "../../stream/event-log";
 import { timeUnit } from "../../ui/time-axis";
 import type { Contestant } from "./contestants";
-import { type TruthSwitch, truthSwitches } from "./delays";
+import { racePlaces, type TruthSwitch, truthSwitches } from "./delays";
 import { LaneCanvas, type LaneShown } from "./lane-canvas";
 import { paintHead, type RaceShown } from "./paint-race";
 import styles from "./race.module.css";
 import { racePicture } from "./race-picture";
-import { racePlaces } from "./race-places";
 import { RaceRow } from "./race-row";
 import type { LaneTime } from "./use-lane-time";
 

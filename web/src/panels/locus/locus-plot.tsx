@@ -8,13 +8,11 @@ import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
-import { useCanvas } from "../../ui/use-canvas";
-import { useScheme } from "../../ui/use-scheme";
+import { useCanvas, useScheme } from "../../ui/use-canvas";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
-import { type LocusAxes, locusAxes, type Points } from "./locus-axes";
+import { type LocusAxes, locusAxes, type Points, tiltDeg } from "./locus-axes";
 import { type LocusShown, locusPicture, paintLocus, tiltText } from "./paint-locus";
-import { tiltDeg } from "./tilt";
 
 const MOST_COLUMNS = 4096;
 /** A figure that changes more often cannot be read. */

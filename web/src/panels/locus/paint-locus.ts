@@ -1,7 +1,6 @@
 import { linearAxis, type Plot, paintAxes } from "../../picture/axes";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { Picture } from "../../picture/picture";
-import { pictureName } from "../../picture/picture-name";
+import { type Picture, pictureName } from "../../picture/picture";
 import { paintDot, paintLine, paintRule, within } from "../../picture/traces";
 import { formatIn } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";

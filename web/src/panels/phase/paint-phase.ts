@@ -1,8 +1,7 @@
 import type { UnstableRegion } from "../../api/types";
 import { linearAxis, type Plot, paintAxes } from "../../picture/axes";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { Picture } from "../../picture/picture";
-import { pictureName } from "../../picture/picture-name";
+import { type Picture, pictureName } from "../../picture/picture";
 import { paintDot, paintLine, paintRule, within } from "../../picture/traces";
 import { CANVAS, TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";

@@ -1,5 +1,3 @@
-import type { Wire } from "./box";
-
 /** A box of the loop: its place on the drawing. */
 export interface LoopBox {
   id: "reference" | "controller" | "drive" | "plant" | "sensor" | "diagnosis" | "model" | "identifier";
@@ -55,3 +53,30 @@ export const WIRES: readonly Wire[] = [
   { id: "zi", d: "M170 174 V198", label: "z", at: [176, 190] },
   { id: "ud", d: "M228 35 V86 H52 V108", label: "u", at: [58, 104] },
 ];
+
+/** A box of a loop as drawn. */
+export interface DrawnBox {
+  id: string;
+  title: string;
+  x: number;
+  y: number;
+  /** What stands in it now. */
+  kind: string;
+  /** The card it opens. */
+  card: string | undefined;
+  /** A value in words, where no signal tells it. */
+  says?: string;
+  faulty: boolean;
+  /** Something else does its work. */
+  waits?: boolean;
+}
+
+/** A signal path between boxes. */
+export interface Wire {
+  id: string;
+  d: string;
+  label: string;
+  at: [number, number];
+}
+
+export const BOX = { width: 102, height: 66 };

@@ -4,8 +4,7 @@ import type { EventAxis } from "../../picture/event-marks";
 import type { Box, Field, Look, Pen } from "../../picture/pen";
 import type { Picture } from "../../picture/picture";
 import { strokeEnvelope, within } from "../../picture/traces";
-import { fontFor } from "../../ui/canvas-font";
-import { CANVAS, DASHES, TRACE_COLOURS } from "../../ui/palette";
+import { CANVAS, DASHES, fontFor, TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { Envelope } from "./envelope-path";
 

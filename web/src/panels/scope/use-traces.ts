@@ -1,7 +1,7 @@
 import { useMemo } from "react";
 import { useBench } from "../../stream/bench-store";
 import { traceColour, traceStyle } from "../../ui/trace-style";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import type { PlotTrace } from "./paint-scope";
 
 /** The traces of some signals, as far as the bench has them, in the colours they have everywhere. */

@@ -1,7 +1,6 @@
 import { linearAxis, logAxis, paintAxes } from "../../picture/axes";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { Picture } from "../../picture/picture";
-import { pictureName } from "../../picture/picture-name";
+import { type Picture, pictureName } from "../../picture/picture";
 import { paintLine } from "../../picture/traces";
 import { formatShort } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";

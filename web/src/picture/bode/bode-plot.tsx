@@ -1,12 +1,12 @@
 import { useCallback, useState } from "react";
 import { formatIn, formatSi } from "../../ui/format";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import { placeOn } from "../axes";
 import { Legend } from "../legend-list";
 import { Painted } from "../painted";
 import type { Box, Look, Pen } from "../pen";
+import { fileStem } from "../picture";
 import { PictureMenu } from "../picture-menu";
-import { fileStem } from "../picture-name";
 import styles from "./bode.module.css";
 import { nearest } from "./bode-data";
 import { type BodeShown, bodeEntries, paintBode } from "./paint-bode";

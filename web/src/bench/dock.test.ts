@@ -1,6 +1,6 @@
 import { Orientation, type SerializedDockview } from "dockview-react";
 import { expect, it } from "vitest";
-import { withGaps } from "./dock-gap";
+import { withGaps } from "./dock";
 
 const leaf = (id: string, size: number) => ({ type: "leaf" as const, size, data: { id, views: [id] } });
 

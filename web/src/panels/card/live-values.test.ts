@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { scoreWords } from "./score-words";
+import { scoreWords } from "./live-values";
 
 const names = ["healthy", "m+5"];
 

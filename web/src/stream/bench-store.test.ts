@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { Bench } from "../api/types";
-import { mergeStatus } from "./merge-status";
+import { mergeStatus } from "./bench-store";
 
 const bench = {
   id: "b1",

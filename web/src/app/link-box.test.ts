@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { qrPath } from "./qr";
+import { qrPath } from "../app/link-box";
 
 /** The rows of a code, dark as "#". */
 function drawn(text: string): string[] {

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { meterShare } from "./meter-share";
+import { meterShare } from "./excitation-meter";
 
 it.each([
   [1, 1],

@@ -1,7 +1,7 @@
 import { expect, it } from "vitest";
 import type { LogEntry } from "../api/types";
 import { logEntry } from "../stream/log-entry.fixture";
-import { faultSpans } from "./fault-spans";
+import { faultSpans } from "./marks";
 
 let seq = 0;
 const entry = (tick: number, kind: string, command: LogEntry["command"]) =>

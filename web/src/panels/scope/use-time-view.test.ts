@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import { scopeConfig } from "../../stream/scope-config";
-import { scopeSubscription, zoomSpan } from "./time-window";
+import { scopeSubscription, zoomSpan } from "./use-time-view";
 
 const config = scopeConfig(["a"], { windowMs: 4 });
 

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { NEW_DRAFT, wantedOf } from "./wanted";
+import { NEW_DRAFT, wantedOf } from "./record-form";
 
 it("asks in ticks, at once, until it is stopped", () => {
   expect(wantedOf({ ...NEW_DRAFT, pastMs: 2.5 }, 0.01, undefined)).toEqual({

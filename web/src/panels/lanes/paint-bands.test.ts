@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { runs } from "./runs";
+import { runs } from "./paint-bands";
 
 it("joins equal neighbours and bridges columns without data", () => {
   const columns = Float32Array.from([Number.NaN, 0, 0, Number.NaN, 2, 2, -1]);

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { readingScale } from "./reading-scale";
+import { readingScale } from "./use-reading-size";
 
 it("grows a lecture with the shorter way of the window, and nothing else", () => {
   expect(readingScale(true, 1366, 768)).toBe(1);
