@@ -1,3 +1,4 @@
+// @vitest-environment jsdom
 import { Orientation, type SerializedDockview } from "dockview-react";
 import { expect, it } from "vitest";
 import { withGaps } from "./dock";

@@ -1,3 +1,4 @@
+// @vitest-environment jsdom
 import { expect, it } from "vitest";
 import { NEW_DRAFT, wantedOf } from "./record-form";
 
