@@ -126,3 +126,6 @@ export const cssVariables: CSSVariablesResolver = () => {
   };
   return { variables: {}, dark: shared, light: shared };
 };
+
+/** Flips between dark and light; the page puts the real thing in when it stands. */
+export const themeSwitch = { flip: (): void => undefined };

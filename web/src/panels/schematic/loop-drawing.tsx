@@ -1,7 +1,6 @@
 import { showPanel } from "../../bench/dock";
 import { useView } from "../../bench/view-store";
-import { BOX, DRAWING, type DrawnBox, type Wire } from "./box";
-import { faultLines } from "./loop";
+import { BOX, DRAWING, type DrawnBox, faultLines, type Wire } from "./loop";
 import styles from "./schematic.module.css";
 import { useLiveValues } from "./use-live-values";
 

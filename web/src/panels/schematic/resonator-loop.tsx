@@ -2,10 +2,10 @@ import { useMemo } from "react";
 import type { Bench } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
-import { useInstances } from "../card/use-instances";
+import { useInstances } from "../card/instances";
 import { boxOf, FAULT_ARROWS, LOOP, type LoopBox, WIRES } from "./loop";
 import { LoopDrawing } from "./loop-drawing";
-import { useActingFaults } from "./use-acting-faults";
+import { useActingFaults } from "./use-live-values";
 
 /** The loop of a device with one displacement. */
 export function ResonatorLoop({ controller, diagnosers }: Pick<Bench, "controller" | "diagnosers">) {

@@ -1,4 +1,4 @@
-import type { DrawnBox, Wire } from "./box";
+import type { DrawnBox, Wire } from "./loop";
 
 type Place = Pick<DrawnBox, "id" | "title" | "x" | "y">;
 

@@ -1,5 +1,5 @@
 import { type RefObject, useLayoutEffect, useRef, useState } from "react";
-import type { PlotTrace } from "./scope-options";
+import type { PlotTrace } from "./paint-scope";
 
 /** Kept free for the button of those that do not fit, px. */
 const MORE_PX = 34;

@@ -1,7 +1,7 @@
 import type { Account } from "../../api/types";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import styles from "./why.module.css";
 
 interface ModelTableProps {
