@@ -13,13 +13,12 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from core.block import FloatArray
-from core.board.document import with_values as write
 from core.board.spec import MOST_SEED
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
 from core.nesting import read_toml
 from core.table import Table
-from scenarios.edit import with_values
+from scenarios.edit import with_values, written
 from scenarios.key import content_hash, run_key
 from scenarios.library import get
 from scenarios.run import DEFAULT_SAMPLES
@@ -140,7 +139,7 @@ class Point:
     @property
     def document(self) -> dict[str, Any]:
         """The scenario with its values; built anew at each call, because thousands of them take much memory."""
-        return write(self.base, self.values) if self.values else self.base
+        return written(self.base, self.values) if self.values else self.base
 
 
 class Sweep:
@@ -260,9 +259,9 @@ class Sweep:
     def _point(self, chosen: tuple[tuple[Values, Values], ...]) -> Point:
         labels: dict[str, str | float] = {}
         values: Values = {}
-        for names, written in chosen:
+        for names, steps in chosen:
             labels |= names
-            values |= written
+            values |= steps
         return Point(labels, values, self.base.document)
 
 
