@@ -20,7 +20,7 @@ test("figures are made after the first start, told of, and seen with axes and nu
     const svg = await page.request.get(`${server.origin}/api/v1/gallery/first-look/figure`);
     expect(await svg.text()).toMatch(/time, ms<.*displacement, µm/);
     const beams = cards.filter({ hasText: "ch1-beam-width" });
-    await expect(beams.getByText(/ours 11\.53.% \/ printed approximately 12.%/)).toBeVisible({ timeout: 60_000 });
+    await expect(beams.getByText(/ours 11\.53.% \/ printed 12.%/)).toBeVisible({ timeout: 60_000 });
     await expect(beams.getByText("measured as expected")).toBeVisible();
     const { figures } = await server.ask<Library>("GET", "/gallery");
     expect(figures.total).toBe(await cards.count());
