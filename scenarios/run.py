@@ -239,13 +239,18 @@ def _figures(
 ) -> dict[str, float]:
     """Return the figures of a board from the trace, or those of a twin from the trace of all boards."""
     table = signals or board.signals
+    names = figure_signals(board, table, prefix)
+    trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
+    return measure(board, trace, scenario.head.metrics)
+
+
+def figure_signals(board: Board, table: SignalTable, prefix: str = "") -> list[str]:
+    """Return the signals of a board that its figures are made of, as far as they are in a table of signals."""
     moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
     names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]
     known = set(table.names)
-    names = [name for name in names if prefix + name in known]
-    trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
-    return measure(board, trace, scenario.head.metrics)
+    return [name for name in names if prefix + name in known]
 
 
 def _run_study(scenario: Scenario, board: Board) -> Result:

@@ -23,6 +23,7 @@ from scenarios.key import content_hash, run_key
 from scenarios.library import get
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
+from scenarios.seeds import parse_seeds
 
 MAX_RUNS = 1_000_000
 MAX_POINTS = 20_000
@@ -32,10 +33,24 @@ Values = dict[str, Any]
 
 
 class Seeds(Table):
-    """Noise seeds; every point runs with the same ones, so that points differ by their values alone."""
+    """Noise seeds, ``"A:B"`` with both ends, the same for every point, so that points differ by their values.
+
+    A first seed and a count are read as well.
+    """
 
     first: int = Field(1, ge=0, le=MOST_SEED)
     count: int = Field(1, ge=1, le=MAX_RUNS)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _both_ends(cls, given: Any) -> Any:
+        if not isinstance(given, str):
+            return given
+        try:
+            seeds = parse_seeds(given, "seeds")
+        except InputError as error:
+            raise ValueError(error.message) from None
+        return {"first": seeds[0], "count": len(seeds)}
 
     @model_validator(mode="after")
     def _reach(self) -> Self:

@@ -3296,9 +3296,9 @@ export interface components {
             label?: string;
             /**
              * Seeds
-             * @description First seed and the one behind the last
+             * @description "A:B", both included; earlier scripts send a list of the first seed and the one behind the last, which is read too
              */
-            seeds?: number[] | null;
+            seeds?: (string | number[]) | null;
         };
         /**
          * NewSnapshot
