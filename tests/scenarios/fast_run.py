@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.board.commands import Switch
 from core.board.ensemble import Ensemble
 from core.board.spec import Spec
 from core.board.wiring import Wiring
@@ -21,18 +22,20 @@ from scenarios.run import DEFAULT_SAMPLES, _figures, build, figure_signals
 from scenarios.schema import Scenario
 from scenarios.studies import detectors, monte_carlo, sensing
 
-READ_OUT = ("rate.arw_", "rate.bias_", "rate.random_walk_")
+READ_OUT = ("rate.arw_", "rate.bias_", "rate.noise_", "rate.random_walk_")
 """Beginnings of figures that a read-out gathers while it runs: they need no trace."""
 
 
 @contextmanager
-def fast() -> Iterator[None]:
-    """Leave out what no figure depends on."""
+def fast(scenario: Scenario) -> Iterator[None]:
+    """Leave out what no figure of a scenario depends on."""
+    commands = (command for event in scenario.events for command in event)
+    switched = {command.switch for command in commands if isinstance(command, Switch)}
     with pytest.MonkeyPatch.context() as patch:
         rest = Wiring.rest
 
         def without_shadows(self: Wiring, spec: Spec) -> list[int]:
-            shadows = spec.controllers.keys() - set(spec.driving.values())
+            shadows = spec.controllers.keys() - set(spec.driving.values()) - switched
             return [row for row in rest(self, spec) if self.instances[row].prefix not in shadows]
 
         patch.setattr(Wiring, "rest", without_shadows)
