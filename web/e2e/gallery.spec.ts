@@ -54,6 +54,9 @@ test("the gallery searches, filters, runs an experiment headless, and opens it l
   await expect(cards).toHaveCount(library.length);
 
   await page.getByRole("combobox", { name: "Chapter" }).selectOption("5");
+  await page.getByRole("combobox", { name: "Verdict" }).selectOption("ours");
+  await expect(cards).toHaveCount(library.filter((c) => c.id.startsWith("ch5-") && c.verdict === "ours").length);
+  await expect(cards.first().getByRole("columnheader", { name: "open loop" })).toBeVisible();
   await page.getByRole("combobox", { name: "Verdict" }).selectOption("reproduced");
   await expect(cards).toHaveCount(
     library.filter((card) => card.id.startsWith("ch5-") && card.verdict === "reproduced").length,
