@@ -116,7 +116,7 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
     sweep: {
       schema: 1,
       scenario: "ch5-seven-step",
-      seeds: { first: 1, count: 2 },
+      seeds: "1:2",
       grid: { "sensor.noise_um": [0.05, 0.2] },
     },
   });

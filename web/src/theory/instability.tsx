@@ -23,7 +23,7 @@ const RULES: { value: Rule; label: string; latex: string }[] = [
   {
     value: "monopoli",
     label: "Monopoli",
-    latex: "\\dot k_c=B\\,e\\,y,\\quad y=\\frac{r}{1+qs},\\quad u=k_cr+q\\dot k_cy",
+    latex: "\\dot k_c=B\\,e\\,y+\\gamma\\frac{d}{dt}(B\\,e\\,y),\\quad y=\\frac{r}{1+qs},\\quad u=k_cr+q\\dot k_cy",
   },
 ];
 const CELLS = 44;
