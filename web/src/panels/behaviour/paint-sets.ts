@@ -110,7 +110,7 @@ function paintGrid(pen: Pen, field: Field, look: Look, { px, py, scale }: Scale)
   );
   pen.textAlign = "left";
   pen.textBaseline = "bottom";
-  pen.fillText("output by its cosine", left, top - 4, right - left);
+  pen.fillText("output by its cosine; the cross is the one measured", left, top - 4, right - left);
 }
 
 /** The names beside their discs, right or left, on the first line that is free. */
@@ -160,6 +160,7 @@ export function drawSets(behaviours: readonly Behaviour[], verdict: number): Dra
           colour: traceColour(hypothesisStyle(i), "light"),
           mark: "field" as const,
         })),
+        { name: "cross: the output measured", colour: CANVAS.light.text, mark: "dot" },
       ],
       paint: (pen, box, look) => paintSets(pen, box, look, sets),
     }
