@@ -97,6 +97,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });
     addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
+    addTo(api, "behaviour", "behaviour", { within: "lanes", inactive: true });
     addTo(api, "phase", "phase", { within: "lanes", inactive: true });
     addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     addTo(api, "identify", "identify", { within: "lanes", inactive: true });
@@ -126,6 +127,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });
     addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
+    addTo(api, "behaviour", "behaviour", { within: "lanes", inactive: true });
     addTo(api, "phase", "phase", { within: "lanes", inactive: true });
     addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     addTo(api, "identify", "identify", { within: "lanes", inactive: true });

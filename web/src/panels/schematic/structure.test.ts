@@ -54,7 +54,7 @@ describe.each(FIGURES)("drawn as figure %s", (figure, chosen) => {
     expect(new Set(structure.wires.map((wire) => wire.id)).size).toBe(structure.wires.length);
     expect(new Set(boxes.map((box) => box.id)).size).toBe(boxes.length);
     expect(structure.boxes.some((box) => box.id === "diagnosis")).toBe(hasDiagnoser || figure === undefined);
-    expect(structure.hasRoom).toBe(!boxes.some((box) => box.x === 237 && box.y === 198));
+    expect(structure.hasRoom).toBe(!boxes.some((box) => box.x === 235 && box.y === 166));
   });
 });
 
