@@ -25,7 +25,7 @@ schema = 1
 id = "monte-carlo-roc"
 title = "Faults told from noise"
 scenario = "ch5-seven-step"
-seeds = {{ first = 1, count = {RUNS} }}
+seeds = "1:{RUNS}"
 [set]
 "diagnosers.kalman.sensor_noise_um" = 0.05
 [grid]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from core.board.document import Document, has
 from core.board.document import with_values as write
 from core.errors import InputError
 from core.nesting import read_toml
@@ -18,7 +19,17 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     InputError
         When a path leads nowhere or the result is not a valid scenario.
     """
-    return Scenario.load(write(scenario.document, values)) if values else scenario
+    return Scenario.load(written(scenario.document, values)) if values else scenario
+
+
+def written(document: Document, values: dict[str, Any]) -> Document:
+    """Return a copy of a scenario with values written over; a fitted field that goes with that is no longer named."""
+    changed = write(document, values)
+    rows = changed.get("expect")
+    for row in rows if isinstance(rows, list) else ():
+        if isinstance(row, dict) and isinstance(row.get("fitted"), list):
+            row["fitted"] = [path for path in row["fitted"] if not has(document, str(path)) or has(changed, str(path))]
+    return changed
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:

@@ -18,6 +18,7 @@ from core.board.observer import cautions
 from core.board.parse import changed
 from core.errors import InputError
 from core.signals import Signal, SignalTable
+from scenarios.expectation import overall
 from scenarios.measure import rate
 from scenarios.measure.metrics import device_metrics, measure
 from scenarios.measure.verdicts import TRACED_VERDICTS
@@ -100,7 +101,8 @@ def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]
             "expected": entry.text(),
             "measured": metrics.get(entry.metric),
             "ok": entry.holds(metrics.get(entry.metric)),
-            "verdict": entry.verdict or scenario.head.verdict,
+            "published_value": entry.published_value,
+            "verdict": entry.word(metrics.get(entry.metric)),
             "note": entry.note if entry.metric in metrics else "no such metric in this run",
         }
         for entry in scenario.head.expect
@@ -124,7 +126,7 @@ def summarise(
         "title": scenario.head.title,
         "source": scenario.head.source,
         "claim": scenario.head.claim,
-        "verdict": scenario.head.verdict,
+        "verdict": overall(entry["verdict"] for entry in expectations),
         "seed": seed,
         "ticks": ticks,
         "dt_s": scenario.spec.dt_ms / 1e3,
@@ -151,6 +153,8 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
         spec = changed(spec, {"seed": seed})
         twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
     board = make(spec, twins, compiled=compiled)
+    for text in scenario.warnings:
+        board.note("scenario", "warning", text)
     for position, commands in enumerate(scenario.events):
         for command in commands:
             try:
@@ -235,13 +239,18 @@ def _figures(
 ) -> dict[str, float]:
     """Return the figures of a board from the trace, or those of a twin from the trace of all boards."""
     table = signals or board.signals
+    names = figure_signals(board, table, prefix)
+    trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
+    return measure(board, trace, scenario.head.metrics)
+
+
+def figure_signals(board: Board, table: SignalTable, prefix: str = "") -> list[str]:
+    """Return the signals of a board that its figures are made of, as far as they are in a table of signals."""
     moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
     names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]
     known = set(table.names)
-    names = [name for name in names if prefix + name in known]
-    trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
-    return measure(board, trace, scenario.head.metrics)
+    return [name for name in names if prefix + name in known]
 
 
 def _run_study(scenario: Scenario, board: Board) -> Result:
@@ -255,4 +264,5 @@ def _run_study(scenario: Scenario, board: Board) -> Result:
     elapsed = time.perf_counter() - began
     figures = np.array([metrics[name] for name in sorted(metrics)])
     digest = hashlib.sha256(figures.tobytes()).hexdigest()
-    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, cautions(board.spec), *nothing)
+    told = [*scenario.warnings, *cautions(board.spec)]
+    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, *nothing)

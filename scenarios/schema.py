@@ -2,78 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, Self
+import math
+from typing import Any, Literal
 
 import tomlkit
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from core.board.commands import LONGEST_MS, Command, parse_event
-from core.board.document import Document
+from core.board.document import Document, has
 from core.board.ensemble import twin_specs
 from core.board.parse import parse
 from core.board.spec import fields
-from core.errors import InputError, from_validation, unknown_field
-from core.format import format_short
+from core.errors import InputError, from_validation, short, unknown_field
 from core.nesting import read_toml
 from core.table import Table
+from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
 from scenarios.studies import parse_study
 
-Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced"]
 MAX_SAMPLES = 200_000_000
-
-
-class Expectation(Table):
-    """What a metric should be, and what was published."""
-
-    metric: str
-    min: float | None = None
-    max: float | None = None
-    value: float | None = None
-    tolerance: float | None = Field(None, ge=0)
-    published: str = ""
-    published_value: float | None = None
-    published_range: tuple[float, float] | None = None
-    fitted: list[str] = []
-    compare: Literal["open_loop", "pid", "none"] | None = None
-    reason: str = ""
-    verdict: Verdict | None = None
-    note: str = ""
-
-    @model_validator(mode="after")
-    def _bounded(self) -> Self:
-        if (self.value is None) != (self.tolerance is None):
-            raise ValueError("value and tolerance go together")
-        if self.value is None and self.min is None and self.max is None:
-            raise ValueError("needs min, max, or value with tolerance")
-        if self.min is not None and self.max is not None and self.min > self.max:
-            raise ValueError(f"can never hold: min {self.min:g} is more than max {self.max:g}")
-        return self
-
-    def holds(self, measured: float | None) -> bool:
-        """Return whether a measured value is as expected."""
-        if measured is None:
-            return False
-        low, high = self.bounds()
-        return (low is None or measured >= low) and (high is None or measured <= high)
-
-    def bounds(self) -> tuple[float | None, float | None]:
-        """Return the smallest and the largest value that count as expected."""
-        if self.value is None:
-            return self.min, self.max
-        return self.value - (self.tolerance or 0.0), self.value + (self.tolerance or 0.0)
-
-    def text(self) -> str:
-        """Write the expectation as text."""
-        if self.value is not None:
-            return f"{format_short(self.value, '', 6)} ± {format_short(self.tolerance or 0.0, '', 6)}"
-        parts = [f">= {format_short(self.min, '', 6)}"] if self.min is not None else []
-        parts += [f"<= {format_short(self.max, '', 6)}"] if self.max is not None else []
-        return " and ".join(parts)
+UNREAD = "verdict is not read: it follows from published_value, published_range and fitted"
 
 
 class Head(Table):
-    """All of a scenario that is not the bench itself."""
+    """All of a scenario that is not the bench itself; ``verdict`` is not read, earlier files have one."""
 
     schema_: Literal[1] = Field(1, alias="schema")
     id: str = Field("unnamed", pattern=r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$")
@@ -81,7 +33,7 @@ class Head(Table):
     source: str = Field("", max_length=500)
     summary: str = Field("", max_length=2000)
     claim: str = Field("", max_length=2000)
-    verdict: Verdict | None = None
+    verdict: str | None = None
     samples: int | None = Field(None, ge=1, le=MAX_SAMPLES)
     duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
     events: list[dict[str, Any]] = Field([], max_length=100_000)
@@ -117,7 +69,7 @@ class Scenario:
     def __init__(self, document: Document) -> None:
         if not isinstance(document, dict):
             raise InputError("a scenario must be a table", "scenario")
-        self.document = document
+        self.document = document = _with_open_ends(document)
         head = {key: value for key, value in document.items() if key in HEAD}
         self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
         try:
@@ -140,6 +92,10 @@ class Scenario:
                 self.events.append(_commands(event))
             except InputError as error:
                 raise error.under(f"events.{position}") from None
+        for position, entry in enumerate(self.head.expect):
+            for path in entry.fitted:
+                if not has(document, path):
+                    raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
 
     @classmethod
     def load(cls, text: str | Document) -> Scenario:
@@ -164,9 +120,40 @@ class Scenario:
             return max(1, round(self.head.duration_ms / self.spec.dt_ms))
         return self.head.samples
 
+    @property
+    def verdict(self) -> Verdict | None:
+        """The word for it if all its expectations hold."""
+        return overall(entry.promised() for entry in self.head.expect)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What of its claims is not read, or cannot be judged."""
+        rows = self.head.expect
+        said = [UNREAD] if self.head.verdict is not None or any(entry.verdict is not None for entry in rows) else []
+        return said + [
+            f"{entry.metric}: published has no published_value and no published_range, so there is no verdict"
+            for entry in rows
+            if entry.promised() is None
+        ]
+
     def toml(self) -> str:
         """Return the scenario as TOML."""
         return tomlkit.dumps(self.document)
+
+
+def _with_open_ends(document: Document) -> Document:
+    """Return the document with the open ends of published ranges as texts, which JSON can carry."""
+    rows = document.get("expect")
+    if not isinstance(rows, list):
+        return document
+    closed = []
+    for row in rows:
+        ends = row.get("published_range") if isinstance(row, dict) else None
+        if isinstance(ends, list):
+            texts = [str(end) if isinstance(end, float) and math.isinf(end) else end for end in ends]
+            row = {**row, "published_range": texts}
+        closed.append(row)
+    return {**document, "expect": closed}
 
 
 def _commands(event: Document) -> list[Command]:

@@ -15,8 +15,8 @@ from scenarios.run import judge, run
 from scenarios.schema import Scenario
 
 
-def parse_seeds(text: str) -> range:
-    """Read ``A:B``, both included.
+def parse_seeds(text: str, field: str = "--seeds") -> range:
+    """Read ``A:B``, both included: how seeds are counted everywhere.
 
     Raises
     ------
@@ -26,7 +26,7 @@ def parse_seeds(text: str) -> range:
     whole = re.fullmatch(r"\s*([0-9]{1,16})\s*:\s*([0-9]{1,16})\s*", text)
     first, last = (int(part) for part in whole.groups()) if whole else (1, 0)
     if not first <= last <= MOST_SEED:
-        raise InputError(f"must be A:B with whole numbers A <= B <= {MOST_SEED}, got {short(text)}", "--seeds")
+        raise InputError(f"must be A:B with whole numbers A <= B <= {MOST_SEED}, got {short(text)}", field)
     return range(first, last + 1)
 
 

@@ -18,11 +18,13 @@ from typer.core import TyperGroup
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.errors import InputError, one_line
-from core.format import format_figure, format_in, format_short, format_si, unit_text
+from core.format import format_short, format_si, unit_text
 from core.registry import BlockCard, catalog
+from scenarios.counterpart import beside
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
 from scenarios.report.keeping import keep
+from scenarios.report.text import gallery_text, run_text
 from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds, run_seeds
@@ -96,26 +98,6 @@ def load(name: str) -> Scenario:
     return get(name)
 
 
-def show_run(summary: dict[str, Any]) -> None:
-    """Print a run for people."""
-    say(f"{summary['scenario']}: {summary['title']}")
-    if summary["claim"]:
-        say(f"  claim    {summary['claim']} ({summary['verdict']})")
-    took = format_si(summary["elapsed_s"], "s", 3)
-    say(f"  ticks    {summary['ticks']} of {format_short(summary['dt_s'], 's')} in {took}")
-    say(f"  digest   {summary['digest']}")
-    if summary["trip"]:
-        say(f"  tripped  at {format_in(summary['trip']['time_ms'], 'ms', 3)}: {summary['trip']['reason']}")
-    for text in summary["warnings"]:
-        say(f"  warning  {text}")
-    for name, value in summary["metrics"].items():
-        spread = summary.get("metrics_std", {}).get(name)
-        say(f"  {name:<44} {format_figure(name, value, 6)}" + (f" ± {format_short(spread, '', 2)}" if spread else ""))
-    for entry in summary["expectations"]:
-        measured = format_figure(entry["metric"], entry["measured"], 6)
-        say(f"  {'ok  ' if entry['ok'] else 'MISS'} {entry['metric']} {entry['expected']}: {measured}")
-
-
 @app.command()
 @plainly
 def run(
@@ -140,6 +122,7 @@ def run(
         result = run_scenario(chosen, seed, taps=out is not None)
         summary = result.summary()
         if out is not None:
+            summary = beside(summary, chosen)
             try:
                 keep(result, summary, [result.seed], out / f"{chosen.id}-seed{result.seed}")
             except OSError as error:
@@ -147,7 +130,7 @@ def run(
     if as_json:
         say_json(summary)
     else:
-        show_run(summary)
+        say(run_text(summary))
     raise typer.Exit(0 if summary["ok"] else 1)
 
 
@@ -157,24 +140,15 @@ def gallery(
     only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
     as_json: JsonOption = False,
 ) -> None:
-    """Run every library scenario: published claim, expectation, measured, verdict."""
+    """Run every library scenario: published claim, expectation, measured, verdict, and what the open loop gives."""
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
     if not chosen:
         raise InputError(f"no scenario matches {only!r}", "--only")
-    summaries = [run_scenario(entry).summary() for entry in chosen]
+    summaries = [beside(run_scenario(entry).summary(), entry) for entry in chosen]
     if as_json:
         say_json(summaries)
     else:
-        for summary in summaries:
-            say(
-                f"{'ok  ' if summary['ok'] else 'MISS'} {summary['scenario']:<28} "
-                f"{summary['verdict'] or '':<22} {summary['claim']}"
-            )
-            for text in summary["warnings"]:
-                say(f"       warning: {text}")
-            for entry in summary["expectations"]:
-                measured = format_figure(entry["metric"], entry["measured"], 6)
-                say(f"       {entry['metric']:<44} {entry['expected']:<18} {measured}")
+        say("\n".join(gallery_text(summary) for summary in summaries))
     raise typer.Exit(0 if all(summary["ok"] for summary in summaries) else 1)
 
 

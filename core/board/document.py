@@ -212,6 +212,27 @@ def _position(part: str, items: list[Any], path: str) -> int:
     return int(part)
 
 
+def has(document: Document, path: str) -> bool:
+    """Return whether a document says something at a path; parameters of controllers and sensors may be parked."""
+    if _leads(document, path.split(".")):
+        return True
+    one, _, rest = path.partition(".")
+    group = document.get(PARKED[one][0], {}) if one in PARKED else {}
+    return bool(rest) and any(_leads(table, rest.split(".")) for table in group.values())
+
+
+def _leads(table: Any, parts: list[str]) -> bool:
+    """Return whether dotted parts lead to something in nested tables and lists."""
+    for part in parts:
+        if isinstance(table, dict) and part in table:
+            table = table[part]
+        elif isinstance(table, list) and POSITION.fullmatch(part) and int(part) < len(table):
+            table = table[int(part)]
+        else:
+            return False
+    return True
+
+
 def written(document: Document) -> list[str]:
     """Return the paths of a document in tables from which the normal form takes something elsewhere."""
     return [f"{one}.{name}" for one in ("plant", *PARKED) for name in document.get(one, {})]

@@ -19,7 +19,7 @@ class GainAdaptation(Block):
     .. math:: \text{MIT: }\dot k_c=Bey_m;\quad\text{Lyapunov: }\dot k_c=B(\dot e+ce)r;\quad\text{Dressler: }\dot k_c=Ber
 
     .. math:: \text{Price: }k_c=\int Ber\,dt+\gamma Ber;\quad
-        \text{Monopoli: }\dot k_c=Bey,\;y=\frac{r}{1+qs},\;u=k_cr+q\dot k_cy
+        \text{Monopoli: }k_c=\int Bey\,dt+\gamma Bey,\;y=\frac{r}{1+qs},\;u=k_cr+q\dot k_cy
 
     with :math:`e=y_m-y_p`. For a plant :math:`k_v/(b_2s^2+b_1s+1)` and a constant reference R the MIT rule and
     Dressler's are stable up to :math:`b_1/(b_2kk_vR^2)` and :math:`b_1/(b_2k_vR^2)`; Price's always for
@@ -49,10 +49,8 @@ class GainAdaptation(Block):
         Equation("Price's rule", r"\dot k_c=Ber+\gamma\frac{d}{dt}(Ber)", "B.4.1"),
         Equation(
             "Monopoli's rule",
-            r"\dot k_c=Bey,\quad y=\frac{r}{1+qs},\quad u=k_cr+q\dot k_cy",
+            r"\dot k_c=Bey+\gamma\frac{d}{dt}(Bey),\quad y=\frac{r}{1+qs},\quad u=k_cr+q\dot k_cy",
             "B.5.1",
-            printed=r"\dot k_c=Bey+\gamma\frac{d}{dt}(Bey)",
-            why="the part with gamma would need the slope of the slope in u, and is not needed for stability",
         ),
     )
 
@@ -67,7 +65,7 @@ class GainAdaptation(Block):
         )
         adaptation_gain: float = parameter(0.4, "adaptation gain B", equation="B.1.1", gt=0, le=1e4)
         error_weight: float = parameter(0.5, "part c of the error in Lyapunov's rule", equation="B.2.8", ge=0, le=1e3)
-        proportional: float = parameter(1.0, "gamma of Price's rule", equation="B.4.1", ge=0, le=1e3)
+        proportional: float = parameter(1.0, "gamma of Price's and Monopoli's rules", equation="B.4.1", ge=0, le=1e3)
         filter_time: float = parameter(1.5, "time constant q of Monopoli's filter", equation="B.5.1", gt=0.001, le=1e3)
         initial_gain: float = parameter(0.0, "gain at the start", ge=-1e3, le=1e3, live=False)
 
@@ -85,12 +83,13 @@ class GainAdaptation(Block):
         algebraic: float
 
     class State(Record):
-        """Integral, error and reference of the last sample, Monopoli's filter, whether it has run."""
+        """Integral, error and reference of the last sample, Monopoli's filter and its product, whether it has run."""
 
         integral: float
         last_error: float
         last_reference: float
         filtered: float
+        last_product: float
         started: float
 
     class Ports(ControllerPorts):
@@ -156,13 +155,17 @@ class GainAdaptation(Block):
             slope = p.adaptation_gain * p.error_weight * e * r if rule == LYAPUNOV else 0.0
         s.integral += p.h * slope
         gain = s.integral
-        if rule == PRICE:
+        if rule == PRICE or rule == MONOPOLI:
             gain += p.proportional * slope
         if p.algebraic != 0.0:
             gain = slope
         u = gain * r
         if rule == MONOPOLI:
-            u += p.filter_time * slope * s.filtered
+            # the slope of the gain, that of e y over the sample before
+            product = e * s.filtered
+            growth = slope + p.adaptation_gain * p.proportional * (product - s.last_product) / p.h
+            u += p.filter_time * growth * s.filtered
+            s.last_product = product
         s.last_error, s.last_reference = e, r
         x.voltage = u
         x.gain = gain

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from core.block import Context, Equation, parameter
@@ -85,6 +86,12 @@ class Consistency(KalmanBank):
         consistent: Vector = tap("1", "1 while the hypothesis is consistent with the window", each="hypotheses")
         power: Vector = tap("1", "power of the normalised residuals over the window", each="hypotheses")
         tone: Vector = tap("1", "part of the normalised residuals at the tone, 2 on average", each="hypotheses")
+        cosine: Vector = tap(
+            "1", "that part by the cosine of the tone, 1 at the limit of the test", each="hypotheses"
+        )
+        sine: Vector = tap(
+            "1", "that part by the sine of the tone, 1 at the limit of the test", each="hypotheses"
+        )
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
@@ -125,6 +132,12 @@ class Consistency(KalmanBank):
             consistent = power <= p.power_limit and tone <= p.tone_limit
             x.power[i] = power
             x.tone[i] = tone
+            c = s.cosine_sum[i]
+            d = s.sine_sum[i]
+            size = c * c + d * d
+            scale = math.sqrt(max(tone, 0.0) / (p.tone_limit * size)) if size > 0.0 else 0.0
+            x.cosine[i] = c * scale
+            x.sine[i] = d * scale
             x.consistent[i] = 1.0 if consistent else 0.0
             if consistent:
                 candidates += 1

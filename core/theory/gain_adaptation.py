@@ -19,7 +19,8 @@ MIT, PARKS, LYAPUNOV, DRESSLER, PRICE, MONOPOLI = 0, 1, 2, 3, 4, 5
 """``PARKS`` is the rule as derived, on the slope of the error alone; ``LYAPUNOV`` adds the error itself."""
 RULES = {"mit": MIT, "parks": PARKS, "lyapunov": LYAPUNOV, "dressler": DRESSLER, "price": PRICE, "monopoli": MONOPOLI}
 STEPS = 200
-"""Steps of a period."""
+"""Steps of a period, at least."""
+MOST_STEPS = 10_000
 MARGIN = 1e-7
 """Largest growth rate, 1/time, that counts as stable."""
 
@@ -37,7 +38,7 @@ class GainLoop:
     amplitude : float
         R of the reference R sin wt, or of the constant.
     error_weight, proportional, filter_time : float
-        c of ``LYAPUNOV``, gamma of ``PRICE``, q of ``MONOPOLI``.
+        c of ``LYAPUNOV``, gamma of ``PRICE`` and ``MONOPOLI``, q of ``MONOPOLI``.
     """
 
     b1: float = 1.0
@@ -66,20 +67,24 @@ class GainLoop:
 
 
 @kernel
-def _coefficients(p: FloatArray, rule: int, rate: float, r: float, ym: float, y: float) -> tuple[float, float, float]:
-    """Return the effects of e and e' on the slope of x, and the direct effect of e on the plant."""
+def _coefficients(
+    p: FloatArray, rule: int, rate: float, r: float, ym: float, y: float
+) -> tuple[float, float, float, float]:
+    """Return the effects of e and e' on the slope of x, and their direct effects on the plant."""
     strength = -p[2] * rate
     if rule == MIT:
-        return strength * ym, 0.0, 0.0
+        return strength * ym, 0.0, 0.0, 0.0
     if rule == PARKS:
-        return 0.0, strength * r, 0.0
+        return 0.0, strength * r, 0.0, 0.0
     if rule == LYAPUNOV:
-        return strength * p[5] * r, strength * r, 0.0
+        return strength * p[5] * r, strength * r, 0.0, 0.0
     if rule == MONOPOLI:
-        return strength * y, 0.0, p[7] * strength * y * y
+        # x' = -kv B (ey + gamma (ey)'), y' = (r - y)/q, and the voltage adds q x' y
+        on_e, on_v = strength * (y + p[6] * (r - y) / p[7]), strength * p[6] * y
+        return on_e, on_v, p[7] * y * on_e, p[7] * y * on_v
     if rule == PRICE:
-        return strength * r, 0.0, p[6] * strength * r * r
-    return strength * r, 0.0, 0.0
+        return strength * r, 0.0, p[6] * strength * r * r, 0.0
+    return strength * r, 0.0, 0.0, 0.0
 
 
 @kernel
@@ -88,9 +93,10 @@ def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
     b1, b2, k, amplitude, q = p[0], p[1], p[3], p[4], p[7]
     transition = np.zeros((3, 3))
     if w == 0.0:
-        on_e, on_v, at_once = _coefficients(p, rule, rate, amplitude, k * amplitude, amplitude)
+        on_e, on_v, at_once, slope_at_once = _coefficients(p, rule, rate, amplitude, k * amplitude, amplitude)
         transition[0, 1] = 1.0
-        transition[1, 0], transition[1, 1], transition[1, 2] = (at_once - 1.0) / b2, -b1 / b2, amplitude / b2
+        transition[1, 0], transition[1, 1] = (at_once - 1.0) / b2, (slope_at_once - b1) / b2
+        transition[1, 2] = amplitude / b2
         transition[2, 0], transition[2, 1] = on_e, on_v
         return transition
     for i in range(3):
@@ -99,31 +105,35 @@ def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
     real, imaginary = 1.0 - b2 * w * w, b1 * w
     model = k * amplitude / (real * real + imaginary * imaginary)
     filtered = amplitude / (1.0 + q * q * w * w)
-    h = 2.0 * math.pi / w / STEPS
+    steps = STEPS
+    if rule == MONOPOLI:  # its part with gamma damps the plant, and the steps must follow that
+        damped = 2.0 * math.pi / w * p[2] * rate * p[6] * q * amplitude * filtered / b2
+        steps += int(min(damped, float(MOST_STEPS)))
+    h = 2.0 * math.pi / w / steps
     r1 = 0.0
-    e1, v1, g1 = _coefficients(p, rule, rate, 0.0, -model * imaginary, -filtered * q * w)
-    for i in range(STEPS):
+    e1, v1, g1, d1 = _coefficients(p, rule, rate, 0.0, -model * imaginary, -filtered * q * w)
+    for i in range(steps):
         sine, cosine = sin(w * h * (i + 0.5)), cos(w * h * (i + 0.5))
         ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
         r2 = amplitude * sine
-        e2, v2, g2 = _coefficients(p, rule, rate, r2, ym, y)
+        e2, v2, g2, d2 = _coefficients(p, rule, rate, r2, ym, y)
         sine, cosine = sin(w * h * (i + 1.0)), cos(w * h * (i + 1.0))
         ym, y = model * (real * sine - imaginary * cosine), filtered * (sine - q * w * cosine)
         r3 = amplitude * sine
-        e3, v3, g3 = _coefficients(p, rule, rate, r3, ym, y)
+        e3, v3, g3, d3 = _coefficients(p, rule, rate, r3, ym, y)
         for c in range(3):
             e, v, x = transition[0, c], transition[1, c], transition[2, c]
-            ka, la, ma = v, (x * r1 + (g1 - 1.0) * e - b1 * v) / b2, e1 * e + v1 * v
+            ka, la, ma = v, (x * r1 + (g1 - 1.0) * e + (d1 - b1) * v) / b2, e1 * e + v1 * v
             et, vt, xt = e + 0.5 * h * ka, v + 0.5 * h * la, x + 0.5 * h * ma
-            kb, lb, mb = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
+            kb, lb, mb = vt, (xt * r2 + (g2 - 1.0) * et + (d2 - b1) * vt) / b2, e2 * et + v2 * vt
             et, vt, xt = e + 0.5 * h * kb, v + 0.5 * h * lb, x + 0.5 * h * mb
-            kc, lc, mc = vt, (xt * r2 + (g2 - 1.0) * et - b1 * vt) / b2, e2 * et + v2 * vt
+            kc, lc, mc = vt, (xt * r2 + (g2 - 1.0) * et + (d2 - b1) * vt) / b2, e2 * et + v2 * vt
             et, vt, xt = e + h * kc, v + h * lc, x + h * mc
-            kd, ld, md = vt, (xt * r3 + (g3 - 1.0) * et - b1 * vt) / b2, e3 * et + v3 * vt
+            kd, ld, md = vt, (xt * r3 + (g3 - 1.0) * et + (d3 - b1) * vt) / b2, e3 * et + v3 * vt
             transition[0, c] = e + h / 6.0 * (ka + 2.0 * kb + 2.0 * kc + kd)
             transition[1, c] = v + h / 6.0 * (la + 2.0 * lb + 2.0 * lc + ld)
             transition[2, c] = x + h / 6.0 * (ma + 2.0 * mb + 2.0 * mc + md)
-        r1, e1, v1, g1 = r3, e3, v3, g3
+        r1, e1, v1, g1, d1 = r3, e3, v3, g3, d3
     return transition
 
 

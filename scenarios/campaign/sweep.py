@@ -13,17 +13,17 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from core.block import FloatArray
-from core.board.document import with_values as write
 from core.board.spec import MOST_SEED
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
 from core.nesting import read_toml
 from core.table import Table
-from scenarios.edit import with_values
+from scenarios.edit import with_values, written
 from scenarios.key import content_hash, run_key
 from scenarios.library import get
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
+from scenarios.seeds import parse_seeds
 
 MAX_RUNS = 1_000_000
 MAX_POINTS = 20_000
@@ -33,10 +33,24 @@ Values = dict[str, Any]
 
 
 class Seeds(Table):
-    """Noise seeds; every point runs with the same ones, so that points differ by their values alone."""
+    """Noise seeds, ``"A:B"`` with both ends, the same for every point, so that points differ by their values.
+
+    A first seed and a count are read as well.
+    """
 
     first: int = Field(1, ge=0, le=MOST_SEED)
     count: int = Field(1, ge=1, le=MAX_RUNS)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _both_ends(cls, given: Any) -> Any:
+        if not isinstance(given, str):
+            return given
+        try:
+            seeds = parse_seeds(given, "seeds")
+        except InputError as error:
+            raise ValueError(error.message) from None
+        return {"first": seeds[0], "count": len(seeds)}
 
     @model_validator(mode="after")
     def _reach(self) -> Self:
@@ -140,7 +154,7 @@ class Point:
     @property
     def document(self) -> dict[str, Any]:
         """The scenario with its values; built anew at each call, because thousands of them take much memory."""
-        return write(self.base, self.values) if self.values else self.base
+        return written(self.base, self.values) if self.values else self.base
 
 
 class Sweep:
@@ -260,9 +274,9 @@ class Sweep:
     def _point(self, chosen: tuple[tuple[Values, Values], ...]) -> Point:
         labels: dict[str, str | float] = {}
         values: Values = {}
-        for names, written in chosen:
+        for names, steps in chosen:
             labels |= names
-            values |= written
+            values |= steps
         return Point(labels, values, self.base.document)
 
 

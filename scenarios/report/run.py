@@ -19,6 +19,8 @@ from scenarios.run import Result
 MOST_EVENTS = 300
 CLOSE_UP = 300
 """Number of ticks at the end that are drawn one by one."""
+OTHERS = ("open_loop", "pid")
+"""Controllers in place of those of the scenario, whose figures stand beside its own."""
 CHARTS = (
     ("Displacement", ("model.displacement", "plant.displacement", "sensor.displacement")),
     ("Voltage", ("reference.voltage", "drive.voltage")),
@@ -44,6 +46,7 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
         "run.html",
         micro(head.title) or result.scenario.id,
         head=head,
+        verdict=summary["verdict"] or "none",
         seeds=f"seeds {seeds[0]} to {seeds[-1]}, charts of the first" if seeds else f"seed {summary['seed']}",
         ticks=ticks if summary["ticks"] else "",
         digest=summary["digest"],
@@ -74,6 +77,7 @@ def _expectation(entry: dict[str, Any]) -> list[str]:
         entry["expected"].replace(">=", "≥").replace("<=", "≤"),
         format_figure(entry["metric"], entry["measured"], 6),
         "holds" if entry["ok"] else "does not hold",
+        *(format_figure(entry["metric"], entry[name], 6) if entry.get(name) is not None else "–" for name in OTHERS),
         entry["verdict"] or "",
         micro(entry["note"]),
     ]

@@ -92,7 +92,7 @@ def script(document: dict[str, Any], seeds: Sequence[int], digest: str, file: st
         does=f"Run {plain.get('id', 'a scenario')} on a CombBench server, and check that it gives the same bits.",
         leaves="The trace is written beside this file.",
         file=file,
-        data=f"SCENARIO = {_say(plain)}\nSEEDS = {[seeds[0], seeds[-1] + 1]}  # first, and the one behind the last\n"
+        data=f'SCENARIO = {_say(plain)}\nSEEDS = "{seeds[0]}:{seeds[-1]}"  # both included\n'
         f'DIGEST = "{digest}"\nSIGNALS = "{",".join(_recorded(plain))}"',
     )
     return head + RUN

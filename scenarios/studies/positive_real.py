@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from core.block import BlockParams
+from core.block import BlockParams, parameter
 from core.control.controller import normalised
 from core.theory.positive_real import positive_real
 from scenarios.studies.study import Picture, Study
@@ -28,7 +28,8 @@ class PositiveReal(Study):
     """Judges transfer functions: ``spr.<name>`` is 2 if strictly positive real, 1 if positive real, 0 if neither.
 
     With them the device of the bench in time of 1/w0: its displacement, its velocity, and displacement plus velocity
-    over nine tenths of the damping; a device of first order has none of these.
+    over nine tenths of the damping; a device of first order has none of these. With ``combine`` also what A.11 makes of
+    the first two cases: ``inverse`` of the first, their ``sum``, and ``feedback``, the first closed by the second.
     """
 
     title = "Positive real"
@@ -37,6 +38,13 @@ class PositiveReal(Study):
         """Which transfer functions."""
 
         cases: list[Case] = Field([], max_length=100, description="transfer functions to judge")
+        combine: bool = parameter(False, "judge inverse, sum and feedback of the first two too", equation="A.11.1")
+
+        @model_validator(mode="after")
+        def _two_to_combine(self) -> Self:
+            if self.combine and len(self.cases) < 2:
+                raise ValueError("combine needs two cases")
+            return self
 
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
@@ -63,6 +71,14 @@ class PositiveReal(Study):
         """Return name, numerator and denominator of every transfer function."""
         device = board.spec.context().device
         cases = [(case.name, case.numerator, case.denominator) for case in params.cases]
+        if params.combine:
+            (_, n1, d1), (_, n2, d2) = cases[:2]
+            both = np.polymul(d1, d2)
+            cases += [
+                ("inverse", d1, n1),
+                ("sum", np.polyadd(np.polymul(n1, d2), np.polymul(n2, d1)).tolist(), both.tolist()),
+                ("feedback", np.polymul(n1, d2).tolist(), np.polyadd(both, np.polymul(n1, n2)).tolist()),
+            ]
         if device.mass > 0.0:
             a1, a2, _ = normalised(device, device.natural_frequency)
             below = [1.0, a1, a2]

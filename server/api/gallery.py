@@ -13,9 +13,10 @@ from core.board.commands import Inject, Switch
 from core.board.spec import Spec
 from core.errors import InputError
 from core.registry import blocks
+from scenarios.expectation import Verdict, overall
 from scenarios.library import ids, is_demo, library
 from scenarios.report.svg import with_style
-from scenarios.schema import Scenario, Verdict
+from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import SVG
@@ -31,10 +32,15 @@ class Expected(BaseModel):
 
     metric: str
     published: str
+    published_value: float | None
     expected: str
-    verdict: Verdict | None
+    verdict: Verdict | None = Field(description="That of the measured value; until it is run, if the expectation holds")
+    fitted: list[str] = Field(description="Fields of the scenario that were chosen so that it agrees")
+    reason: str = Field(description="Why nothing is said by comparing it with the open loop")
     note: str
     measured: float | None = None
+    open_loop: float | None = Field(None, description="With the open loop in place of the controller")
+    pid: float | None = Field(None, description="With a PID in its place, where the claim is against one")
     ok: bool | None = Field(None, description="Null until it has been run")
 
 
@@ -145,13 +151,30 @@ def _card(scenario: Scenario, run: Run | None, figures: Figures) -> GalleryCard:
     figure: Figure | None = figures.made.get(scenario.id)
     summary = (run.summary if run is not None else None) or (figure.summary if figure is not None else {})
     measured = summary.get("expectations") or [{}] * len(head.expect)
+    rows = [
+        Expected(
+            metric=entry.metric,
+            published=entry.published,
+            published_value=entry.published_value,
+            expected=entry.text(),
+            verdict=measurement["verdict"] if measurement else entry.promised(),
+            fitted=entry.fitted,
+            reason=entry.reason,
+            note=entry.note,
+            measured=measurement.get("measured"),
+            open_loop=measurement.get("open_loop"),
+            pid=measurement.get("pid"),
+            ok=measurement.get("ok"),
+        )
+        for entry, measurement in zip(head.expect, measured, strict=True)
+    ]
     return GalleryCard(
         id=scenario.id,
         title=head.title,
         source=head.source,
         summary=head.summary,
         claim=head.claim,
-        verdict=head.verdict,
+        verdict=overall(row.verdict for row in rows),
         demo=is_demo(scenario.id),
         topics=_topics(scenario),
         figure=figure.key if figure is not None else None,
@@ -163,16 +186,5 @@ def _card(scenario: Scenario, run: Run | None, figures: Figures) -> GalleryCard:
         elapsed_s=summary.get("elapsed_s"),
         digest=summary.get("digest", ""),
         ok=summary.get("ok"),
-        expectations=[
-            Expected(
-                metric=entry.metric,
-                published=entry.published,
-                expected=entry.text(),
-                verdict=entry.verdict or head.verdict,
-                note=entry.note,
-                measured=measurement.get("measured"),
-                ok=measurement.get("ok"),
-            )
-            for entry, measurement in zip(head.expect, measured, strict=True)
-        ],
+        expectations=rows,
     )

@@ -9,7 +9,9 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
+from core.board.spec import MOST_SEED
 from core.errors import InputError
+from scenarios.seeds import parse_seeds
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
@@ -31,8 +33,11 @@ class NewRun(Body):
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
     seed: int | None = Field(None, ge=0, le=2**53)
     label: str = Field("", max_length=1000, description="Name for the run, at most 120 characters")
-    seeds: list[int] | None = Field(
-        None, min_length=2, max_length=2, description="First seed and the one behind the last"
+    seeds: str | Annotated[list[int], Field(min_length=2, max_length=2)] | None = Field(
+        None,
+        max_length=100,
+        description='"A:B", both included; earlier scripts send a list of the first seed and the one behind the last, '
+        "which is read too",
     )
 
 
@@ -71,19 +76,29 @@ async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Ru
     scenario, _ = await asyncio.to_thread(prepare, body.scenario, body.set, body.seed)
     seeds = [scenario.spec.seed if body.seed is None else body.seed]
     if body.seeds is not None:
-        first, end = body.seeds
-        most = service.settings.max_run_seeds
         if body.seed is not None:
             raise InputError("give seed or seeds, not both", "seeds")
-        if not 0 <= first < end <= 2**53 or end - first > most:
-            raise InputError(f"must be [first, end] with 0 <= first < end and at most {most} seeds", "seeds")
-        seeds = list(range(first, end))
+        seeds = _seeds(body.seeds, service.settings.max_run_seeds)
     label = clean_label(body.label)
     await service.keeping.room()
     run, is_new = await service.jobs.start(scenario, seeds, label)
     response.status_code = 202 if is_new else 200
     response.headers["Location"] = f"/api/v1/runs/{run.id}"
     return run
+
+
+def _seeds(asked: str | list[int], most: int) -> list[int]:
+    """Return the seeds that are asked for."""
+    if isinstance(asked, str):
+        seeds = parse_seeds(asked, "seeds")
+    else:
+        first, end = asked
+        if not 0 <= first < end <= MOST_SEED:
+            raise InputError('must be "A:B", or a list [first, end] with 0 <= first < end', "seeds")
+        seeds = range(first, end)
+    if len(seeds) > most:
+        raise InputError(f"has {len(seeds)} seeds, at most {most} (max_run_seeds)", "seeds")
+    return list(seeds)
 
 
 @router.get("")

@@ -8,6 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from core.board.document import plant_of
+from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
@@ -25,7 +26,7 @@ class ScenarioCard(BaseModel):
     source: str
     summary: str
     claim: str
-    verdict: str | None
+    verdict: Verdict | None = Field(description="If all expectations hold; it follows from what the rows state")
     samples: int | None
     plant: str | None = Field(description="Plant of the bench; null for a study")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
@@ -42,6 +43,7 @@ class ScenarioText(BaseModel):
 
     document: dict[str, Any]
     toml: str
+    warnings: list[str] = Field(description="What of its claims is not read, or cannot be judged")
 
 
 class ScenarioSource(Body):
@@ -59,7 +61,7 @@ def card(scenario: Scenario) -> ScenarioCard:
         source=head.source,
         summary=head.summary,
         claim=head.claim,
-        verdict=head.verdict,
+        verdict=scenario.verdict,
         samples=scenario.samples,
         plant=plant_of(scenario.document).name if head.study is None else None,
         study=str(head.study["kind"]) if head.study is not None else None,
@@ -78,7 +80,7 @@ def get_scenario(scenario_id: str) -> ScenarioText:
     if scenario_id not in ids():
         raise not_found("scenario", scenario_id, "list them at /api/v1/scenarios")
     scenario = get(scenario_id)
-    return ScenarioText(document=scenario.document, toml=scenario.toml())
+    return ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
 
 
 @router.post("/check")
@@ -86,6 +88,6 @@ def check_scenario(body: ScenarioSource) -> ScenarioText:
     """Check a scenario without running it; the answer 422 says what is wrong with it."""
     scenario, _ = prepare(body.scenario, {}, None)
     try:
-        return ScenarioText(document=scenario.document, toml=scenario.toml())
+        return ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
     except (TypeError, ValueError) as error:
         raise ApiError(422, "invalid", f"the scenario cannot be written as TOML: {error}", "scenario") from None

@@ -62,13 +62,15 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     Returns
     -------
     dict
-        The summary; with several seeds metrics are means and ``metrics_std`` is added.
+        The summary, with the open loop beside each expectation; with several seeds metrics are means and
+        ``metrics_std`` is added.
 
     Raises
     ------
     Cancelled
         When a file ``cancel`` has appeared in the folder.
     """
+    from scenarios.counterpart import beside
     from scenarios.report.keeping import keep
     from scenarios.run import DEFAULT_SAMPLES, Result, build, run, run_bytes
     from scenarios.schema import Scenario
@@ -89,18 +91,19 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
         kept = kept or result
     assert kept is not None
     summary = summaries[0] if len(summaries) == 1 else together(scenario, summaries)
-    summary = dict(json.loads(json.dumps(summary, default=str)))
+    summary = dict(json.loads(json.dumps(beside(summary, scenario), default=str)))
     keep(kept, summary, seeds, place / STEM)
     return summary
 
 
 def draw(document: dict[str, Any]) -> dict[str, Any]:
     """Run a scenario with its own seed, and return its summary and its figure; nothing else of it is kept."""
+    from scenarios.counterpart import beside
     from scenarios.report.figure import figure
     from scenarios.report.svg import CARD, paint
     from scenarios.run import run
     from scenarios.schema import Scenario
 
     result = run(Scenario.load(document))
-    summary = dict(json.loads(json.dumps(result.summary(), default=str)))
+    summary = dict(json.loads(json.dumps(beside(result.summary(), result.scenario), default=str)))
     return {"summary": summary, "svg": paint(figure(result), CARD)}

@@ -57,12 +57,13 @@ def test_mit_rule_turns_unstable_at_routh_s_limit():
         ("mit", {"adaptation_gain": 0.4}),
         ("dressler", {"adaptation_gain": 0.6}),
         ("price", {"adaptation_gain": 1.5, "proportional": 0.5}),
-        ("monopoli", {"adaptation_gain": 2.0}),
+        ("monopoli", {"adaptation_gain": 2.0, "proportional": 0.5}),
+        ("monopoli", {"adaptation_gain": 0.7, "proportional": 0.0}),
         ("lyapunov", {"adaptation_gain": 0.5}),
     ],
 )
 def test_every_rule_settles_at_the_rate_of_its_eigenvalues(rule, law):
-    loop = GainLoop(model_gain=2.0, error_weight=0.5, proportional=0.5, filter_time=1.5)
+    loop = GainLoop(model_gain=2.0, error_weight=0.5, proportional=law.get("proportional", 0.5))
     theory = growth(loop, RULES[rule], law["adaptation_gain"], 0.0)
     assert theory < 0
     assert rate(error(40.0, rule=rule, **law)) == pytest.approx(theory, rel=0.12, abs=0.005)

@@ -38,7 +38,7 @@ def test_the_bank_says_what_is_there(seed):
 def test_an_allan_deviation_has_three_branches(seed):
     """N^2/tau + (2 ln 2/pi) B^2 + K^2 tau/3 at every octave, within three deviations of its own scatter."""
     result = run(get("gyro-allan-three-noises"), seed)
-    white, floor, walk = 1.2 * DEG_RT_H, 250.0 * DEG_H, 25000.0 * DEG_H * DEG_RT_H
+    white, floor, walk = 0.9 * DEG_RT_H, 250.0 * DEG_H, 25000.0 * DEG_H * DEG_RT_H
     rate = np.convolve(result.signal("open_loop_rate.rate")[20_000:], np.full(200, 1 / 200), "valid")[::200]
     seen = []
     for octave in range(9):

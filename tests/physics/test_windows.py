@@ -47,6 +47,22 @@ def explained(nu, width, hz, dt):
     return np.array(rows)
 
 
+def test_the_part_at_the_tone_has_a_direction_and_the_size_of_its_test():
+    """Against direct sums over whole half periods: 1 is the limit, :math:`-2\\ln\\alpha` for two degrees of freedom."""
+    board = make({**BENCH, "diagnosers": {"kalman": {"kind": "consistency", "window": 50, "significance": 1e-5}}})
+    inject(board, added_mass=0.05)
+    trace = play(board, 400)
+    nu = normalised(trace)
+    turn = 2 * np.pi * 2000.0 * 2e-5 * np.arange(len(nu))[:, None]
+    size = np.sqrt(2.0 / 50.0 / (-2.0 * np.log(1e-5)))
+    for port, wave in (("cosine", np.cos(turn)), ("sine", np.sin(turn))):
+        found = of_bank(trace, port)
+        assert found[50:] == pytest.approx(size * sliding(nu * wave, 50)[50:], rel=1e-6, abs=1e-9)
+    outside = np.hypot(of_bank(trace, "cosine"), of_bank(trace, "sine")) > 1.0
+    assert outside[-1].any() and not outside[-1].all()
+    assert not np.any(of_bank(trace, "consistent").astype(bool) & outside)
+
+
 @pytest.mark.parametrize("kind", ["consistency", "lock_in", "lock_in_glr"])
 @pytest.mark.parametrize(
     ("hz", "width", "every"),

@@ -73,7 +73,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"samples": 100, "duration_ms": 3.0}, "duration_ms"),
     ({"schema": 2}, "schema"),
     ({"id": "No Spaces"}, "id"),
-    ({"verdict": "true"}, "verdict"),
+    ({"verdict": 1}, "verdict"),
     ({"nonsense": 1}, "nonsense"),
     ({"diagnosers.kalman.kind": "oracle"}, "diagnosers.kalman.kind"),
     ({"diagnosers.Kal man.kind": "mmae"}, "diagnosers.Kal man"),

@@ -61,7 +61,7 @@ def execute(live: Any, path: Path, text: str) -> subprocess.CompletedProcess[str
 
 
 def test_the_script_of_a_run_repeats_it(live: Any, tmp_path: Path) -> None:
-    body = {"scenario": "ch5-seven-step", "set": {"samples": 1200}, "seeds": [4, 6]}
+    body = {"scenario": "ch5-seven-step", "set": {"samples": 1200}, "seeds": "4:5"}
     found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
     answer = live.http.get(f"/api/v1/runs/{found['id']}/script")
     assert 'filename="ch5-seven-step.py"' in answer.headers["content-disposition"]
@@ -82,7 +82,7 @@ def test_the_script_of_a_campaign_repeats_it(live: Any, tmp_path: Path) -> None:
         "id": "again",
         "scenario": "ch5-seven-step",
         "set": {"samples": 1200},
-        "seeds": {"first": 3, "count": 2},
+        "seeds": "3:4",
         "grid": {"sensor.noise_um": [0.05, 0.1]},
     }
     found = live.http.post("/api/v1/sweeps", json={"sweep": sweep}).json()

@@ -11,10 +11,10 @@ const PANELS = ["What can be turned", "Drawing", "Figures", "Frequency response"
 test("no panel of the designer lies over another or is cut, at any width", async ({ page, openBench, server }) => {
   await openBench();
   const bench = new URL(page.url()).searchParams.get("bench");
+  await page.goto(`${server.origin}/?bench=${bench}&page=designer`);
   for (const size of SIZES) {
     const at = `${size.width}x${size.height}`;
     await page.setViewportSize(size);
-    await page.goto(`${server.origin}/?bench=${bench}&page=designer`);
     await expect(page.getByRole("img", { name: /^Bode diagram/ })).toBeVisible();
     const panels = await page.locator("main").evaluate((main) =>
       Array.from(main.querySelectorAll("section, header")).map((panel) => {

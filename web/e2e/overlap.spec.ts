@@ -1,101 +1,110 @@
 import type { Page } from "@playwright/test";
-import { expect, test } from "./lab";
+import { expect, HYPOTHESES, test } from "./lab";
+import type { LabServer } from "./lab-server";
+import { expectClean, expectReadable, nameOf, SCREENS, showOn } from "./screens";
 
-const SIZES = [
-  { width: 1366, height: 768 },
-  { width: 1920, height: 1080 },
-  { width: 820, height: 1180 },
-  { width: 390, height: 844 },
-];
-const LAYOUTS = ["lab", "research", "lecture"] as const;
-const SHEETS = [
-  { key: "S", title: "Share this experiment" },
-  { key: "n", title: "Mine" },
-];
-const PAGES = ["Gallery", "Runs", "Design", "Theory"];
+const RESONATOR = {
+  scenario: "ch5-seven-step",
+  set: {
+    title: "Seven steps of a resonator, under a title as long as the titles of experiments become",
+    "diagnosers.imm": { kind: "imm", hypotheses: HYPOTHESES },
+    "twins.variable_structure": { controller: { kind: "stvsc" } },
+  },
+};
+const GYROSCOPE = { scenario: "gyro-diagnosis", set: { "readouts.allan": { kind: "allan" } } };
 
-/** What is cut, lies over something else, or makes the page wider than its window. */
-const faults = (page: Page, within = "body"): Promise<string[]> =>
-  page.evaluate((within) => {
-    const found: string[] = [];
-    const name = (e: Element) =>
-      `${e.tagName.toLowerCase()} "${(e.getAttribute("aria-label") ?? e.textContent ?? "").trim().slice(0, 40)}"`;
-    const wide = document.documentElement.scrollWidth - window.innerWidth;
-    if (wide > 0) found.push(`the page is ${wide} px wider than its window`);
-    const scrolls = (e: Element) => /auto|scroll/.test(getComputedStyle(e).overflowX + getComputedStyle(e).overflowY);
-    /** The part of an element that its scrolling and hiding ancestors leave. */
-    const visible = (e: Element) => {
-      let { left, top, right, bottom } = e.getBoundingClientRect();
-      for (let up = e.parentElement; up; up = up.parentElement) {
-        if (getComputedStyle(up).overflow === "visible") continue;
-        const box = up.getBoundingClientRect();
-        left = Math.max(left, box.left);
-        top = Math.max(top, box.top);
-        right = Math.min(right, box.right);
-        bottom = Math.min(bottom, box.bottom);
-      }
-      return { left, top, right, bottom };
-    };
-    for (const e of Array.from(
-      document.querySelectorAll(`${within} :is(button, a, input, select, textarea, [role=tab])`),
-    )) {
-      if (!e.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true }) || e.closest("[aria-hidden=true]"))
+/** What has a place in no laboratory, or in the research layout alone. */
+const ADDED = ["Controllers", "Parameter sets", "Scoreboard", "3D"];
+
+test.describe.configure({ timeout: 240_000 });
+
+async function openIn(page: Page, server: LabServer, id: string): Promise<void> {
+  await page.request.get(server.url);
+  // the drawing has tests of its own
+  await page.route("**/3d/", (route) => route.fulfill({ contentType: "text/html", body: "" }));
+  await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+}
+
+/** Open a bench, let it find a fault, and hold it: it lies as it did, and leaves the machine to the test. */
+async function open(page: Page, server: LabServer, bench: object): Promise<void> {
+  const { id } = await server.ask<{ id: string }>("POST", "/benches", bench);
+  await openIn(page, server, id);
+  await page.getByRole("button", { name: "Skip" }).click();
+  await expect(page.getByRole("region", { name: "Steps of the scenario" })).toContainText(/[3-9] of \d/);
+  await page.keyboard.press("w");
+  await page.getByRole("button", { name: "Pause" }).click();
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
+}
+
+/** Bring the panels of a rank to the front, in all groups at once; their names, none when no group has as many. */
+const bringToFront = (page: Page, rank: number): Promise<string> =>
+  page.evaluate(async (rank) => {
+    const tabs = Array.from(document.querySelectorAll(".dv-groupview")).flatMap(
+      (group) => group.querySelectorAll<HTMLElement>("[role=tab]")[rank] ?? [],
+    );
+    for (const tab of tabs) tab.click();
+    for (let frame = 0; frame < 2; frame += 1) await new Promise(requestAnimationFrame);
+    return tabs.map((tab) => tab.textContent).join(", ");
+  }, rank);
+
+/** Every panel of a layout as it stands at first, and some beside. */
+async function walkDock(page: Page, key: string, added: string[], look: (where: string) => Promise<void>) {
+  await page.evaluate(() => {
+    for (const name of Object.keys(localStorage))
+      if (name.startsWith("combbench.layout.4")) localStorage.removeItem(name);
+  });
+  await page.keyboard.press(key);
+  for (const title of added) {
+    await page.getByRole("button", { name: "Add or close panels" }).last().click();
+    await page.getByRole("menuitem", { name: title, exact: true }).click();
+  }
+  for (let rank = 0; ; rank += 1) {
+    const names = await bringToFront(page, rank);
+    if (!names) return;
+    await look(names);
+  }
+}
+
+/** Every panel that a phone can open. */
+async function walkPhone(page: Page, look: (where: string) => Promise<void>) {
+  const choice = page.getByRole("combobox", { name: "Another panel" });
+  const kinds = await choice.locator("option").evaluateAll((all) => all.map((o) => (o as HTMLOptionElement).value));
+  for (const kind of kinds) {
+    await choice.selectOption(kind);
+    await look(kind);
+  }
+}
+
+for (const [device, bench] of Object.entries({ resonator: RESONATOR, gyroscope: GYROSCOPE }))
+  test(`no panel of a ${device} overlaps or is cut, on any screen, in any layout`, async ({ page, server }) => {
+    await open(page, server, bench);
+    for (const screen of SCREENS) {
+      const at = `${device} at ${nameOf(screen)}`;
+      await showOn(page, screen);
+      if (screen.width < 600) {
+        await walkPhone(page, (where) => expectClean(page, `${at}: ${where}`));
         continue;
-      const box = e.getBoundingClientRect();
-      const seen = visible(e);
-      // half scrolled away is no fault, only what is meant to be whole
-      if (seen.right - seen.left < box.width - 1 || seen.bottom - seen.top < box.height - 1 || box.width < 2) {
-        const cut = [...ancestors(e)].find((up) => getComputedStyle(up).overflowX === "hidden" && !scrolls(up));
-        const lost = cut && box.right > cut.getBoundingClientRect().right + 1 && !e.matches("[role=tab]");
-        if (lost && box.width >= 2 && ![...ancestors(e)].some(scrolls)) found.push(`${name(e)} is cut`);
-        continue;
       }
-      const middle = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
-      if (middle && !e.contains(middle) && !middle.contains(e) && !middle.closest("label")?.contains(e))
-        found.push(`${name(middle)} lies over ${name(e)}`);
-    }
-    const words = "button, button span, h1, h2, h3, label, dt, dd, th, td, p, figcaption, strong";
-    for (const e of Array.from(document.querySelectorAll(`${within} :is(${words})`))) {
-      if (!e.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true })) continue;
-      const style = getComputedStyle(e);
-      const size = Number.parseFloat(style.fontSize);
-      const says = Array.from(e.childNodes).some((n) => n.nodeType === Node.TEXT_NODE && n.textContent?.trim());
-      if (says && size < 10.99 && !e.closest(".katex")) found.push(`${name(e)} is ${size} px high`);
-      if (style.overflowX === "hidden" && style.textOverflow !== "ellipsis" && e.scrollWidth > e.clientWidth + 1)
-        found.push(`${name(e)} is cut`);
-    }
-    return [...new Set(found)];
-
-    function* ancestors(e: Element) {
-      for (let up = e.parentElement; up; up = up.parentElement) yield up;
-    }
-  }, within);
-
-for (const { width, height } of SIZES)
-  test(`nothing overlaps or is cut at ${width} x ${height}`, async ({ page, openBench }) => {
-    await page.setViewportSize({ width, height });
-    await page.emulateMedia({ colorScheme: width > 1000 ? "light" : "dark" });
-    // what comes or goes may lie over something for a moment
-    const clean = (where: string, within?: string) =>
-      expect.poll(() => faults(page, within), { message: where }).toEqual([]);
-    for (const layout of LAYOUTS) {
-      await openBench(layout);
-      await expect(page.locator("canvas").first()).toBeVisible();
-      await clean(layout);
-    }
-    for (const { key, title } of SHEETS) {
-      await page.keyboard.press(key);
-      if (title === "Mine") await page.getByRole("button", { name: "Open a scenario from disk" }).click();
-      const sheet = page.getByRole("dialog", { name: title });
-      await expect(sheet.getByRole("button").nth(1)).toBeVisible();
-      await clean(title, "[role=dialog]");
-      await sheet.getByRole("button", { name: "Close" }).click();
-      await expect(sheet).toBeHidden();
-    }
-    for (const name of PAGES) {
-      await page.getByRole("button", { name, exact: true }).click();
-      await expect(page.getByRole("button", { name, exact: true })).toHaveAttribute("aria-current", "page");
-      await expect(page.locator("main :is(h1, h2, h3, table, svg, li)").first()).toBeVisible();
-      await clean(name);
+      await walkDock(page, "2", ADDED, async (where) => {
+        await expectClean(page, `${at}: ${where}`);
+        if (screen === SCREENS[0]) await expectReadable(page, `${device}: ${where}`, ".dv-groupview");
+      });
+      const scheme = screen.scheme === "dark" ? "light" : "dark";
+      await showOn(page, { ...screen, scheme });
+      for (const key of ["1", "3"])
+        await walkDock(page, key, [], (where) => expectClean(page, `${at}, layout ${key}: ${where}`));
     }
   });
+
+test("other gyroscopes have longer numbers and names, which fit as well", async ({ page, server }) => {
+  for (const scenario of ["gyro-first-look", "gyro-whole-angle", "gyro-comb-device"]) {
+    const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario });
+    await openIn(page, server, id);
+    for (const screen of SCREENS) {
+      await showOn(page, screen);
+      await expectClean(page, `${scenario} at ${nameOf(screen)}`);
+    }
+    await server.ask("DELETE", `/benches/${id}`);
+  }
+});

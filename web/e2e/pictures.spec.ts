@@ -116,7 +116,7 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
     sweep: {
       schema: 1,
       scenario: "ch5-seven-step",
-      seeds: { first: 1, count: 2 },
+      seeds: "1:2",
       grid: { "sensor.noise_um": [0.05, 0.2] },
     },
   });
@@ -152,10 +152,7 @@ test("a race, what adapts, aliases and a swept sine are kept", async ({ page, op
   const hypotheses = await front("Hypotheses");
   await expect(hypotheses.getByRole("img", { name: /in the complex plane/ })).toBeVisible();
   expect(await svgOf(page, hypotheses)).toEqual(
-    expect.arrayContaining([
-      "real part of the motion",
-      "distance of the closest pair, µm, over the drive frequency, Hz",
-    ]),
+    expect.arrayContaining(["real part of the motion", "distance of the closest pair"]),
   );
 
   const sweep = await front("Swept sine");

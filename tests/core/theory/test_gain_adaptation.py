@@ -34,7 +34,7 @@ K = 1.2 * 0.9**2
         (MIT, LOOP, 0.7 / (1.3 * 2.0 * K)),
         (DRESSLER, LOOP, 0.7 / (1.3 * K)),
         (PRICE, GainLoop(0.7, 1.3, 1.2, 2.0, 0.9, proportional=1.0), 0.7 / (1.3 * K - 0.7 * K)),
-        (MONOPOLI, GainLoop(0.7, 1.3, 1.2, 2.0, 0.9, filter_time=1.0), 0.7 / (1.3 * K - 0.7 * K)),
+        (MONOPOLI, GainLoop(0.7, 1.3, 1.2, 2.0, 0.9, proportional=0.0, filter_time=1.0), 0.7 / (1.3 * K - 0.7 * K)),
         (LYAPUNOV, GainLoop(0.7, 1.3, 1.2, 2.0, 0.9, error_weight=0.8), 0.7 / (1.3 * 0.8 * K - 0.7 * K)),
     ],
 )
@@ -46,7 +46,8 @@ def test_limits_under_a_constant_are_those_of_routh(rule, loop, limit):
     ("rule", "loop"),
     [
         (PRICE, GainLoop(0.7, 1.3, proportional=1.3 / 0.7)),
-        (MONOPOLI, GainLoop(0.7, 1.3, filter_time=1.01 * 1.3 / 0.7)),
+        (MONOPOLI, GainLoop(0.7, 1.3, proportional=0.0, filter_time=1.01 * 1.3 / 0.7)),
+        (MONOPOLI, GainLoop(0.7, 1.3, proportional=2.0, filter_time=1.01 * 1.3 / 0.7)),
         (LYAPUNOV, GainLoop(0.7, 1.3, error_weight=0.99 * 0.7 / 1.3)),
         (PARKS, GainLoop(0.7, 1.3)),
     ],
@@ -65,6 +66,8 @@ def law(rule: int, loop: GainLoop, rate: float, w: float):
         y_slope = (r - y) / loop.filter_time
         error = {MIT: e * ym, DRESSLER: e * r, PRICE: e * r, PARKS: v * r, MONOPOLI: e * y}
         kc = rate * error.get(rule, (v + loop.error_weight * e) * r)
+        if rule == MONOPOLI:
+            kc += loop.proportional * rate * (v * y + e * y_slope)
         gain_error = x - (loop.gain * loop.proportional * rate * e * r if rule == PRICE else 0.0)
         drive = gain_error * r - (loop.filter_time * loop.gain * kc * y if rule == MONOPOLI else 0.0)
         return [v, (drive - loop.b1 * v - e) / loop.b2, -loop.gain * kc, dym, ym_slope, y_slope]
@@ -94,6 +97,7 @@ def test_tongues_of_the_mit_rule_and_of_dressler():
     for w in (1.2, 1.5):  # above resonance the plant turns the sign of the error
         assert growth(loop, DRESSLER, 0.01, w) > 0 > growth(loop, MIT, 0.01, w)
     for rule in (LYAPUNOV, MONOPOLI):
+        # with gamma as without it: the plant behind the filter is positive real
         assert all(growth(loop, rule, rate, w) <= 1e-7 for w in (0.5, 0.8, 1.2) for rate in (0.1, 1.0, 30.0))
 
 

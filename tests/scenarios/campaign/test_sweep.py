@@ -26,7 +26,8 @@ def test_a_grid_is_every_combination_and_every_point_has_every_seed() -> None:
     assert len(sweep.points) == 6 and len(sweep) == 6
     found = {(noise_of(p.document), p.document["controller"]["kind"]) for p in sweep.points}
     assert found == {(noise, kind) for noise in (0.1, 0.2) for kind in ("pid", "mrac", "open_loop")}
-    many = Sweep({**SEVEN, "grid": {NOISE: [0.1, 0.2]}, "seeds": {"first": 5, "count": 3}})
+    many = Sweep({**SEVEN, "grid": {NOISE: [0.1, 0.2]}, "seeds": "5:7"})
+    assert Sweep({**SEVEN, "seeds": {"first": 5, "count": 3}}).seeds == many.seeds == range(5, 8)
     assert [(noise_of(point.document), seed) for _, point, seed in many.runs()] == [
         (noise, seed) for noise in (0.1, 0.2) for seed in (5, 6, 7)
     ]
@@ -79,6 +80,8 @@ def test_variants_are_controllers_or_diagnosers_by_name() -> None:
         ({"grid": {NOISE: []}}, [NOISE, "at least one"]),
         ({"grid": {NOISE: [-1.0]}}, ["noise_um"]),
         ({"seeds": {"count": 0}}, ["seeds.count"]),
+        ({"seeds": "7:5"}, ["seeds", "A:B"]),
+        ({"seeds": [1, 3]}, ["seeds", "table"]),
         ({"seeds": {"count": 1_000_000}, "grid": {NOISE: [0.1, 0.2]}}, ["2 points", "1000000"]),
         ({"latin_hypercube": {"points": 3, "ranges": {}}}, ["ranges"]),
         ({"latin_hypercube": {"points": 3, "ranges": {NOISE: {"min": 1, "max": 0}}}}, ["min < max"]),

@@ -26,7 +26,7 @@ id = "who-notices"
 title = "Two controllers, two diagnosers"
 scenario = "ch5-seven-step"
 set = { samples = 3000 }
-seeds = { first = 5, count = 3 }
+seeds = "5:7"
 
 [[variants]]
 name = "sharp"

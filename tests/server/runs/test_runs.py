@@ -53,7 +53,7 @@ def test_a_run_gives_what_a_run_in_process_gives(live: Any) -> None:
 
 
 def test_several_seeds_give_means_and_deviations(live: Any) -> None:
-    body = {"scenario": "ch5-seven-step", "seeds": [1, 4]}
+    body = {"scenario": "ch5-seven-step", "seeds": "1:3"}
     found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
     single = [run(get("ch5-seven-step"), seed).metrics for seed in (1, 2, 3)]
     name = "diagnosis.kalman.correct_fraction"
@@ -62,6 +62,9 @@ def test_several_seeds_give_means_and_deviations(live: Any) -> None:
     assert found["summary"]["metrics"][name] == pytest.approx(sum(values) / 3, rel=1e-12)
     assert found["summary"]["metrics_std"][name] == pytest.approx(statistics.stdev(values))
     assert len(set(found["summary"]["digests"])) == 3
+    # scripts from earlier send the first seed and the one behind the last
+    earlier = live.http.post("/api/v1/runs", json={**body, "seeds": [1, 4]})
+    assert earlier.status_code == 200 and earlier.json()["id"] == found["id"]
     # one digest and one spread, whoever is asked
     assert found["summary"]["digest"] == run_seeds(get("ch5-seven-step"), [1, 2, 3])["digest"]
 
@@ -70,6 +73,9 @@ def test_several_seeds_give_means_and_deviations(live: Any) -> None:
     ("body", "word"),
     [
         ({"seeds": [5, 5]}, "seeds"),
+        ({"seeds": "5:4"}, "seeds"),
+        ({"seeds": "1:100000"}, "seeds"),
+        ({"seeds": "1-3"}, "seeds"),
         ({"seeds": [0, 100_000]}, "seeds"),
         ({"seeds": [1]}, "seeds"),
         ({"seed": 1, "seeds": [1, 2]}, "seed or seeds"),

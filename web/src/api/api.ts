@@ -1,4 +1,4 @@
-import { client, data } from "./client";
+import { ApiError, client, data } from "./client";
 import type {
   AliasSource,
   BodeOf,
@@ -140,3 +140,16 @@ export const api = {
   scenarioToml: (id: string): Promise<string> =>
     data(client.GET("/api/v1/benches/{bench_id}/scenario", { ...bench(id), parseAs: "text" })) as Promise<string>,
 };
+
+/** Why a stream would not open: the close code that fits, or undefined when the server does not answer. */
+export async function benchExists(id: string): Promise<number | undefined> {
+  try {
+    await api.bench(id);
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (error.status === 401) return 4401;
+    if (error.status === 403) return 4003;
+    if (error.status === 404) return 4404;
+  }
+  return undefined;
+}

@@ -1,5 +1,4 @@
 import createClient from "openapi-fetch";
-import { ApiError } from "./api-error";
 import type { paths } from "./schema";
 import type { ApiErrorBody } from "./types";
 
@@ -27,4 +26,16 @@ export async function data<T>(answer: Promise<{ data?: T; error?: unknown; respo
 function errorBody(error: unknown, status: number): ApiErrorBody {
   const body = (error as { error?: ApiErrorBody } | undefined)?.error;
   return body?.message ? body : { code: "unexpected", message: `The server answered ${status}.`, field: "", hint: "" };
+}
+
+/** A refusal by the server, with the field it concerns and what to do about it. */
+export class ApiError extends Error {
+  readonly status: number;
+  readonly body: ApiErrorBody;
+
+  constructor(status: number, body: ApiErrorBody) {
+    super(body.message);
+    this.status = status;
+    this.body = body;
+  }
 }

@@ -1,6 +1,6 @@
 import { keepPreviousData, QueryClient, useQuery } from "@tanstack/react-query";
 import { useCallback, useEffect, useState } from "react";
-import { ApiError } from "./api-error";
+import { ApiError } from "./client";
 
 /** What the page has asked the server, and when; one answer for all who ask the same. */
 export const queryClient = new QueryClient({

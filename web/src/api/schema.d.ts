@@ -2399,14 +2399,39 @@ export interface components {
             metric: string;
             /** Published */
             published: string;
+            /** Published Value */
+            published_value: number | null;
             /** Expected */
             expected: string;
-            /** Verdict */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            /**
+             * Verdict
+             * @description That of the measured value; until it is run, if the expectation holds
+             */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            /**
+             * Fitted
+             * @description Fields of the scenario that were chosen so that it agrees
+             */
+            fitted: string[];
+            /**
+             * Reason
+             * @description Why nothing is said by comparing it with the open loop
+             */
+            reason: string;
             /** Note */
             note: string;
             /** Measured */
             measured?: number | null;
+            /**
+             * Open Loop
+             * @description With the open loop in place of the controller
+             */
+            open_loop?: number | null;
+            /**
+             * Pid
+             * @description With a PID in its place, where the claim is against one
+             */
+            pid?: number | null;
             /**
              * Ok
              * @description Null until it has been run
@@ -2581,7 +2606,7 @@ export interface components {
             /** Claim */
             claim: string;
             /** Verdict */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
             /**
              * Demo
              * @description Made for first visits and lectures
@@ -3271,9 +3296,9 @@ export interface components {
             label?: string;
             /**
              * Seeds
-             * @description First seed and the one behind the last
+             * @description "A:B", both included; earlier scripts send a list of the first seed and the one behind the last, which is read too
              */
-            seeds?: number[] | null;
+            seeds?: (string | number[]) | null;
         };
         /**
          * NewSnapshot
@@ -4018,8 +4043,11 @@ export interface components {
             summary: string;
             /** Claim */
             claim: string;
-            /** Verdict */
-            verdict: string | null;
+            /**
+             * Verdict
+             * @description If all expectations hold; it follows from what the rows state
+             */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
             /** Samples */
             samples: number | null;
             /**
@@ -4065,6 +4093,11 @@ export interface components {
             };
             /** Toml */
             toml: string;
+            /**
+             * Warnings
+             * @description What of its claims is not read, or cannot be judged
+             */
+            warnings: string[];
         };
         /**
          * Scores

@@ -1,7 +1,7 @@
 import { notifications } from "@mantine/notifications";
 import { useEffect } from "react";
 import { alarm, announce, useAnnouncements } from "../bench/announce";
-import { eventTone } from "../bench/event-tone";
+import { eventTone } from "../bench/flag-words";
 import { useBench } from "../stream/bench-store";
 
 /** The page's live regions: faults, trips and a lost connection as alarms, findings politely. */

@@ -1,7 +1,7 @@
 import { Button, Group } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
 import { pageInAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";

@@ -6,8 +6,14 @@ const MOTION = scopeConfig(["plant.displacement", "sensor.displacement", "model.
 const TRACKING = scopeConfig(["model.tracking_error"]);
 const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
 
-/** The loop is drawn no narrower than this, and what stands below it. */
-export const LOOP_PX = 284;
+/** The loop is drawn no smaller than this; what stands below it is as wide. */
+export const LOOP_PX = { width: 326, height: 285 };
+
+/** A column of faults or controllers is read at this width. */
+export const LIST_PX = 310;
+
+/** In less than this a third column has no room; its panels stand behind others. */
+export const THREE_COLUMNS_PX = 1000;
 
 interface Where {
   below?: string;
@@ -74,7 +80,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "view3d", "view3d", { below: "faults" });
     addTo(api, "why", "why", { within: "view3d", inactive: true });
     addTo(api, "lanes", "lanes", { below: "motion" });
-    size(api, width, height, { faults: { w: 0.3, h: 0.42 }, lanes: { h: 0.52 } });
+    size(api, width, height, { faults: { w: Math.max(0.3, LIST_PX / width), h: 0.42 }, lanes: { h: 0.52 } });
   },
   lab(api, width, height) {
     addMotion(api);
@@ -91,26 +97,28 @@ export const BUILT_IN: Layouts = {
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });
     addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
+    addTo(api, "behaviour", "behaviour", { within: "lanes", inactive: true });
     addTo(api, "phase", "phase", { within: "lanes", inactive: true });
     addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     addTo(api, "identify", "identify", { within: "lanes", inactive: true });
     addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
-      schematic: { w: Math.max(0.26, LOOP_PX / width), h: 0.34 },
+      schematic: { w: Math.max(0.26, LOOP_PX.width / width), h: Math.max(0.34, LOOP_PX.height / height) },
       motion: { h: 0.33 },
       voltage: { h: 0.28 },
       lanes: { h: 0.39 },
     });
   },
   research(api, width, height) {
+    const wide = width >= THREE_COLUMNS_PX;
     addMotion(api);
     addTo(api, "schematic", "schematic", { left: "motion" });
-    addTo(api, "view3d", "view3d", { right: "motion" });
-    addTo(api, "card", "card", { below: "view3d" });
+    addTo(api, "faults", "faults", { below: "schematic" });
+    addTo(api, "view3d", "view3d", wide ? { right: "motion" } : { within: "schematic", inactive: true });
+    addTo(api, "card", "card", wide ? { below: "view3d" } : { within: "faults", inactive: true });
     addTo(api, "why", "why", { within: "card", inactive: true });
     addTo(api, "scores", "scores", { within: "card", inactive: true });
     addTo(api, "events", "events", { within: "card", inactive: true });
-    addTo(api, "faults", "faults", { below: "schematic" });
     addTo(api, "environment", "environment", { within: "faults", inactive: true });
     addTo(api, "labs", "labs", { within: "faults", inactive: true });
     addTo(api, "blind", "blind", { within: "faults", inactive: true });
@@ -119,16 +127,17 @@ export const BUILT_IN: Layouts = {
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });
     addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
+    addTo(api, "behaviour", "behaviour", { within: "lanes", inactive: true });
     addTo(api, "phase", "phase", { within: "lanes", inactive: true });
     addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
     addTo(api, "identify", "identify", { within: "lanes", inactive: true });
     addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
-      schematic: { w: 0.225, h: 0.32 },
-      view3d: { w: 0.25, h: 0.4 },
-      motion: { h: 0.32 },
-      voltage: { h: 0.28 },
-      lanes: { h: 0.4 },
+      schematic: { w: Math.max(0.225, LOOP_PX.width / width), h: Math.max(0.32, LOOP_PX.height / height) },
+      ...(wide ? { view3d: { w: 0.25, h: 0.4 } } : {}),
+      motion: { h: 0.31 },
+      voltage: { h: 0.27 },
+      lanes: { h: 0.42 },
     });
   },
 };

@@ -1,6 +1,6 @@
 import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import type { Bench } from "../api/types";
 import type { SharedLayout } from "../bench/dock";
 import { benchInAddress, inAddress, openBench, openOwn, ownBench, showBench } from "../bench/open-bench";

@@ -6,7 +6,7 @@ import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
 import { togglePresent } from "./present";
 import { takeBack } from "./take-back";
-import { themeSwitch } from "./theme-switch";
+import { themeSwitch } from "./theme";
 
 export interface KeyBinding {
   /** `KeyboardEvent.key`, as typed. */

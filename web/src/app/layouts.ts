@@ -20,6 +20,8 @@ export interface OwnLayout {
 /** The layout that came with a link; the next one takes its place unless it is saved under a name. */
 export const FROM_LINK = "from a link";
 const LONGEST_NAME = 40;
+/** No panel is made for less, px. */
+const LEAST_PX = 240;
 /** The id of a link. */
 const LINK = /^[2-9a-z]{8}$/;
 
@@ -54,6 +56,7 @@ export function layOutFor(withAxes: boolean): void {
 /** The dock to lay out; called once it stands. A panel without a title of its own has that of its kind. */
 export function attachDock(api: DockviewApi): void {
   holdDock(api);
+  api.onDidAddGroup((group) => group.api.setConstraints({ minimumWidth: LEAST_PX }));
   api.onDidAddPanel((panel) => {
     if (!panel.title || panel.title === panel.id) panel.api.setTitle(PANELS[panel.view.contentComponent].title);
   });

@@ -1,8 +1,8 @@
 import { Button, TextInput } from "@mantine/core";
 import { IconCheck, IconCopy } from "@tabler/icons-react";
+import qrcode from "qrcode-generator";
 import { useMemo, useRef, useState } from "react";
 import { announce } from "../bench/announce";
-import { qrPath } from "../ui/qr";
 import styles from "./dialogs.module.css";
 
 const LOCAL = /^(localhost|127(\.\d+){3}|\[::1\])$/;
@@ -55,4 +55,20 @@ export function LinkBox({ query, what, onCopy }: LinkBoxProps) {
       <p className={styles.remark}>Whoever opens it needs the access token of this server, once.</p>
     </div>
   );
+}
+
+/** Light modules around a code, as the standard wants them. */
+const QUIET = 4;
+
+/** The dark modules of a QR code as one path, in a square of so many modules, its quiet zone included. */
+export function qrPath(text: string): { path: string; size: number } {
+  const code = qrcode(0, "M");
+  code.addData(text);
+  code.make();
+  const count = code.getModuleCount();
+  let path = "";
+  for (let row = 0; row < count; row += 1)
+    for (let column = 0; column < count; column += 1)
+      if (code.isDark(row, column)) path += `M${column + QUIET} ${row + QUIET}h1v1h-1z`;
+  return { path, size: count + 2 * QUIET };
 }

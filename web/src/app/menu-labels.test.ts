@@ -1,7 +1,7 @@
 import { expect, it } from "vitest";
 import { PRESETS, presetLabel, REPLAY_SPEEDS, scaleMarks, sliderToTimeScale, speedItems } from "../bench/time-scale";
 import { bandItems, tickItems } from "../panels/spectrum/spectrum-menus";
-import { TIME_WINDOWS_MS, windowItems } from "../ui/time-windows";
+import { TIME_WINDOWS_MS, windowItems } from "../ui/time-axis";
 
 /** Labels as people read them, with ordinary spaces. */
 const labels = (items: readonly { label: string }[]) => items.map(({ label }) => label.replaceAll("\u00a0", " "));

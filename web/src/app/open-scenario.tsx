@@ -2,7 +2,7 @@ import { Button, Checkbox, FileButton, Input } from "@mantine/core";
 import { IconFileUpload } from "@tabler/icons-react";
 import { type DragEvent, useState } from "react";
 import { api } from "../api/api";
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import { noteOwnLink, openOwn } from "../bench/open-bench";
 import { setPage, useView } from "../bench/view-store";
 import { formatSi } from "../ui/format";

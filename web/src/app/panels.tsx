@@ -3,6 +3,7 @@ import { hasAxes } from "../api/fits";
 import type { Bench } from "../api/types";
 import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
 import { AllanPanel } from "../panels/allan/allan-panel";
+import { BehaviourPanel } from "../panels/behaviour/behaviour-panel";
 import { BlindPanel } from "../panels/blind/blind-panel";
 import { CardPanel } from "../panels/card/card-panel";
 import { ControllersPanel } from "../panels/controllers/controllers-panel";
@@ -47,6 +48,7 @@ export const PANELS: Record<string, PanelKind> = {
   scope: { title: "Scope", component: Scope },
   lanes: { title: "Diagnosis", tells: true, component: LanesPanel },
   adaptation: { title: "Adaptation", only: "displacement", component: AdaptationPanel },
+  behaviour: { title: "Behaviour", only: "displacement", tells: true, component: BehaviourPanel },
   hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
   labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
   blind: { title: "Blind diagnosis", only: "displacement", changes: true, component: BlindPanel },

@@ -1,7 +1,7 @@
 import { Textarea } from "@mantine/core";
 import { useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import { noteOwnLink } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { useBench } from "../stream/bench-store";

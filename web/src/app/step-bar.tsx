@@ -8,7 +8,7 @@ import { type BenchStep, useSteps } from "../bench/steps";
 import { conditionWords } from "../panels/condition/condition";
 import { type TruthSwitch, truthSwitches } from "../panels/lanes/delays";
 import { useBench } from "../stream/bench-store";
-import { currentEvents } from "../stream/current-events";
+import { currentEvents } from "../stream/event-log";
 import { formatIn, formatSi } from "../ui/format";
 import styles from "./step-bar.module.css";
 

@@ -1,4 +1,11 @@
-import { type CSSVariablesResolver, createTheme, type MantineColorsTuple } from "@mantine/core";
+import {
+  Checkbox,
+  type CSSVariablesResolver,
+  createTheme,
+  type MantineColorsTuple,
+  Radio,
+  Switch,
+} from "@mantine/core";
 
 const accent: MantineColorsTuple = [
   "#eef3ff",
@@ -39,6 +46,9 @@ const dark: MantineColorsTuple = [
   "#0d1115",
 ];
 
+/** A size of Mantine, or what a finger needs. */
+const atLeastTarget = (name: string, size: string | number = "sm") => `max(var(--${name}-${size}), var(--target))`;
+
 /** Mantine on our tokens. */
 export const theme = createTheme({
   fontFamily: "var(--font)",
@@ -72,8 +82,25 @@ export const theme = createTheme({
       },
     },
     Notification: { defaultProps: { closeButtonProps: { "aria-label": "Dismiss" } } },
+    // no letters below the smallest size of the page
+    InputWrapper: {
+      vars: () => ({ label: {}, error: {}, description: { "--input-description-size": "var(--size-0)" } }),
+    },
+    Pill: { styles: { root: { fontSize: "var(--size-0)" } } },
+    Radio: Radio.extend({ vars: (_, { size }) => ({ root: { "--radio-size": atLeastTarget("radio-size", size) } }) }),
+    Checkbox: Checkbox.extend({
+      vars: (_, { size }) => ({ root: { "--checkbox-size": atLeastTarget("checkbox-size", size) } }),
+    }),
+    Switch: Switch.extend({
+      vars: (_, { size }) => ({ root: { "--switch-height": atLeastTarget("switch-height", size) } }),
+    }),
     Slider: { defaultProps: { thumbSize: "var(--thumb)" } },
     Popover: { defaultProps: { shadow: "md", withinPortal: true } },
+    // a menu longer than the window scrolls
+    Menu: {
+      defaultProps: { middlewares: { flip: true, shift: true, size: { padding: 8 } } },
+      styles: { dropdown: { overflowY: "auto" } },
+    },
   },
 });
 
@@ -99,3 +126,6 @@ export const cssVariables: CSSVariablesResolver = () => {
   };
   return { variables: {}, dark: shared, light: shared };
 };
+
+/** Flips between dark and light; the page puts the real thing in when it stands. */
+export const themeSwitch = { flip: (): void => undefined };

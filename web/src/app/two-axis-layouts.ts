@@ -1,16 +1,16 @@
 import type { DockviewApi } from "dockview-react";
 import { scopeConfig } from "../stream/scope-config";
-import { addTo, type Layouts, LOOP_PX, size } from "./built-in-layouts";
+import { addTo, type Layouts, LIST_PX, LOOP_PX, size, THREE_COLUMNS_PX } from "./built-in-layouts";
 
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 500 });
 const MOTION = scopeConfig(["plant.x", "plant.y"], { windowMs: 2 });
 const FORCES = scopeConfig(["drive.x.force", "drive.y.force"], { windowMs: 2 });
 const QUADRATURE = scopeConfig(["@active.quadrature"], { windowMs: 500 });
 
-/** Below the rate: what moves and what pushes, and beside it the path in its plane. */
-function addBelow(api: DockviewApi): void {
+/** Below the rate: what moves and what pushes, and beside it, or behind, the path in its plane. */
+function addBelow(api: DockviewApi, beside: boolean): void {
   addTo(api, "forces", "scope", { below: "rate" }, FORCES, "Forces");
-  addTo(api, "locus", "locus", { right: "forces" });
+  addTo(api, "locus", "locus", beside ? { right: "forces" } : { within: "forces", inactive: true });
   addTo(api, "phase", "phase", { within: "locus", inactive: true });
   addTo(api, "motion", "scope", { within: "forces", inactive: true }, MOTION, "Motion");
   addTo(api, "quadrature", "scope", { within: "forces", inactive: true }, QUADRATURE, "Quadrature");
@@ -31,8 +31,15 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "allan", "allan", { within: "rate", inactive: true });
     addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
     addTo(api, "locus", "locus", { below: "rate" });
-    addTo(api, "view3d", "view3d", { right: "locus" });
-    size(api, width, height, { controllers: { w: 0.36 }, locus: { w: 0.32, h: 0.56 } });
+    addTo(
+      api,
+      "view3d",
+      "view3d",
+      width >= THREE_COLUMNS_PX ? { right: "locus" } : { within: "locus", inactive: true },
+    );
+    const list = Math.max(0.36, LIST_PX / width);
+    size(api, width, height, { controllers: { w: list }, locus: { h: 0.56 } });
+    if (width >= THREE_COLUMNS_PX) size(api, width, height, { locus: { w: 0.32 } });
   },
   lab(api, width, height) {
     addTo(api, "rate", "scope", {}, RATE, "Angular rate");
@@ -42,32 +49,33 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "environment", "environment", { within: "controllers", inactive: true });
     addTo(api, "card", "card", { within: "controllers", inactive: true });
     addTo(api, "why", "why", { within: "controllers", inactive: true });
-    addBelow(api);
+    const wide = width >= THREE_COLUMNS_PX;
+    addBelow(api, wide);
     addTo(api, "events", "events", { within: "forces", inactive: true });
-    const loops = Math.max(0.28, LOOP_PX / width);
+    const loops = Math.max(0.28, LOOP_PX.width / width);
     size(api, width, height, {
-      schematic: { w: loops, h: 0.4 },
+      schematic: { w: loops, h: Math.max(0.4, LOOP_PX.height / height) },
       rate: { h: 0.44 },
-      forces: { w: 0.58 * (1 - loops) },
+      ...(wide ? { forces: { w: 0.58 * (1 - loops) } } : {}),
     });
   },
   research(api, width, height) {
+    const wide = width >= THREE_COLUMNS_PX;
     addTo(api, "rate", "scope", {}, RATE, "Angular rate");
     addTo(api, "schematic", "schematic", { left: "rate" });
-    addTo(api, "view3d", "view3d", { right: "rate" });
-    addTo(api, "card", "card", { below: "view3d" });
+    addTo(api, "controllers", "controllers", { below: "schematic" });
+    addTo(api, "view3d", "view3d", wide ? { right: "rate" } : { within: "schematic", inactive: true });
+    addTo(api, "card", "card", wide ? { below: "view3d" } : { within: "controllers", inactive: true });
     addTo(api, "why", "why", { within: "card", inactive: true });
     addTo(api, "scores", "scores", { within: "card", inactive: true });
     addTo(api, "events", "events", { within: "card", inactive: true });
-    addTo(api, "controllers", "controllers", { below: "schematic" });
     addTo(api, "faults", "faults", { within: "controllers", inactive: true });
     addTo(api, "environment", "environment", { within: "controllers", inactive: true });
-    addBelow(api);
+    addBelow(api, wide);
     size(api, width, height, {
-      schematic: { w: Math.max(0.25, LOOP_PX / width), h: 0.36 },
-      view3d: { w: 0.25, h: 0.4 },
+      schematic: { w: Math.max(0.25, LOOP_PX.width / width), h: Math.max(0.36, LOOP_PX.height / height) },
+      ...(wide ? { view3d: { w: 0.25, h: 0.4 }, forces: { w: 0.27 } } : {}),
       rate: { h: 0.46 },
-      forces: { w: 0.27 },
     });
   },
 };

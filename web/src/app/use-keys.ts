@@ -1,10 +1,10 @@
 import { useMantineColorScheme } from "@mantine/core";
 import { useEffect } from "react";
 import { useView } from "../bench/view-store";
-import { useScheme } from "../ui/use-scheme";
+import { useScheme } from "../ui/use-canvas";
 import { KEYMAP } from "./keymap";
 import { followFullScreen, setPresent } from "./present";
-import { themeSwitch } from "./theme-switch";
+import { themeSwitch } from "./theme";
 
 const TYPING =
   "input, textarea, select, [contenteditable], [role=slider], [role=menu], [role=listbox], [role=radiogroup]";

@@ -1,7 +1,6 @@
 import { useViewportSize } from "@mantine/hooks";
 import { useLayoutEffect } from "react";
 import { LECTURE_PX, NORMAL_PX, useView } from "../bench/view-store";
-import { readingScale } from "./reading-scale";
 
 /** Give the page its letters: a lecture is read from the last row, on whatever it is projected. */
 export function useReadingSize(phone: boolean): number {
@@ -15,4 +14,14 @@ export function useReadingSize(phone: boolean): number {
     useView.setState({ fontPx: large ? LECTURE_PX * scale : NORMAL_PX });
   }, [large, scale]);
   return scale;
+}
+
+/** The window for which the sizes of a lecture are made; those of a larger one grow with it. */
+const MADE_FOR = { width: 1366, height: 768 };
+const MOST = 3;
+
+/** How large letters of large type are, as a factor on those of the window it is made for. */
+export function readingScale(large: boolean, width: number, height: number): number {
+  if (!large) return 1;
+  return Math.min(MOST, Math.max(1, Math.min(width / MADE_FOR.width, height / MADE_FOR.height)));
 }

@@ -1,4 +1,5 @@
 import "dockview-react/dist/styles/dockview.css";
+import "./dock.css";
 import { Menu } from "@mantine/core";
 import { IconMaximize, IconMinimize, IconPlus, IconX } from "@tabler/icons-react";
 import {
@@ -10,16 +11,12 @@ import {
 } from "dockview-react";
 import { type FunctionComponent, type KeyboardEvent, useEffect, useState } from "react";
 import { hasAxes } from "../api/fits";
+import { addPanel, addScope, closePanel, DOCK_GAP, dockNow } from "../bench/dock";
 import { useBench } from "../stream/bench-store";
-import { PanelVisible } from "../ui/panel-visible";
-import { usePageVisible } from "../ui/use-page-visible";
-import "./dock.css";
-import { addPanel, addScope, closePanel, dockNow } from "../bench/dock";
-import { DOCK_GAP } from "../bench/dock-gap";
+import { PanelVisible, usePageVisible } from "../ui/panel-visible";
 import { attachDock, keepLayout, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind, suits } from "./panels";
-import { SCOPE_PRESETS } from "./scope-presets";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: DOCK_GAP };
 
@@ -164,3 +161,22 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
     </div>
   );
 }
+
+/** Scopes worth opening, by the signals they show; what a bench does not have is left out. */
+export const SCOPE_PRESETS: { title: string; pick: RegExp }[] = [
+  { title: "Displacement", pick: /^(model|plant|sensor)\.displacement$/ },
+  { title: "Tracking error", pick: /^model\.tracking_error$/ },
+  { title: "Rate, and every estimate of it", pick: /^[a-z_]+\.rate$/ },
+  { title: "Motion", pick: /^plant\.(partner_)?[xy]$/ },
+  { title: "Forces", pick: /^drive\.(partner_)?[xy]\.force$/ },
+  { title: "Quadrature", pick: /^[a-z_]+\.quadrature$/ },
+  { title: "What adaptive control learns", pick: /^(adaptive_rate|mimo_adaptive)\.[kd](xx|xy|yy)$/ },
+  { title: "Voltage", pick: /^(reference|drive)\.voltage$/ },
+  { title: "What each controller would do", pick: /^(?!reference|drive).+\.voltage$/ },
+  { title: "Adaptation", pick: /^mrac[^.]*\.gain(_ideal)?\./ },
+  { title: "Adaptation error", pick: /^mrac[^.]*\.(error|augmented_error|auxiliary_error)$/ },
+  { title: "Residuals", pick: /\.residual\./ },
+  { title: "Residuals along x", pick: /\.residual_x\./ },
+  { title: "Residuals along y", pick: /\.residual_y\./ },
+  { title: "Fault severity", pick: /^faults\./ },
+];

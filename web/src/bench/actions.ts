@@ -2,7 +2,7 @@ import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
 import { cardOf, slotMates } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
-import { jump } from "../ui/jump";
+import { jump } from "../ui/hover";
 import { saveFile } from "../ui/save-file";
 import { layoutNow } from "./dock";
 import { openOwn } from "./open-bench";

@@ -4,7 +4,6 @@ import type { DockviewApi, IDockviewPanel, SerializedDockview } from "dockview-r
 import { createElement } from "react";
 import type { Document } from "../api/types";
 import { scopeConfig } from "../stream/scope-config";
-import { withGaps } from "./dock-gap";
 import { useView } from "./view-store";
 
 /** A layout as it is passed on: the panels, whether they are in large type, and for which kind of bench. */
@@ -156,4 +155,25 @@ function revealActiveTabs(): void {
     group.element
       .querySelector("[role=tab][aria-selected=true]")
       ?.scrollIntoView({ block: "nearest", inline: "center" });
+}
+
+type Node = SerializedDockview["grid"]["root"];
+
+/** Between panels, px. */
+export const DOCK_GAP = 6;
+
+/**
+ * A stored layout with the gaps put back into its sizes.
+ *
+ * The dock writes what a panel has left of its share after the gaps and reads it as the share itself, so that without
+ * this each time the page is opened the panels give a pixel to the last one beside them.
+ */
+export function withGaps(stored: SerializedDockview): SerializedDockview {
+  return { ...stored, grid: { ...stored.grid, root: padded(stored.grid.root) } };
+}
+
+function padded(node: Node): Node {
+  if (!Array.isArray(node.data)) return node;
+  const share = (DOCK_GAP * (node.data.length - 1)) / node.data.length;
+  return { ...node, data: node.data.map((child) => padded({ ...child, size: (child.size ?? 0) + share })) };
 }

@@ -31,3 +31,26 @@ function faultWords(name: string, severity: number): string {
 const titleOf = (family: string, name: string) => cardOf(family, name)?.title ?? name.replaceAll("_", " ");
 
 const leaf = (path: string) => path.slice(path.lastIndexOf(".") + 1).replaceAll("_", " ");
+
+/** How loudly an event speaks: faults and trips are alarms, what a diagnoser found is news, run control is quiet. */
+export type EventTone = "alarm" | "found" | "change" | "quiet";
+
+const TONES: Record<string, EventTone> = {
+  inject: "alarm",
+  tripped: "alarm",
+  recognised: "found",
+  heal: "change",
+  set: "change",
+  switch: "change",
+  truth_changed: "change",
+  reset_trip: "change",
+  failed: "alarm",
+  refused: "alarm",
+  scheduled: "change",
+  reset: "change",
+  restored: "change",
+};
+
+export function eventTone(event: Pick<LogEntry, "kind">): EventTone {
+  return TONES[event.kind] ?? "quiet";
+}

@@ -1,5 +1,8 @@
+import { api } from "../api/api";
+import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
-import { alarm } from "./announce";
+import { alarm, announce } from "./announce";
+import { send } from "./send";
 import { useView } from "./view-store";
 
 const PARAMETER = "bench";
@@ -47,4 +50,30 @@ export function showBench(id: string): void {
   useView.setState({ sample: undefined });
   alarm("");
   stream.open(id);
+}
+
+let before: string | undefined;
+
+/** The bench a replay was begun from, to go back to. */
+export const benchBefore = (): string | undefined => before;
+
+/** Play a recording in this page. */
+export async function openReplay(recording: string): Promise<void> {
+  const from = useBench.getState().bench;
+  if (from && !from.replay_of) before = from.id;
+  openBench((await api.replay(recording)).id);
+}
+
+/**
+ * Begin the bench again from tick 0 with values written over it, as a bench of its own.
+ *
+ * The one before is paused if nobody else watches it, so that going back finds it as it was.
+ */
+export async function openVariant(set: Record<string, unknown>, said: string): Promise<void> {
+  const { bench } = useBench.getState();
+  if (!bench) return;
+  const made = await api.variant(bench.id, set);
+  if (bench.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  openOwn(made.id);
+  announce(said);
 }

@@ -1,5 +1,5 @@
 import { notifications } from "@mantine/notifications";
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import type { Command } from "../api/types";
 import { stream } from "../stream/stream";
 import { announce } from "./announce";

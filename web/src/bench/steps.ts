@@ -1,7 +1,7 @@
 import { useMemo } from "react";
 import type { Bench, Command, LogEntry } from "../api/types";
 import { useBench } from "../stream/bench-store";
-import { currentEvents } from "../stream/current-events";
+import { currentEvents } from "../stream/event-log";
 import { flagWords } from "./flag-words";
 
 /** What is done to a bench at one moment of its scenario. */

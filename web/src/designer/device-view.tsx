@@ -34,6 +34,8 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
     );
   const width = drawing.width + 2 * MARGIN;
   const height = drawing.height + 2 * MARGIN + 26;
+  // of the drawing's own units, so that a large device has no small letters
+  const letters = { fontSize: width / 13 };
   const bar = SCALE_BARS.filter((um) => um < width / 3).at(-1) ?? SCALE_BARS[0];
   return (
     <>
@@ -50,13 +52,13 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
         <path d={rectPath([...drawing.beams, ...drawing.trusses])} className={styles.beam} />
         <g transform={`translate(${-width / 2 + MARGIN} ${drawing.height / 2 + 22})`}>
           <path d={`M0 -5 V5 M0 0 H${bar} M${bar} -5 V5`} className={styles.scale} />
-          <text x={bar + 8} y={6} className={styles.scaleText}>
+          <text x={bar + 8} dominantBaseline="middle" className={styles.scaleText} style={letters}>
             {formatShort(bar, "um")}
           </text>
         </g>
         <g transform={`translate(${width / 2 - MARGIN} ${drawing.height / 2 + 22})`}>
           <path d="M-70 0 H-4 M-14 -7 L-4 0 L-14 7" className={styles.scale} />
-          <text x={-80} y={6} textAnchor="end" className={styles.scaleText}>
+          <text x={-80} textAnchor="end" dominantBaseline="middle" className={styles.scaleText} style={letters}>
             x
           </text>
         </g>

@@ -2,8 +2,6 @@ import { useMemo } from "react";
 import type { Bode } from "../api/types";
 import { decibels } from "../picture/bode/bode-data";
 import { BodePlot } from "../picture/bode/bode-plot";
-import { TRACE_COLOURS } from "../ui/palette";
-import { useScheme } from "../ui/use-scheme";
 import styles from "./designer.module.css";
 
 interface ResponseViewProps {
@@ -14,38 +12,34 @@ interface ResponseViewProps {
 
 /** The Bode diagram of the device, and the band in which the process leaves devices of this drawing. */
 export function ResponseView({ bode, drawing }: ResponseViewProps) {
-  const scheme = useScheme();
-  const curves = useMemo(() => {
-    const colours = TRACE_COLOURS[scheme];
+  const shown = useMemo(() => {
     // both relative to the drawing at rest
     const shift = decibels(bode.static_gain_um_per_v / drawing.static_gain_um_per_v);
     const own = {
       name: "This device",
-      colour: colours[1],
+      slot: 1,
+      dash: 0,
       hertz: bode.frequency_hz,
       db: bode.magnitude_db.nominal.map((db) => db + shift),
       deg: bode.phase_deg.nominal,
     };
-    if (drawing === bode) return [own];
+    const band = { name: drawing.band, hertz: drawing.frequency_hz, db: drawing.magnitude_db, deg: drawing.phase_deg };
+    if (drawing === bode) return { curves: [own], band };
     const nominal = {
       name: "As drawn",
-      colour: colours[0],
-      dash: "8 4",
+      slot: 0,
+      dash: 1,
       hertz: drawing.frequency_hz,
       db: drawing.magnitude_db.nominal,
       deg: drawing.phase_deg.nominal,
     };
-    return [own, nominal];
-  }, [bode, drawing, scheme]);
-  const band = useMemo(
-    () => ({ name: drawing.band, hertz: drawing.frequency_hz, db: drawing.magnitude_db, deg: drawing.phase_deg }),
-    [drawing],
-  );
+    return { curves: [own, nominal], band };
+  }, [bode, drawing]);
   return (
     <>
       <h2 className={styles.heading}>Frequency response</h2>
       <div className={styles.bode}>
-        <BodePlot label="Bode diagram with its tolerance band" curves={curves} band={band} />
+        <BodePlot label="Bode diagram with its tolerance band" shown={shown} />
       </div>
     </>
   );

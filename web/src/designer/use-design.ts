@@ -1,6 +1,6 @@
 import { useEffect, useMemo, useRef, useState } from "react";
 import { api } from "../api/api";
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import type { Bode, Evaluation } from "../api/types";
 import { type DesignState, designDocument } from "./design";
 

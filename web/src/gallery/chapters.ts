@@ -1,7 +1,7 @@
 import type { GalleryCard } from "../api/types";
 
-/** Verdicts from best to worst, as the library writes them. */
-export const VERDICTS = ["reproduced", "reproduced by tuning", "partly", "not reproduced"] as const;
+/** Verdicts from best to worst, and the word for what the dissertation does not claim. */
+export const VERDICTS = ["reproduced", "reproduced by tuning", "partly", "not reproduced", "ours"] as const;
 
 export interface GalleryFilter {
   /** A chapter, an appendix, or "all". */

@@ -6,31 +6,52 @@ import { ExpectationTable } from "./expectation-table";
 
 type Entry = GalleryCard["expectations"][number];
 
-const entry = (metric: string, measured: number | null): Entry => ({
+const entry = (metric: string, measured: number | null, rest: Partial<Entry> = {}): Entry => ({
   metric,
   measured,
   published: "",
+  published_value: null,
   expected: ">= -1",
   ok: true,
   verdict: "reproduced",
+  fitted: [],
+  reason: "",
   note: "",
+  ...rest,
 });
 
-function measured(...entries: Entry[]): (string | null)[] {
+function table(...entries: Entry[]): string[][] {
   const page = document.createElement("div");
   page.innerHTML = renderToStaticMarkup(<ExpectationTable entries={entries} verdict="reproduced" />);
-  return [...page.querySelectorAll("tbody tr")].map((row) => row.lastElementChild?.textContent ?? null);
+  return [...page.querySelectorAll("tr")].map((row) => [...row.children].map((cell) => cell.textContent ?? ""));
 }
 
+const MEASURED = 2;
+
 it("keeps a share from reading as all beside errors that were counted, and counts whole", () => {
-  const shown = measured(
+  const rows = table(
     entry("diagnosis.kalman.correct_fraction", 0.99997),
     entry("diagnosis.kalman.false_switches", 53),
     entry("control.rms_error_um", 0.0123456),
   );
-  expect(shown).toEqual(["0.99997", "53", "0.01235"]);
+  expect(rows.slice(1).map((row) => row[MEASURED])).toEqual(["0.99997", "53", "0.01235"]);
 });
 
 it("says a figure that was not measured by a dash", () => {
-  expect(measured(entry("control.rms_error_um", null))).toEqual(["–"]);
+  expect(table(entry("control.rms_error_um", null))[1].slice(MEASURED)).toEqual(["–", "–"]);
+});
+
+it("has what the open loop gives beside each figure, and a PID only where one is compared", () => {
+  const plain = entry("control.effort_ratio", 1.8, { open_loop: 1 });
+  expect(table(plain)).toEqual([
+    ["figure", "expected", "measured", "open loop"],
+    ["effort ratio", "≥ −1", "1.800", "1"],
+  ]);
+  const [head, , row] = table(plain, entry("control.settling_ms", 9.7, { open_loop: 100, pid: 20 }));
+  expect([head.at(-1), row.at(-1)]).toEqual(["PID", "20"]);
+});
+
+it("shows words of the text and a verdict of its own under the figure", () => {
+  const own = entry("control.effort_ratio", 1.8, { published: "almost 80 % stronger", verdict: "ours" });
+  expect(table(own)[1][0]).toBe("effort ratiopublished: almost 80\u00a0% strongerours");
 });

@@ -7,8 +7,12 @@ import styles from "./gallery.module.css";
 
 const SHOWN = 3;
 
+type Expected = GalleryCard["expectations"][number];
+/** A row; runs kept from earlier lack what has been added since. */
+type Entry = Omit<Expected, "fitted" | "reason"> & Partial<Expected>;
+
 interface ExpectationTableProps {
-  entries: GalleryCard["expectations"];
+  entries: Entry[];
   /** Of the whole; rows that differ from it say their own. */
   verdict: string | null;
 }
@@ -16,45 +20,69 @@ interface ExpectationTableProps {
 /** Bounds as they are printed rather than typed. */
 const typeset = (text: string) => text.replaceAll(">=", "≥").replaceAll("<=", "≤").replaceAll("-", "−");
 
-/** Published, expected and measured, figure by figure; the first few until all are asked for. */
+/** What is said of a figure beside its numbers: why it stands alone, what was chosen for it, where it comes from. */
+function remarks(entry: Entry): string[] {
+  const fitted = entry.fitted ?? [];
+  return [
+    ...(entry.note ? [entry.note] : []),
+    ...(fitted.length > 0 ? [`chosen so that it agrees: ${fitted.join(", ")}`] : []),
+    ...(entry.reason ? [`beside the open loop it says nothing: ${entry.reason}`] : []),
+  ];
+}
+
+/** Figure by figure what is expected, what was measured, and what the open loop gives; the first few until all are asked for. */
 export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
   const [all, setAll] = useState(false);
   if (entries.length === 0) return <p className={styles.nothing}>Nothing is claimed: a bench to play with.</p>;
   const rows = all ? entries : entries.slice(0, SHOWN);
+  const hasPid = entries.some((entry) => typeof entry.pid === "number");
   return (
     <div className={styles.figures}>
       <table>
         <thead>
           <tr>
             <th scope="col">figure</th>
-            <th scope="col">published</th>
             <th scope="col">expected</th>
             <th scope="col">measured</th>
+            <th scope="col" title="The same scenario with the open loop in place of its controller">
+              open loop
+            </th>
+            {hasPid && (
+              <th scope="col" title="The same scenario with a plain PID in place of its controller">
+                PID
+              </th>
+            )}
           </tr>
         </thead>
         <tbody>
           {rows.map((entry) => (
-            <tr key={entry.metric} title={micro(`${entry.metric}${entry.note ? `: ${entry.note}` : ""}`)}>
+            <tr key={entry.metric} title={micro([entry.metric, ...remarks(entry)].join(": "))}>
               <th scope="row">
                 {metricTitle(entry.metric)}
+                {entry.published && (
+                  <small className={styles.published}>
+                    published: {micro(entry.published).replaceAll(" %", "\u00a0%")}
+                  </small>
+                )}
                 {entry.verdict !== verdict && (
                   <div>
                     <Verdict verdict={entry.verdict} borneOut={entry.ok === true} />
                   </div>
                 )}
-                {all && entry.note && <small>{micro(entry.note)}</small>}
+                {all && remarks(entry).map((text) => <small key={text}>{micro(text)}</small>)}
               </th>
-              <td>{micro(entry.published ?? "").replaceAll(" %", "\u00a0%") || "–"}</td>
               <td className={styles.expected}>{typeset(entry.expected)}</td>
-              <td data-ok={entry.ok}>
+              <td className={styles.measured} data-ok={entry.ok}>
                 {formatFigure(entry.metric, entry.measured)}
                 {entry.ok === false && " ✗"}
               </td>
+              <td>{formatFigure(entry.metric, entry.open_loop)}</td>
+              {hasPid && <td>{formatFigure(entry.metric, entry.pid)}</td>}
             </tr>
           ))}
         </tbody>
       </table>
-      {entries.length > SHOWN || entries.some((entry) => entry.note) ? (
+      {entries.length > SHOWN || entries.some((entry) => remarks(entry).length > 0) ? (
         <button type="button" className={styles.more} aria-expanded={all} onClick={() => setAll(!all)}>
           {all ? "less" : entries.length > SHOWN ? `all ${entries.length} figures, with notes` : "notes"}
         </button>

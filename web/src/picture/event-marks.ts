@@ -1,18 +1,13 @@
 import type { LogEntry } from "../api/types";
-import { eventTone } from "../bench/event-tone";
-import type { Marks } from "../bench/marks";
-import { fontFor } from "../ui/canvas-font";
+import { eventTone } from "../bench/flag-words";
+import { type Marks, marksNow } from "../bench/marks";
+import type { PanelFrame } from "../stream/panel-frame";
 import { formatMoment } from "../ui/format";
-import { CANVAS } from "../ui/palette";
+import { CANVAS, fontFor } from "../ui/palette";
 import { timeUnit } from "../ui/time-axis";
-import type { Box, Pen } from "./pen";
-
-export interface Field {
-  left: number;
-  right: number;
-  top: number;
-  bottom: number;
-}
+import { placeOn } from "./axes";
+import type { Box, Field, Look, Pen } from "./pen";
+import { paintRule } from "./traces";
 
 /** An axis of device time and what happened along it. */
 export interface EventAxis {
@@ -24,8 +19,14 @@ export interface EventAxis {
   isTriggered?: boolean;
   marks: Marks;
   /** Where the axis lies in a plot of a size. */
-  field(box: Box): Field;
+  field(box: Box, look: Look): Field;
 }
+
+/** The axis of a frame of device time, with what has happened on the bench. */
+export const eventAxis = (
+  { frame, span }: { frame: PanelFrame; span: { start: number; end: number } },
+  fieldOf: (box: Box, look: Look) => Field,
+): EventAxis => ({ span, dtMs: frame.dtMs, marks: marksNow(), field: fieldOf });
 
 const INK = CANVAS.light;
 const LINE = 18;
@@ -35,44 +36,60 @@ export const timeTitle = ({ span, dtMs, isTriggered }: EventAxis) =>
   `${isTriggered ? "time from the trigger" : "time of the device"}, ${timeUnit((span.end - span.start) * dtMs).unit}`;
 
 /** The events in sight that speak. */
-export const eventsWithin = ({ marks, span }: EventAxis): LogEntry[] =>
+export const eventsWithin = ({ marks, span }: Pick<EventAxis, "marks" | "span">): LogEntry[] =>
   marks.events.filter((e) => e.tick >= span.start && e.tick <= span.end && eventTone(e) !== "quiet");
 
-/** Events as numbered lines over a plot, faults as bands along its top; numbers without room join into a range. */
-export function markEvents(pen: Pen, events: readonly LogEntry[], { span, marks }: EventAxis, field: Field): void {
-  const { left, right, top, bottom } = field;
-  const x = (tick: number) => left + ((tick - span.start) / (span.end - span.start)) * (right - left);
-  pen.fillStyle = INK.alarm;
+/**
+ * Events as lines over a plot, faults as bands along its top. Above a line stands what the event says, or its number
+ * where that has no room; where events are only numbered, numbers without room join into a range.
+ */
+export function markEvents(
+  pen: Pen,
+  { span, marks }: Pick<EventAxis, "span" | "marks">,
+  { left, right, top, bottom }: Field,
+  { scheme, fontSize }: Look,
+  say?: (event: LogEntry) => string,
+): void {
+  const ink = CANVAS[scheme];
+  const x = placeOn({ range: [span.start, span.end] }, left, right);
+  pen.fillStyle = ink.alarm;
   for (const fault of marks.faults) {
     if (fault.start > span.end || (fault.end ?? span.end) < span.start) continue;
     const from = x(Math.max(fault.start, span.start));
     pen.fillRect(from, top - 4, x(Math.min(fault.end ?? span.end, span.end)) - from, 4);
   }
-  pen.font = fontFor(12, 1, 600);
-  pen.textAlign = "center";
+  pen.font = fontFor(fontSize - 1, 1, 600);
+  pen.textAlign = "left";
   pen.textBaseline = "middle";
-  const labels: { at: number; from: number; to: number; colour: string }[] = [];
-  for (const event of events) {
+  const events = eventsWithin({ marks, span });
+  const labels: { left: number; right: number; text: string; colour: string; event: LogEntry; at: number }[] = [];
+  const width = (text: string) => pen.measureText(text).width;
+  events.forEach((event, i) => {
     const at = x(event.tick);
     const tone = eventTone(event);
-    const colour = tone === "alarm" ? INK.alarm : tone === "found" ? INK.accent : INK.event;
-    pen.strokeStyle = colour;
-    pen.globalAlpha = 0.75; // what it crosses stays readable
-    pen.lineWidth = 1;
-    pen.setLineDash(tone === "alarm" ? [] : [4, 3]);
-    pen.beginPath();
-    pen.moveTo(at, top);
-    pen.lineTo(at, bottom);
-    pen.stroke();
+    const colour = tone === "alarm" ? ink.alarm : tone === "found" ? ink.accent : ink.event;
+    // what it crosses stays readable
+    const line = { colour, width: 1, alpha: 0.75, dashes: tone === "alarm" ? [] : [4, 3] };
+    paintRule(pen, [Math.round(at) + 0.5, top], [Math.round(at) + 0.5, bottom], line);
     const last = labels.at(-1);
-    if (last && at - last.at < 8 + pen.measureText(spoken(last)).width) last.to = event.seq;
-    else labels.push({ at, from: event.seq, to: event.seq, colour });
+    if (last && at < last.right) {
+      if (!say) labels[labels.length - 1] = { ...last, ...about(last.at, `${last.event.seq}–${event.seq}`) };
+      return;
+    }
+    const next = events.slice(i + 1).find(({ tick }) => tick > event.tick);
+    const words = say?.(event);
+    const hasRoom = words && width(words) < (next ? x(next.tick) : right) - at - 6;
+    const placed = hasRoom ? { left: at - 1, right: at + width(words) + 6, text: words } : about(at, String(event.seq));
+    labels.push({ ...placed, colour, event, at });
+  });
+  for (const { text, left, colour } of labels) {
+    pen.fillStyle = colour;
+    pen.fillText(text, left, top - fontSize / 2 - 5);
   }
-  pen.setLineDash([]);
-  pen.globalAlpha = 1;
-  for (const label of labels) {
-    pen.fillStyle = label.colour;
-    pen.fillText(spoken(label), label.at, top - 12);
+
+  function about(at: number, text: string) {
+    const half = width(text) / 2;
+    return { left: at - half, right: at + half + 8, text };
   }
 }
 
@@ -104,5 +121,3 @@ export function listEvents(
   });
   return top + 8 + LINE * shown.length;
 }
-
-const spoken = ({ from, to }: { from: number; to: number }) => (from === to ? String(from) : `${from}–${to}`);

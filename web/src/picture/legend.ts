@@ -1,5 +1,4 @@
-import { fontFor } from "../ui/canvas-font";
-import { CANVAS } from "../ui/palette";
+import { CANVAS, fontFor } from "../ui/palette";
 import type { Pen } from "./pen";
 
 export interface LegendEntry {

@@ -1,3 +1,5 @@
+import type { Scheme } from "../ui/palette";
+
 /**
  * What a painter may use of a canvas: as much as can also be written down as SVG.
  *
@@ -36,3 +38,20 @@ export interface Box {
   width: number;
   height: number;
 }
+
+/** Where something lies in what is painted, px. */
+export interface Field {
+  left: number;
+  right: number;
+  top: number;
+  bottom: number;
+}
+
+/** The ground that is painted on, and the size of its letters, px. */
+export interface Look {
+  scheme: Scheme;
+  fontSize: number;
+}
+
+/** The look of every picture that is kept. */
+export const PAPER: Look = { scheme: "light", fontSize: 13 };

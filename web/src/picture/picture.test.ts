@@ -47,7 +47,7 @@ it("numbers the events of the span on the plot, tells them below, and bands the 
   const document = drawn({ time: axis(event(3, 500), event(4, 2000), event(5, 600, "pause")) });
   expect(texts(document)).toEqual(["A < B", "3", "time of the device, ms", "3", "at 5.000\u00a0ms: fault 3"]);
   const width = PICTURE_WIDTH - 32;
-  expect(document.querySelector("g path")?.getAttribute("d")).toBe(`M${width / 2} 0L${width / 2} 100`);
+  expect(document.querySelector("g path")?.getAttribute("d")).toBe(`M${width / 2 + 0.5} 0L${width / 2 + 0.5} 100`);
   expect(document.querySelector("g rect")?.getAttribute("width")).toBe(String(width / 4));
 });
 

@@ -1,8 +1,8 @@
-import { fontFor } from "../ui/canvas-font";
-import { CANVAS } from "../ui/palette";
+import { useBench } from "../stream/bench-store";
+import { CANVAS, fontFor } from "../ui/palette";
 import { type EventAxis, eventsWithin, listEvents, markEvents, timeTitle } from "./event-marks";
 import { type LegendEntry, paintLegend } from "./legend";
-import type { Box } from "./pen";
+import { type Box, type Look, PAPER, type Pen } from "./pen";
 import { SvgPen } from "./svg-pen";
 
 /** What a panel shows, to be kept as a file: its own painter, in light colours, and what stands around it. */
@@ -16,7 +16,7 @@ export interface Picture {
   legend?: readonly LegendEntry[];
   /** Of the plot, px. */
   height: number;
-  paint(pen: SvgPen, box: Box): void;
+  paint(pen: Pen, box: Box, look: Look): void;
   /** An axis of time gets its title and the events of its span. */
   time?: EventAxis;
 }
@@ -42,8 +42,8 @@ export function pictureSvg({ title, across, up, legend = [], height, paint, time
 
   pen.save();
   pen.translate(left, top);
-  paint(pen, { width, height });
-  if (time) markEvents(pen, events, time, time.field({ width, height }));
+  paint(pen, { width, height }, PAPER);
+  if (time) markEvents(pen, time, time.field({ width, height }, PAPER), PAPER);
   pen.restore();
 
   pen.font = fontFor(13, 1, 600);
@@ -52,7 +52,7 @@ export function pictureSvg({ title, across, up, legend = [], height, paint, time
   pen.textBaseline = "middle";
   const below = across ?? (time && timeTitle(time));
   if (below) {
-    const field = time?.field({ width, height }) ?? { left: 0, right: width };
+    const field = time?.field({ width, height }, PAPER) ?? { left: 0, right: width };
     bottom += AXIS;
     pen.fillText(below, left + (field.left + field.right) / 2, bottom - AXIS / 2);
   }
@@ -65,4 +65,18 @@ export function pictureSvg({ title, across, up, legend = [], height, paint, time
   }
   if (time) bottom = listEvents(pen, events, time, EDGE, bottom, PICTURE_WIDTH - 2 * EDGE);
   return pen.svg(PICTURE_WIDTH, bottom + 12, title);
+}
+
+/** A name for a file. */
+export const fileStem = (name: string) =>
+  name
+    .toLowerCase()
+    .replaceAll(/[^a-z0-9]+/g, "-")
+    .replaceAll(/^-|-$/g, "");
+
+/** The title and the file name of a picture of the bench that is connected. */
+export function pictureName(what: string): { title: string; stem: string } {
+  const bench = useBench.getState().bench;
+  const stem = fileStem(`${bench?.scenario_id ?? "bench"}-${what}`);
+  return { title: bench ? `${what} · ${bench.title}` : what, stem };
 }

@@ -1,7 +1,6 @@
 // @vitest-environment jsdom
 import { expect, it, vi } from "vitest";
-import { svgColour } from "./svg-colour";
-import { SvgPen } from "./svg-pen";
+import { SvgPen, svgColour } from "./svg-pen";
 
 vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 

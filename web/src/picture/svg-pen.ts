@@ -1,5 +1,4 @@
 import type { Pen } from "./pen";
-import { svgPaint } from "./svg-colour";
 import { escaped, FAMILY, svgText, widthIn } from "./svg-text";
 
 const STATE = [
@@ -44,11 +43,6 @@ export class SvgPen implements Pen {
       `font-family="${FAMILY}"><title>${escaped(title)}</title><rect width="100%" height="100%" fill="#ffffff"/>\n` +
       `${this.out.join("\n")}${"</g>".repeat(this.opened)}</svg>\n`
     );
-  }
-
-  /** SVG from elsewhere, at the origin. */
-  add(markup: string): void {
-    this.out.push(markup);
   }
 
   save(): void {
@@ -146,4 +140,26 @@ export class SvgPen implements Pen {
     this.out.push(`<g ${attributes}>`);
     this.opened += 1;
   }
+}
+
+/** A CSS colour as SVG writes it: `#rrggbb` and an opacity, because not every program reads both in one. */
+export function svgColour(css: string): { colour: string; opacity: number } {
+  if (css.startsWith("#"))
+    return { colour: css.slice(0, 7), opacity: css.length > 7 ? Number.parseInt(css.slice(7), 16) / 255 : 1 };
+  const [r, g, b, opacity = 1] = [...css.matchAll(/-?[\d.]+(?:e-?\d+)?/g)].map(Number);
+  if (b === undefined) return { colour: css, opacity: 1 };
+  const whole = css.startsWith("color(") ? 255 : 1;
+  const hex = [r, g, b].map((part) =>
+    Math.round(part * whole)
+      .toString(16)
+      .padStart(2, "0"),
+  );
+  return { colour: `#${hex.join("")}`, opacity };
+}
+
+/** The attributes of a fill or a stroke. */
+export function svgPaint(kind: "fill" | "stroke", css: string, alpha = 1): string {
+  const { colour, opacity } = svgColour(css);
+  const seen = Math.round(opacity * alpha * 1000) / 1000;
+  return `${kind}="${colour}"${seen < 1 ? ` ${kind}-opacity="${seen}"` : ""}`;
 }

@@ -1,5 +1,4 @@
 import type { Pen } from "./pen";
-import { textWidth } from "./text-width";
 
 export const FAMILY = "IBM Plex Sans, system-ui, sans-serif";
 
@@ -51,4 +50,14 @@ export function svgText(
     `<text x="${x}" y="${baseline}" font-size="${size}" font-weight="${weight}" ` +
     `text-anchor="${ANCHOR[textAlign]}" ${paint}${squeezed}>${escaped(text)}</text>`
   );
+}
+
+let ruler: CanvasRenderingContext2D | null | undefined;
+
+/** Width of a line of text, px; without a canvas, that of letters of a usual width. */
+export function textWidth(text: string, size: number, weight: number, family: string): number {
+  if (ruler === undefined) ruler = document.createElement("canvas").getContext("2d") ?? null;
+  if (!ruler) return 0.55 * size * text.length;
+  ruler.font = `${weight} ${size}px ${family}`;
+  return ruler.measureText(text).width;
 }

@@ -12,9 +12,9 @@ it("reads several values, and evenly spaced ones", () => {
   expect(parseValues(" , ")).toEqual([]);
 });
 
-it("asks for seeds from the first to the one behind the last", () => {
+it("asks for seeds with both ends", () => {
   const draft = { ...newDraft("first-look"), firstSeed: 5, seeds: 3, set: [{ path: "sensor.noise_um", text: "0.1" }] };
-  expect(runOf(draft)).toEqual({ scenario: "first-look", label: "", set: { "sensor.noise_um": 0.1 }, seeds: [5, 8] });
+  expect(runOf(draft)).toEqual({ scenario: "first-look", label: "", set: { "sensor.noise_um": 0.1 }, seeds: "5:7" });
 });
 
 it("writes a grid, and counts its points times the devices", () => {
@@ -32,7 +32,7 @@ it("writes a grid, and counts its points times the devices", () => {
   expect(campaignOf(draft)).toMatchObject({
     schema: 1,
     scenario: "ch5-seven-step",
-    seeds: { first: 1, count: 50 },
+    seeds: "1:50",
     grid: { "sensor.noise_um": [0.05, 0.6], "controller.kind": ["open_loop", "mrac", "stvsc"] },
     process_spread: { devices: 4 },
   });

@@ -93,10 +93,13 @@ export function pointCount(draft: Draft): number {
 const setOf = (rows: readonly Row[]) =>
   Object.fromEntries(filled(rows).map((row) => [row.path.trim(), parseValue(row.text)]));
 
+/** Seeds as they are counted everywhere: both ends included. */
+const spanOf = (first: number, count: number) => `${first}:${first + count - 1}`;
+
 /** What a run is asked for with. */
 export function runOf(draft: Draft) {
   const { scenario, label, firstSeed, seeds } = draft;
-  return { scenario, label, set: setOf(draft.set), seeds: [firstSeed, firstSeed + seeds] };
+  return { scenario, label, set: setOf(draft.set), seeds: spanOf(firstSeed, seeds) };
 }
 
 /** The campaign's document, as a file would have it. */
@@ -108,7 +111,7 @@ export function campaignOf(draft: Draft): Document {
     id: scenario.toLowerCase(),
     scenario,
     set: setOf(draft.set),
-    seeds: { first: firstSeed, count: seeds },
+    seeds: spanOf(firstSeed, seeds),
     ...(vary === "grid" && {
       grid: Object.fromEntries(filled(draft.grid).map((row) => [row.path.trim(), parseValues(row.text)])),
     }),

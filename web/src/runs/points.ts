@@ -1,5 +1,5 @@
 import type { DiagnosisTally, PointTally } from "../api/types";
-import type { ChartLine } from "../picture/line-field";
+import type { ChartLine } from "../picture/paint-lines";
 import { formatShort } from "../ui/format";
 import { metricTitle } from "../ui/metric-name";
 

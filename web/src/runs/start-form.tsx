@@ -2,7 +2,7 @@ import { Button, Checkbox, NumberInput, SegmentedControl, Select, TextInput } fr
 import { IconPlayerTrackNext } from "@tabler/icons-react";
 import { useEffect, useMemo, useState } from "react";
 import { api } from "../api/api";
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import type { ApiErrorBody, ScenarioSummary } from "../api/types";
 import { showError } from "../bench/send";
 import { formatCount } from "../ui/format";

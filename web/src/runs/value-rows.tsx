@@ -1,8 +1,7 @@
 import { ActionIcon, Autocomplete, Button, TextInput } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import type { ReactNode } from "react";
-import type { Row } from "./draft";
-import { EMPTY_ROW, pathTitle } from "./draft";
+import { EMPTY_ROW, pathTitle, type Row } from "./draft";
 import styles from "./runs.module.css";
 
 interface ValueRowsProps {

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { encodeFrame } from "./encode-frame.fixture";
-import { StreamClient, type StreamHandlers } from "./stream-client";
+import { reconnectDelay, StreamClient, type StreamHandlers } from "./stream-client";
 
 /** A WebSocket that only remembers; the test plays the server. */
 class FakeSocket {
@@ -186,4 +186,13 @@ describe("StreamClient", () => {
     client.feeds.draw();
     expect(draw).toHaveBeenCalledOnce();
   });
+});
+
+it("waits 0.5, 1, 2, 5, 5 s in the middle of the jitter", () => {
+  expect([0, 1, 2, 3, 9].map((n) => reconnectDelay(n, () => 0.5))).toEqual([500, 1000, 2000, 5000, 5000]);
+});
+
+it("jitters by at most 20 % so that many pages do not return at once", () => {
+  expect(reconnectDelay(0, () => 0)).toBeCloseTo(400);
+  expect(reconnectDelay(3, () => 1)).toBeCloseTo(6000);
 });

@@ -1,10 +1,9 @@
-import { ApiError } from "../api/api-error";
+import { ApiError } from "../api/client";
 import type { components } from "../api/schema";
 import type { Command } from "../api/types";
 import { type CloseReason, closeReason } from "./close-reason";
 import { decodeFrame, type Frame } from "./decode-frame";
 import { Feeds } from "./feeds";
-import { reconnectDelay } from "./reconnect-delay";
 import { type ClientMessage, type ServerMessage, SUBPROTOCOL } from "./wire";
 
 const REPLY_TIMEOUT_MS = 5000;
@@ -165,4 +164,12 @@ export class StreamClient {
   private failure(message: string): ApiError {
     return new ApiError(0, { code: "offline", message, field: "", hint: "" });
   }
+}
+
+const STEPS_MS = [500, 1000, 2000, 5000];
+
+/** How long to wait before connection attempt `attempt` (0, 1, ...): 0.5, 1, 2, then 5 s, +-20 %. */
+export function reconnectDelay(attempt: number, random: () => number = Math.random): number {
+  const base = STEPS_MS[Math.min(attempt, STEPS_MS.length - 1)];
+  return base * (0.8 + 0.4 * random());
 }

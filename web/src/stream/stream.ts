@@ -1,9 +1,8 @@
-import { benchExists } from "../api/bench-exists";
+import { benchExists } from "../api/api";
 import type { Bench, LogEntry, Score } from "../api/types";
-import { type Connection, useBench } from "./bench-store";
+import { type Connection, mergeStatus, useBench } from "./bench-store";
 import { DrawLoop } from "./draw-loop";
 import { appendEvent } from "./event-log";
-import { mergeStatus } from "./merge-status";
 import { StreamClient } from "./stream-client";
 import { veil } from "./veil";
 import type { ServerMessage } from "./wire";

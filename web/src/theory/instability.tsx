@@ -1,16 +1,15 @@
 import { NativeSelect } from "@mantine/core";
-import { useEffect, useState } from "react";
+import { useCallback, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/queries";
 import type { InstabilityMap, MapSource } from "../api/types";
+import { Painted } from "../picture/painted";
+import type { Box, Look, Pen } from "../picture/pen";
 import { PictureMenu } from "../picture/picture-menu";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
-import { useCanvas } from "../ui/use-canvas";
-import { useScheme } from "../ui/use-scheme";
-import { cellAt, FIELD, paintMap, STILL } from "./paint-map";
-import { printMap } from "./print-theory";
+import { cellAt, mapPicture, paintMap, STILL } from "./paint-map";
 import styles from "./theory.module.css";
 
 type Rule = NonNullable<MapSource["rule"]>;
@@ -24,7 +23,7 @@ const RULES: { value: Rule; label: string; latex: string }[] = [
   {
     value: "monopoli",
     label: "Monopoli",
-    latex: "\\dot k_c=B\\,e\\,y,\\quad y=\\frac{r}{1+qs},\\quad u=k_cr+q\\dot k_cy",
+    latex: "\\dot k_c=B\\,e\\,y+\\gamma\\frac{d}{dt}(B\\,e\\,y),\\quad y=\\frac{r}{1+qs},\\quad u=k_cr+q\\dot k_cy",
   },
 ];
 const CELLS = 44;
@@ -82,7 +81,7 @@ export function Instability() {
             onCommit={setHighest}
           />
         </span>
-        {answer && <PictureMenu name="instability map" take={() => printMap(answer, chosen.label)} />}
+        {answer && <PictureMenu name="instability map" take={() => mapPicture(answer, chosen.label)} />}
       </div>
       <Formula latex={chosen.latex} />
       {refusal && (
@@ -108,30 +107,18 @@ export function Instability() {
 }
 
 function MapPicture({ map, name }: { map: InstabilityMap; name: string }) {
-  const scheme = useScheme();
-  const { canvas, size } = useCanvas();
-  const [at, setAt] = useState<{ frequency: number; gain: number; growth: number } | undefined>(undefined);
-  useEffect(() => {
-    const ctx = canvas.current?.getContext("2d");
-    if (!ctx || size.width < 80) return;
-    ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
-    ctx.clearRect(0, 0, size.width, size.height);
-    paintMap(ctx, map, size.width, size.height, scheme);
-  }, [canvas, size, map, scheme]);
+  const [at, setAt] = useState<ReturnType<typeof cellAt>>(undefined);
+  const paint = useCallback((pen: Pen, box: Box, look: Look) => paintMap(pen, box, map, look), [map]);
   return (
     <>
-      <div
-        className={styles.map}
-        onPointerMove={(e) => setAt(cellAt(map, e.nativeEvent.offsetX, e.nativeEvent.offsetY, size.width, size.height))}
-        onPointerLeave={() => setAt(undefined)}
-      >
-        <canvas
-          ref={canvas}
-          role="img"
-          aria-label={`${name}: growth over frequency and gain; ${unstableShare(map)} unstable`}
+      <div className={styles.map}>
+        <Painted
+          label={`${name}: growth over frequency and gain; ${unstableShare(map)} unstable`}
+          paint={paint}
+          onPoint={(point, plot) => setAt(point && cellAt(map, plot, point))}
         />
       </div>
-      <p className={styles.reading} style={{ paddingLeft: FIELD.left }}>
+      <p className={styles.reading}>
         {at
           ? `ω = ${formatNumber(at.frequency, 2)}, gain ${formatSi(at.gain, "", 3)}: ${
               at.growth > STILL ? `grows by e every ${formatSi(1 / at.growth, "", 3)}` : "settles"

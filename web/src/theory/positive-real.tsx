@@ -2,11 +2,13 @@ import { Button, TextInput } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/queries";
+import type { PositiveReal as Found } from "../api/types";
+import { Painted } from "../picture/painted";
+import type { Box, Look, Pen } from "../picture/pen";
 import { PictureMenu } from "../picture/picture-menu";
 import { formatShort, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
-import { printRealPart } from "./print-theory";
-import { RealPart } from "./real-part";
+import { paintNyquist, paintOverFrequency, realPartPicture } from "./paint-real-part";
 import styles from "./theory.module.css";
 import { highestFirst, NotRational, parseTransferFunction, transferLatex } from "./transfer-function";
 
@@ -91,12 +93,30 @@ export function PositiveReal() {
             </div>
           </dl>
           <div className={styles.aside}>
-            <PictureMenu name="real part" take={() => printRealPart(answer, text)} />
+            <PictureMenu name="real part" take={() => realPartPicture(answer, text)} />
           </div>
           <RealPart found={answer} />
         </div>
       )}
     </section>
+  );
+}
+
+/** Re G(jw) over frequency, and the curve of Nyquist beside it or below. */
+function RealPart({ found }: { found: Found }) {
+  const [overFrequency, nyquist] = useMemo(
+    () =>
+      [paintOverFrequency, paintNyquist].map(
+        (paint) => (pen: Pen, box: Box, look: Look) => paint(pen, box, found, look),
+      ),
+    [found],
+  );
+  const least = found.least_real === null ? "unbounded" : formatShort(found.least_real, "");
+  return (
+    <div className={styles.plots}>
+      <Painted label={`Real part over frequency; least ${least}`} paint={overFrequency} />
+      <Painted label="Nyquist curve: imaginary over real part" paint={nyquist} />
+    </div>
   );
 }
 

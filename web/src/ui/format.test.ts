@@ -152,7 +152,14 @@ it("gives a change its sign, and none to what is no change", () => {
 });
 
 it("writes entries as they are typed", () => {
-  expect([0.1 + 0.2, -20, 1e-9].map(formatEntry)).toEqual(["0.3", "-20", "1e-9"]);
+  expect([0, 0.1 + 0.2, -20, 0.001, 1.95e-6, 1e-9].map(formatEntry)).toEqual([
+    "0",
+    "0.3",
+    "-20",
+    "0.001",
+    "1.95e-6",
+    "1e-9",
+  ]);
 });
 
 it("goes into an equation", () => {

@@ -129,7 +129,8 @@ export function inTex(text: string): string {
 
 /** A number as one would type it, for fields that are edited: without grouping, with the hyphen of the keyboard. */
 export function formatEntry(value: number): string {
-  return String(roundTo(value, 8));
+  const rounded = roundTo(value, 8);
+  return Math.abs(rounded) < 1e-3 && rounded !== 0 ? rounded.toExponential() : String(rounded);
 }
 
 /** Fewest decimals, at most `most`, that show a value as it is. */

@@ -20,3 +20,21 @@ export const hover = {
     };
   },
 };
+
+/** Where the time panels should look: a tick of the past, or live. */
+export type JumpTarget = { tick: number } | "live";
+
+const jumpers = new Set<(target: JumpTarget) => void>();
+
+/** Send every time panel to a tick, or back to the newest data. */
+export const jump = {
+  to(target: JumpTarget): void {
+    for (const listener of jumpers) listener(target);
+  },
+  listen(listener: (target: JumpTarget) => void): () => void {
+    jumpers.add(listener);
+    return () => {
+      jumpers.delete(listener);
+    };
+  },
+};

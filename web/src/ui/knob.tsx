@@ -4,7 +4,6 @@ import { useState } from "react";
 import { formatShort } from "./format";
 import styles from "./knob.module.css";
 import { NumberField } from "./number-field";
-import { positionOf, valueAt } from "./slider-scale";
 import { roundTo, unitText } from "./unit-scale";
 
 interface KnobProps {
@@ -94,4 +93,22 @@ export function Knob(props: KnobProps) {
       {note && <small className={styles.note}>{note}</small>}
     </div>
   );
+}
+
+export interface SliderScale {
+  low: number;
+  high: number;
+  log: boolean;
+}
+
+/** Place of a value on a slider from 0 to 1; beyond its ends it stays at them. */
+export function positionOf(value: number, { low, high, log }: SliderScale): number {
+  const share = log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+  return Math.min(1, Math.max(0, Number.isFinite(share) ? share : 0));
+}
+
+/** Value at a place, on steps; on a logarithmic scale in three digits. */
+export function valueAt(position: number, { low, high, log }: SliderScale, step: number): number {
+  const value = log ? low * (high / low) ** position : low + (high - low) * position;
+  return step > 0 ? roundTo(Math.round(value / step) * step, 8) : roundTo(value, 3);
 }

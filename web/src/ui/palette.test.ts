@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { contrast, inkOn } from "./contrast";
-import { CANVAS, type Scheme, TRACE_COLOURS } from "./palette";
+import { CANVAS, contrast, inkOn, type Scheme, TRACE_COLOURS } from "./palette";
 
 describe.each(["dark", "light"] as Scheme[])("%s", (scheme) => {
   it("traces stand out from the panel (3:1, graphics)", () => {

@@ -1,5 +1,5 @@
 import { Button } from "@mantine/core";
-import type { ApiError } from "../api/api-error";
+import type { ApiError } from "../api/client";
 import styles from "./ui.module.css";
 
 interface StaleProps {

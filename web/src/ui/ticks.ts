@@ -21,3 +21,10 @@ export function decadeTicks(low: number, high: number): number[] {
     }
   return found;
 }
+
+/** The powers of ten within a range. */
+export function powerTicks(low: number, high: number): number[] {
+  const first = Math.ceil(Math.log10(low) - 1e-9);
+  const last = Math.floor(Math.log10(high) + 1e-9);
+  return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => roundTo(10 ** (first + i), 6));
+}

@@ -1,4 +1,5 @@
 import { DASHES } from "./palette";
+import styles from "./ui.module.css";
 
 /** A short stroke in a trace's colour and dash. */
 export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) {
@@ -16,3 +17,15 @@ export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) 
     </svg>
   );
 }
+
+/** A signal's name: the block it comes from, then what it is. */
+export function SignalName({ name }: { name: string }) {
+  const [block, ...rest] = name.split(".");
+  return (
+    <span className={styles.signal} title={name}>
+      <span className={styles.block}>{words(block)}</span> <span data-rest>{words(rest.join(" "))}</span>
+    </span>
+  );
+}
+
+const words = (text: string) => text.replaceAll("_", " ");

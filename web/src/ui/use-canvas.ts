@@ -1,4 +1,6 @@
+import { useComputedColorScheme } from "@mantine/core";
 import { useEffect, useRef, useState } from "react";
+import type { Scheme } from "./palette";
 
 export interface CanvasSize {
   width: number;
@@ -28,4 +30,22 @@ export function useCanvas() {
     return () => observer.disconnect();
   }, []);
   return { canvas, size };
+}
+
+/** The colour scheme in force. */
+export const useScheme = (): Scheme => useComputedColorScheme("dark", { getInitialValueInEffect: false });
+
+/** The size of an element, and the ref to give it. */
+export function useSize<T extends HTMLElement>() {
+  const element = useRef<T>(null);
+  const [size, setSize] = useState({ width: 0, height: 0 });
+  useEffect(() => {
+    if (!element.current) return;
+    const observer = new ResizeObserver(([entry]) =>
+      setSize({ width: entry.contentRect.width, height: entry.contentRect.height }),
+    );
+    observer.observe(element.current);
+    return () => observer.disconnect();
+  }, []);
+  return { element, size };
 }

@@ -1,4 +1,4 @@
-import { IconAdjustments, IconCheck, IconCircleHalf2, IconX } from "@tabler/icons-react";
+import { IconAdjustments, IconCheck, IconCircleHalf2, IconFlask, IconX } from "@tabler/icons-react";
 import styles from "./verdict.module.css";
 
 const MARKS = {
@@ -6,6 +6,7 @@ const MARKS = {
   "reproduced by tuning": { tone: "good", icon: <IconAdjustments size={13} stroke={2.2} /> },
   partly: { tone: "fair", icon: <IconCircleHalf2 size={13} stroke={2.2} /> },
   "not reproduced": { tone: "poor", icon: <IconX size={13} stroke={2.6} /> },
+  ours: { tone: "own", icon: <IconFlask size={13} stroke={2.2} /> },
 };
 
 interface VerdictProps {
@@ -17,7 +18,14 @@ interface VerdictProps {
 /** The verdict on a claim: a word, a mark of its own shape, a colour. */
 export function Verdict({ verdict, borneOut }: VerdictProps) {
   const known = verdict !== null && verdict in MARKS ? MARKS[verdict as keyof typeof MARKS] : undefined;
-  if (known && !borneOut) return <span className={styles.verdict}>claim: {verdict}</span>;
+  // what is ours claims nothing
+  if (known && !borneOut)
+    return (
+      <span className={styles.verdict}>
+        {verdict === "ours" ? "" : "claim: "}
+        {verdict}
+      </span>
+    );
   return (
     <span className={styles.verdict} data-tone={known?.tone}>
       {known?.icon}

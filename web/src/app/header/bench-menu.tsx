@@ -1,6 +1,6 @@
 import { Menu, UnstyledButton } from "@mantine/core";
 import { IconChevronDown, IconPlus, IconTrash } from "@tabler/icons-react";
-import { useState } from "react";
+import { useEffect, useState } from "react";
 import { api } from "../../api/api";
 import type { Bench } from "../../api/types";
 import { actions } from "../../bench/actions";
@@ -9,7 +9,6 @@ import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { formatShort } from "../../ui/format";
 import styles from "./header.module.css";
-import { useSlowPage } from "./use-slow-page";
 
 /** Which bench this is; the others that run; a new one. */
 export function BenchMenu() {
@@ -78,4 +77,19 @@ function Remove({ bench, onDone }: { bench: Bench; onDone(): void }) {
       <IconTrash size={15} />
     </span>
   );
+}
+
+const SHOWN_MS = 8000;
+
+/** Whether the server said a moment ago that this page takes frames too slowly. */
+export function useSlowPage(): boolean {
+  const notice = useBench((s) => (s.notice?.code === "slow_client" ? s.notice : undefined));
+  const [slow, setSlow] = useState(false);
+  useEffect(() => {
+    if (!notice) return;
+    setSlow(true);
+    const timer = setTimeout(() => setSlow(false), SHOWN_MS);
+    return () => clearTimeout(timer);
+  }, [notice]);
+  return slow;
 }

@@ -3,11 +3,13 @@ import { useMediaQuery } from "@mantine/hooks";
 import { useRef } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
+import type { BlockCard } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
-import { ControllerWords } from "../../panels/controllers/controller-words";
+import styles from "../../panels/controllers/controllers.module.css";
 import { slotTitle } from "../../panels/controllers/slots";
 import { useBench } from "../../stream/bench-store";
+import { Prose } from "../../ui/prose";
 
 /**
  * Which controller drives the device, in each slot; the others run in their shadow, so a change is bumpless.
@@ -47,5 +49,19 @@ function SlotSelect({ slot, active }: { slot: string; active: string | undefined
       maxDropdownHeight={420}
       comboboxProps={{ shadow: "md", width: 340, position: "bottom-start" }}
     />
+  );
+}
+
+/** A controller by its title, and what it does in a line. */
+export function ControllerWords({ law }: { law: Pick<BlockCard, "title" | "summary"> | undefined }) {
+  return (
+    law && (
+      <span className={styles.law}>
+        {law.title}
+        <small>
+          <Prose text={law.summary} />
+        </small>
+      </span>
+    )
   );
 }

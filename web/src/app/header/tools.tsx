@@ -20,9 +20,9 @@ import { actions } from "../../bench/actions";
 import { benchChange } from "../../bench/undo";
 import { LECTURE_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import { takeBack } from "../take-back";
-import { themeSwitch } from "../theme-switch";
+import { themeSwitch } from "../theme";
 import styles from "./header.module.css";
 import { LayoutItems } from "./layout-items";
 

@@ -4,20 +4,18 @@ import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
 import { useView } from "../../bench/view-store";
+import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { TRACE_COLOURS } from "../../ui/palette";
-import { useScheme } from "../../ui/use-scheme";
-import { LaneCanvas, type LanePainting } from "../lanes/lane-canvas";
+import { LaneCanvas, type LaneShown } from "../lanes/lane-canvas";
 import { LaneTools } from "../lanes/lane-tools";
 import { useLaneTime } from "../lanes/use-lane-time";
 import styles from "./adaptation.module.css";
 import { adaptiveUnits, signalsOf } from "./adaptation-strips";
 import { ExcitationMeter } from "./excitation-meter";
-import { AXIS_PX, gutter, paintStrips, RIGHT_PX, STRIP_PX } from "./paint-strips";
-import { IDEAL, printStrips } from "./print-strips";
+import { AXIS_PX, gutter, paintStrips, RIGHT_PX, STRIP_PX, stripsPicture } from "./paint-strips";
 
-const LEGEND = [{ name: "now", colour: TRACE_COLOURS.light[1] }, IDEAL];
+const LEGEND = [{ name: "now", slot: 1 }];
 
 /** What adapts, against what it should be: gains, V and its derivative, s, errors, and how much the input tells. */
 export function AdaptationPanel() {
@@ -27,7 +25,6 @@ export function AdaptationPanel() {
   const parameters = useBench((s) => s.bench?.parameters);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const { blocks } = useCatalog();
-  const scheme = useScheme();
   const fontSize = useView((s) => s.fontPx);
   const [windowMs, setWindowMs] = useState(20);
   const [wanted, setWanted] = useState<string | undefined>(undefined);
@@ -42,14 +39,14 @@ export function AdaptationPanel() {
     units.find((u) => controllers?.includes(u.block)) ??
     units[0];
   const names = useMemo(() => unit?.strips.flatMap(signalsOf) ?? [], [unit]);
-  const shown = useRef<LanePainting | undefined>(undefined);
-  const paint = useMemo(() => {
-    const columnOf = new Map(names.map((name, i) => [name, i]));
-    return (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
-      shown.current = painting;
-      paintStrips(ctx, painting, unit?.strips ?? [], columnOf, scheme, fontSize);
-    };
-  }, [names, unit, scheme, fontSize]);
+  const shown = useRef<LaneShown | undefined>(undefined);
+  const paint = useMemo(
+    () => (pen: Pen, box: Box, now: LaneShown, look: Look) => {
+      shown.current = now;
+      paintStrips(pen, box, now, unit?.strips ?? [], look);
+    },
+    [unit],
+  );
   if (!unit)
     return (
       <EmptyState title="Nothing adapts on this bench">
@@ -59,7 +56,7 @@ export function AdaptationPanel() {
     );
   const take = () =>
     shown.current &&
-    printStrips(shown.current, unit.strips, `Adaptation of ${unit.block.replaceAll("_", " ")}`, LEGEND);
+    stripsPicture(shown.current, unit.strips, `Adaptation of ${unit.block.replaceAll("_", " ")}`, LEGEND);
   return (
     <section className={styles.panel} aria-label="Adaptation">
       <div className={styles.bar}>

@@ -1,12 +1,11 @@
 import { Button } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
-import { openVariant } from "../../bench/open-variant";
+import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatShort, formatSi } from "../../ui/format";
 import styles from "./adaptation.module.css";
-import { meterShare } from "./meter-share";
 
 const EVERY_MS = 150;
 const USUAL_LEAST = 1e-5;
@@ -81,4 +80,12 @@ export function ExcitationMeter() {
       <b ref={words} />
     </div>
   );
+}
+
+const LOWEST = 1e-9;
+
+/** Place of a relative excitation on a logarithmic meter from 1e-9 to 1. */
+export function meterShare(relative: number): number {
+  if (!(relative > LOWEST)) return 0;
+  return Math.min(1, 1 - Math.log10(relative) / Math.log10(LOWEST));
 }

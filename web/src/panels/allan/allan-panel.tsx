@@ -1,28 +1,24 @@
 import { Button } from "@mantine/core";
+import { useCallback } from "react";
 import { api } from "../../api/api";
 import { useAnswer } from "../../api/queries";
-import { openVariant } from "../../bench/open-variant";
+import { openVariant } from "../../bench/open-bench";
 import { send, showError } from "../../bench/send";
-import { drawnSvg } from "../../picture/drawn-svg";
-import type { Picture } from "../../picture/picture";
+import { Legend } from "../../picture/legend-list";
+import { Painted } from "../../picture/painted";
+import type { Box, Look, Pen } from "../../picture/pen";
+import { type Picture, pictureName } from "../../picture/picture";
 import { PictureMenu } from "../../picture/picture-menu";
-import { pictureName } from "../../picture/picture-name";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatIn } from "../../ui/format";
+import { formatCount, formatIn } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";
-import { useScheme } from "../../ui/use-scheme";
-import { useSize } from "../../ui/use-size";
+import { useScheme } from "../../ui/use-canvas";
 import styles from "./allan.module.css";
-import { AllanPlot, LINES, lineOf } from "./allan-plot";
 import { FigureTable } from "./figure-table";
+import { allanEntries, paintAllan } from "./paint-allan";
 
 const EVERY_MS = 1000;
-const LEGEND = [
-  ["measured", "Measured, with its standard error"],
-  ["fitted", "Fitted, and its terms"],
-  ["true", "The noise of the rate itself"],
-] as const;
 
 /** The noise of the rate that the driving controller estimates, as an Allan plot, while the bench runs. */
 export function AllanPanel() {
@@ -60,18 +56,12 @@ function Readout({ bench, name }: { bench: string; name: string }) {
   );
   const scheme = useScheme();
   const limited = useBench((s) => s.bench?.time_scale !== null && !s.bench?.replay_of);
-  const { element, size } = useSize<HTMLDivElement>();
+  const paint = useCallback(
+    (pen: Pen, box: Box, look: Look) => readout && paintAllan(pen, box, readout, look),
+    [readout],
+  );
   const take = (): Picture | undefined =>
-    readout && {
-      ...pictureName("Allan deviation"),
-      height: 480,
-      legend: LEGEND.map(([key, words]) => ({
-        name: words,
-        colour: lineOf(key, "light"),
-        dashes: LINES[key].dash.split(" ").filter(Boolean).map(Number),
-      })),
-      paint: (pen, box) => pen.add(drawnSvg(<AllanPlot readout={readout} {...box} scheme="light" />)),
-    };
+    readout && { ...pictureName("Allan deviation"), height: 480, legend: allanEntries("light"), paint };
   return (
     <section className={styles.panel} aria-label="Allan deviation">
       <div className={styles.bar}>
@@ -94,21 +84,13 @@ function Readout({ bench, name }: { bench: string; name: string }) {
       </div>
       <div className={styles.body}>
         <div className={styles.chart}>
-          <div ref={element} className={styles.stage}>
-            {readout && size.width > 120 && size.height > 100 && (
-              <AllanPlot readout={readout} {...size} scheme={scheme} />
-            )}
+          <div className={styles.stage}>
+            <Painted
+              label={`Allan deviation over ${formatCount(readout?.octaves.length ?? 0, "averaging time")}`}
+              paint={paint}
+            />
           </div>
-          <ul className={styles.legend}>
-            {LEGEND.map(([key, words]) => (
-              <li key={key}>
-                <svg width="24" height="8" aria-hidden="true">
-                  <path d="M0 4H24" stroke={lineOf(key, scheme)} strokeWidth="2.2" strokeDasharray={LINES[key].dash} />
-                </svg>
-                {words}
-              </li>
-            ))}
-          </ul>
+          <Legend entries={allanEntries(scheme)} />
         </div>
         {readout && <FigureTable figures={readout.figures} />}
       </div>

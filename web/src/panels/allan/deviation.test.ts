@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { deviation, scatter, TERMS, valuesOf } from "./deviation";
+import { deviation, driftGrade, scatter, TERMS, valuesOf, walkGrade } from "./deviation";
 
 it("has the slopes of IEEE Std 952, and its units", () => {
   expect(TERMS.N(0.1, 3600)).toBeCloseTo(0.1); // over an hour
@@ -27,3 +27,21 @@ it("takes the figures there are", () => {
   expect(valuesOf(figures, "value")).toEqual({ N: 0.11 });
   expect(valuesOf(figures, "true")).toEqual({ N: 0.1, B: 3 });
 });
+
+it("grades an angle random walk", () =>
+  expect([0.6, 0.5, 0.05, 0.01, 0.0005].map(walkGrade)).toEqual([
+    "rate grade",
+    "tactical grade",
+    "tactical grade",
+    "between tactical and inertial grade",
+    "inertial grade",
+  ]));
+
+it("grades a bias instability", () =>
+  expect([2000, 100, 10, 0.01, 0.005].map(driftGrade)).toEqual([
+    "below rate grade",
+    "rate grade",
+    "tactical grade",
+    "tactical grade",
+    "inertial grade",
+  ]));

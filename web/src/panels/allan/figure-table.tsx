@@ -1,7 +1,7 @@
 import type { RateReadout } from "../../api/types";
 import { formatShort, formatSi } from "../../ui/format";
 import styles from "./allan.module.css";
-import { driftGrade, walkGrade } from "./grade";
+import { driftGrade, walkGrade } from "./deviation";
 
 /** Fitted noises beside the true ones, with their grade, or why the record does not tell them yet. */
 export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {

@@ -4,7 +4,7 @@ import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
-import { jump } from "../../ui/jump";
+import { jump } from "../../ui/hover";
 import { NumberField } from "../../ui/number-field";
 import type { Hypothesis } from "../hypotheses/draft";
 import styles from "./blind.module.css";

@@ -4,7 +4,7 @@ import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { dropVeil, liftVeil, stream } from "../../stream/stream";
 import { veil } from "../../stream/veil";
-import { jump } from "../../ui/jump";
+import { jump } from "../../ui/hover";
 import type { Hypothesis } from "../hypotheses/draft";
 import { faultsOf, hiddenFault, points } from "./hidden-fault";
 

@@ -8,9 +8,9 @@ import { Weaknesses } from "../../ui/weaknesses";
 import { KindChoice } from "../controllers/generator-form";
 import { BlockEquation } from "./block-equation";
 import styles from "./card.module.css";
+import { useInstances } from "./instances";
 import { LiveValues } from "./live-values";
 import { ParameterList } from "./parameter-list";
-import { useInstances } from "./use-instances";
 
 /** Families of what comes from outside: its kind is changed while the bench runs. */
 const GENERATORS = ["reference", "rate"];

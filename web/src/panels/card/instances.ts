@@ -1,4 +1,7 @@
-import type { Bench, Document } from "../../api/types";
+import { useMemo } from "react";
+import { useShallow } from "zustand/react/shallow";
+import type { Bench, Document, Signal } from "../../api/types";
+import { useBench } from "../../stream/bench-store";
 
 /** A block as it stands on the bench: where the catalogue describes it and where the document keeps its values. */
 export interface Instance {
@@ -72,4 +75,36 @@ export function instances(
     ...(isFlat ? [single("model", "Reference model", "board", "model")] : []),
     single("guard", "Guard", "board", isFlat ? "guard" : "axis_guard"),
   ];
+}
+
+/** Blocks that stand once at each axis of a plant that has some: drive.x, drive.y. */
+const AT_EACH_AXIS = ["drive", "guard"];
+
+/** The signals of a block on the bench, what it puts out first; those of twins belong to the twins. */
+export function ownSignals(instance: Instance, signals: readonly Signal[]): Signal[] {
+  const key = instance.id.split(".").at(-1) ?? instance.id;
+  // a sensor's own signals carry its kind, and what the loop reads of it is called sensor
+  const blocks = instance.family === "sense" ? ["sensor", instance.name] : [key, `${key}.score`];
+  const stages = AT_EACH_AXIS.includes(key) || instance.family === "sense" ? blocks.map((block) => `${block}.`) : [];
+  const belongs = (block: string) => blocks.includes(block) || stages.some((stage) => block.startsWith(stage));
+  return signals.filter((s) => belongs(s.block) && !s.name.includes(":"));
+}
+
+/** Every block of the bench shown; the same list until one of them changes. */
+export function useInstances(): Instance[] {
+  const bench = useBench(
+    useShallow(({ bench }) =>
+      bench
+        ? {
+            axes: bench.axes,
+            parameters: bench.parameters,
+            controller: bench.controller,
+            controllers: bench.controllers,
+            diagnosers: bench.diagnosers,
+          }
+        : undefined,
+    ),
+  );
+  const slots = useBench(useShallow((s) => s.bench?.slots));
+  return useMemo(() => (bench && slots ? instances({ ...bench, slots }) : []), [bench, slots]);
 }

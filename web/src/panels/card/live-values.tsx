@@ -4,11 +4,10 @@ import { useMemo } from "react";
 import type { Signal } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { useBench } from "../../stream/bench-store";
+import { formatNumber, formatPercent } from "../../ui/format";
 import { useLiveValues } from "../schematic/use-live-values";
 import styles from "./card.module.css";
-import type { Instance } from "./instances";
-import { ownSignals } from "./own-signals";
-import { scoreWords } from "./score-words";
+import { type Instance, ownSignals } from "./instances";
 
 const MOST = 24;
 
@@ -61,3 +60,18 @@ const bare = (signal: Signal) =>
     .slice(signal.name.indexOf(".") + 1)
     .replaceAll("_", " ")
     .replaceAll(".", " ");
+
+const COUNTS = ["false_switches", "delay"];
+
+/**
+ * A figure of a diagnoser's score in words: hypotheses by name, counts whole, shares in percent; undefined for what is a number like
+ * any other.
+ */
+export function scoreWords(signal: string, value: number, names: readonly string[]): string | undefined {
+  const port = signal.slice(signal.lastIndexOf(".") + 1);
+  if (port === "winner" || port === "truth") return names[value] ?? "none of these";
+  if (port === "delay" && value < 0) return "not found";
+  if (COUNTS.includes(port)) return formatNumber(value, 0);
+  if (port === "correct_fraction") return formatPercent(value, 2);
+  return undefined;
+}

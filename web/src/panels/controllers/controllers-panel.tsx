@@ -9,7 +9,7 @@ import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { Prose } from "../../ui/prose";
-import { useInstances } from "../card/use-instances";
+import { useInstances } from "../card/instances";
 import { useLiveValues } from "../schematic/use-live-values";
 import styles from "./controllers.module.css";
 import { GeneratorForm } from "./generator-form";

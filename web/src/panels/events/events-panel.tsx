@@ -1,8 +1,8 @@
-import { eventTone } from "../../bench/event-tone";
+import { eventTone } from "../../bench/flag-words";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment } from "../../ui/format";
-import { jump } from "../../ui/jump";
+import { jump } from "../../ui/hover";
 import styles from "./events.module.css";
 
 const SHOWN = 300;

@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { BlockCard } from "../../api/types";
-import { type FaultDraft, injectCommand, newDraft, ownParameters, refusals, scaled } from "./fault-draft";
+import { type FaultDraft, groupsOf, injectCommand, newDraft, ownParameters, refusals, scaled } from "./fault-draft";
 
 const scale = { percent: true, low: -0.5, high: 0.5, minimum: -0.95, maximum: 20, step: 1 };
 
@@ -64,4 +64,19 @@ it("shows on slider and box the number that is sent, whatever the step", () => {
     if (scaled(sent, 100) !== entry || String(sent).length > 7) wrong.push(entry);
   }
   expect(wrong).toEqual([]);
+});
+
+it("keeps the order of the catalogue, and those without a group under a heading of theirs", () => {
+  const fault = (name: string, group: string) => ({ name, group });
+  const found = groupsOf([
+    fault("mass", "The usual"),
+    fault("noise", "Measurement"),
+    fault("k", "The usual"),
+    fault("mine", ""),
+  ]);
+  expect(found.map(([group, members]) => [group, ...members.map((f) => f.name)])).toEqual([
+    ["The usual", "mass", "k"],
+    ["Measurement", "noise"],
+    ["Others", "mine"],
+  ]);
 });

@@ -47,7 +47,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
           <span>{fault.title}</span>
         </button>
         {active ? (
-          <>
+          <span className={styles.now}>
             <b className={styles.acting}>
               {severityText(active.severity, scale, unit)}
               {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}
@@ -59,7 +59,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
             >
               Heal
             </Button>
-          </>
+          </span>
         ) : (
           <Button
             size="compact-sm"

@@ -5,9 +5,9 @@ import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { groupsOf } from "./fault-draft";
 import { FaultRow } from "./fault-row";
 import styles from "./faults.module.css";
-import { groupsOf } from "./groups";
 
 /** Every fault that this bench may have: what it changes, how much, how and when; several at once. */
 export function FaultsPanel() {

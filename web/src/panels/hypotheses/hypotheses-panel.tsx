@@ -5,7 +5,7 @@ import { api } from "../../api/api";
 import { fits } from "../../api/fits";
 import { useAsked } from "../../api/queries";
 import { useCatalog } from "../../api/use-catalog";
-import { openVariant } from "../../bench/open-variant";
+import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";

@@ -3,7 +3,7 @@ import { IconX } from "@tabler/icons-react";
 import { NumberField } from "../../ui/number-field";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { roundTo } from "../../ui/unit-scale";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import { FACTORS, type Hypothesis, LEAST, withFactor } from "./draft";
 import styles from "./hypotheses.module.css";
 

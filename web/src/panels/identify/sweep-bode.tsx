@@ -2,14 +2,10 @@ import { useMemo } from "react";
 import type { Identification } from "../../api/types";
 import { decibels } from "../../picture/bode/bode-data";
 import { BodePlot } from "../../picture/bode/bode-plot";
-import { TRACE_COLOURS } from "../../ui/palette";
-import { useScheme } from "../../ui/use-scheme";
 
 /** The measured tones over the response that was fitted and the one that is believed. */
 export function SweepBode({ result }: { result: Identification }) {
-  const scheme = useScheme();
-  const colours = TRACE_COLOURS[scheme];
-  const { curves, points } = useMemo(() => {
+  const shown = useMemo(() => {
     const { curve, tones, nominal } = result;
     const rest = Math.abs(nominal.static_gain_um_per_v);
     const hertz = curve.frequency_hz;
@@ -17,15 +13,16 @@ export function SweepBode({ result }: { result: Identification }) {
       curves: [
         {
           name: "Fitted",
-          colour: colours[1],
+          slot: 1,
+          dash: 0,
           hertz,
           db: curve.found_um_per_v.map((gain) => decibels(gain / rest)),
           deg: curve.found_deg,
         },
         {
           name: "Nominal",
-          colour: colours[0],
-          dash: "8 4",
+          slot: 0,
+          dash: 1,
           hertz,
           db: curve.nominal_um_per_v.map((gain) => decibels(gain / rest)),
           deg: curve.nominal_deg,
@@ -33,7 +30,7 @@ export function SweepBode({ result }: { result: Identification }) {
       ],
       points: {
         name: `${tones.length} tones measured`,
-        colour: colours[2],
+        slot: 2,
         hertz: tones.map((t) => t.frequency_hz),
         db: tones.map((t) => decibels(t.gain_um_per_v / rest)),
         // 20 log10(1 + e) is 8.686 e
@@ -41,6 +38,6 @@ export function SweepBode({ result }: { result: Identification }) {
         deg: tones.map((t) => t.phase_deg),
       },
     };
-  }, [result, colours]);
-  return <BodePlot label="Measured tones over the fitted response" curves={curves} points={points} />;
+  }, [result]);
+  return <BodePlot label="Measured tones over the fitted response" shown={shown} />;
 }

@@ -2,19 +2,17 @@ import { useMemo, useRef } from "react";
 import { hypothesesExplained, hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { pickSample } from "../../bench/why";
-import { textWidth } from "../../picture/text-width";
+import { textWidth } from "../../picture/svg-text";
 import { useBench } from "../../stream/bench-store";
-import { currentEvents } from "../../stream/current-events";
-import { useScheme } from "../../ui/use-scheme";
-import { useSize } from "../../ui/use-size";
+import { currentEvents } from "../../stream/event-log";
+import { useSize } from "../../ui/use-canvas";
 import { truthSwitches } from "./delays";
 import { LaneCanvas } from "./lane-canvas";
 import { LaneTools } from "./lane-tools";
 import styles from "./lanes.module.css";
 import { LanesHeadline } from "./lanes-headline";
-import { lanesLayout } from "./lanes-layout";
-import { type LanesPicture, paintLanes } from "./paint-lanes";
-import { printLanes } from "./print-lanes";
+import { lanesLayout, leastHeight } from "./lanes-layout";
+import { type LanesShown, lanesPicture, paintLanes } from "./paint-lanes";
 import type { LaneTime } from "./use-lane-time";
 
 /** Share of the panel that the words of the hypotheses may take; otherwise their names stand there. */
@@ -29,7 +27,6 @@ interface DiagnoserLanesProps {
 
 /** The lanes of one diagnoser: one for each hypothesis. */
 export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProps) {
-  const scheme = useScheme();
   const picked = useView((s) => (s.sample?.diagnoser === id ? s.sample.tick : undefined));
   const events = useBench((s) => s.events);
   const fontSize = useView((s) => s.fontPx);
@@ -49,38 +46,31 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
   );
   const { labels, left } = useMemo(() => {
     const words = names.map((name) => hypothesisWords(name, diagnosers));
-    const wide = Math.max(...words.map((text) => textWidth(text, fontSize, 700, "IBM Plex Sans Variable"))) + 22;
-    const fits = wide <= size.width * WORDS_SHARE;
-    return { labels: fits ? words : names, left: Math.max(fontSize * 6, fits ? wide : 0) };
+    const widthOf = (texts: string[]) =>
+      Math.max(...texts.map((text) => textWidth(text, fontSize, 700, "IBM Plex Sans Variable"))) + 22;
+    const labels = widthOf(words) <= size.width * WORDS_SHARE ? words : names;
+    return { labels, left: Math.max(fontSize * 6, widthOf(labels)) };
   }, [names, diagnosers, fontSize, size.width]);
-  const shown = useRef<LanesPicture | undefined>(undefined);
+  const shown = useRef<LanesShown | undefined>(undefined);
   const paint = useMemo<Parameters<typeof LaneCanvas>[0]["paint"]>(
-    () =>
-      (ctx, { frame, span, width, height, hover }) => {
-        shown.current = {
-          frame,
-          span,
-          names,
-          labels,
-          layout: lanesLayout(width, height, names.length, fontSize, left),
-          scheme,
-          fontSize,
-          switches,
-          withUnexplained,
-          hover,
-          picked,
-        };
-        paintLanes(ctx, shown.current);
-      },
-    [names, labels, left, fontSize, scheme, switches, withUnexplained, picked],
+    () => (pen, box, now, look) => {
+      shown.current = { ...now, names, labels, gutter: left / fontSize, switches, withUnexplained, picked };
+      paintLanes(pen, box, shown.current, look);
+    },
+    [names, labels, left, fontSize, switches, withUnexplained, picked],
   );
   const edges = lanesLayout(1000, 400, names.length, fontSize, left);
 
   return (
-    <section ref={element} className={styles.lanes} aria-label={`Diagnosis by ${id}`}>
+    <section
+      ref={element}
+      className={styles.lanes}
+      style={{ "--least": `${leastHeight(names.length, fontSize)}px` } as React.CSSProperties}
+      aria-label={`Diagnosis by ${id}`}
+    >
       <div className={styles.toolbar}>
         <LanesHeadline id={id} names={names} switches={switches} />
-        <LaneTools time={time} onWindow={onWindow} take={() => shown.current && printLanes(shown.current, id)} />
+        <LaneTools time={time} onWindow={onWindow} take={() => shown.current && lanesPicture(shown.current, id)} />
       </div>
       <LaneCanvas
         label={`Probability of ${labels.join(", ")} over time`}

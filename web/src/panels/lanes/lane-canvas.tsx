@@ -1,4 +1,6 @@
 import { useEffect, useMemo, useRef } from "react";
+import { useView } from "../../bench/view-store";
+import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { scopeConfig } from "../../stream/scope-config";
@@ -6,17 +8,16 @@ import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { hover } from "../../ui/hover";
 import { usePanelVisible } from "../../ui/panel-visible";
-import { useCanvas } from "../../ui/use-canvas";
+import { useCanvas, useScheme } from "../../ui/use-canvas";
 import { listenForGestures } from "../scope/scope-gestures";
-import { scopeSubscription } from "../scope/time-window";
+import { scopeSubscription } from "../scope/use-time-view";
 import styles from "./lanes.module.css";
 import type { LaneTime } from "./use-lane-time";
 
-export interface LanePainting {
+/** A frame of device time, the ticks of it that are seen, and the one under the pointer. */
+export interface LaneShown {
   frame: PanelFrame;
   span: { start: number; end: number };
-  width: number;
-  height: number;
   hover: number | undefined;
 }
 
@@ -29,8 +30,8 @@ interface LaneCanvasProps {
   /** CSS pixels left free beside the field of time. */
   left: number;
   right: number;
-  /** Draws in CSS pixels; a new function draws anew. */
-  paint(ctx: CanvasRenderingContext2D, painting: LanePainting): void;
+  /** A new function paints anew. */
+  paint(pen: Pen, box: Box, shown: LaneShown, look: Look): void;
   /** A sample was clicked. */
   onPick?(tick: number): void;
 }
@@ -39,6 +40,8 @@ interface LaneCanvasProps {
 export function LaneCanvas({ label, legend, signals, time, left, right, paint, onPick }: LaneCanvasProps) {
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const visible = usePanelVisible();
+  const scheme = useScheme();
+  const fontSize = useView((s) => s.fontPx);
   const over = useRef<HTMLDivElement>(null);
   const frame = useRef<PanelFrame | undefined>(undefined);
   const shown = useRef({ start: 0, end: 1 });
@@ -91,15 +94,9 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
       dirty.current = false;
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
-      paint(ctx, {
-        frame: frame.current,
-        span: shown.current,
-        width: size.width,
-        height: size.height,
-        hover: hover.tick,
-      });
+      paint(ctx, size, { frame: frame.current, span: shown.current, hover: hover.tick }, { scheme, fontSize });
     });
-  }, [visible, canvas, size, paint]);
+  }, [visible, canvas, size, paint, scheme, fontSize]);
 
   const point = (offset: number | undefined) => {
     const width = over.current?.clientWidth ?? 1;

@@ -1,6 +1,6 @@
 import { NativeSelect } from "@mantine/core";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
-import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
 import { LiveButton } from "../scope/live-button";
 import type { LaneTime } from "./use-lane-time";
 

@@ -1,9 +1,9 @@
+import { Tooltip } from "@mantine/core";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
-import { formatCount, formatPercent, formatSi } from "../../ui/format";
+import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import type { TruthSwitch } from "./delays";
-import { FitsNone } from "./fits-none";
 import styles from "./lanes.module.css";
 
 /** The figures of a diagnoser that are read from the last row. */
@@ -54,4 +54,18 @@ function delayText(last: TruthSwitch | undefined, dtMs: number): string {
   if (!last.findable) return "not among the hypotheses";
   if (last.delay === undefined) return "not found yet";
   return `${formatCount(last.delay, "sample")} · ${formatSi(last.delay * dtMs, "ms", 3)}`;
+}
+
+/** The bank itself knows from its residuals that what it names is not so. */
+export function FitsNone({ least }: { least: number }) {
+  const times = formatNumber(Math.sqrt(least), 1);
+  return (
+    <Tooltip
+      multiline
+      w={280}
+      label={`Even the hypothesis that fits best misses by ${times} times what its filter expects. Something acts that is not in the list, or the assumed noise is too small.`}
+    >
+      <b className={styles.none}>fits none</b>
+    </Tooltip>
+  );
 }

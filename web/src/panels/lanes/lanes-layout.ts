@@ -10,6 +10,9 @@ export interface LanesLayout {
   axis: number;
 }
 
+/** Less than this and the names of the hypotheses would lie over each other. */
+export const leastHeight = (lanes: number, fontSize: number): number => lanes * (fontSize + 2) + 4 * fontSize + 47;
+
 export function lanesLayout(width: number, height: number, lanes: number, fontSize: number, left: number): LanesLayout {
   const band = fontSize + 6;
   const axisHeight = fontSize + 10;
@@ -19,7 +22,7 @@ export function lanesLayout(width: number, height: number, lanes: number, fontSi
   const winner = 4 + room + 4;
   return {
     left,
-    right: width - fontSize * 5.6,
+    right: width - fontSize * 6.2,
     lanes: Array.from({ length: lanes }, (_, i) => ({ top: 4 + i * each, height: each })),
     winner,
     truth: winner + band + 3,

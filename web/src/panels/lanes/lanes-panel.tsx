@@ -4,7 +4,7 @@ import { longestStep, useSteps } from "../../bench/steps";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { TIME_WINDOWS_MS } from "../../ui/time-windows";
+import { TIME_WINDOWS_MS } from "../../ui/time-axis";
 import { contestants } from "./contestants";
 import { DiagnoserLanes } from "./diagnoser-lanes";
 import { LaneTools } from "./lane-tools";

@@ -2,7 +2,7 @@ import { Button, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { fits } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
-import { openVariant } from "../../bench/open-variant";
+import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 

@@ -1,27 +1,28 @@
 import { hypothesisWords } from "../../bench/hypothesis-words";
-import { fillHatched } from "../../picture/hatch";
-import type { Pen } from "../../picture/pen";
-import type { PanelFrame } from "../../stream/panel-frame";
-import { fontFor } from "../../ui/canvas-font";
-import { inkOn } from "../../ui/contrast";
+import { type Place, placeOn } from "../../picture/axes";
+import type { Look, Pen } from "../../picture/pen";
+import { fillHatched } from "../../picture/traces";
+import { type PanelFrame, tickOf } from "../../stream/panel-frame";
 import { formatCount, formatNumber, formatSi } from "../../ui/format";
-import { CANVAS, type Scheme } from "../../ui/palette";
-import { timeLabels, timeSplits, timeUnit } from "../../ui/time-axis";
+import { CANVAS, fontFor, inkOn } from "../../ui/palette";
 import type { TruthSwitch } from "./delays";
 import type { LanesLayout } from "./lanes-layout";
-import type { runs } from "./runs";
 
 const FITS_NONE = "fits none";
 const NO_NAME = "none of these";
 
 /** What every picture of lanes has: a span of time, the truth's changes in it, and where things lie. */
-export interface LanesGround {
+export interface LanesGround extends Look {
   frame: PanelFrame;
   span: { start: number; end: number };
   layout: LanesLayout;
-  scheme: Scheme;
-  fontSize: number;
   switches: TruthSwitch[];
+}
+
+/** Where ticks and columns lie. */
+export function placesOf({ span, frame, layout }: LanesGround): { x: Place; columnX: Place } {
+  const x = placeOn({ range: [span.start, span.end] }, layout.left, layout.right);
+  return { x, columnX: (column) => x(tickOf(frame, column)) };
 }
 
 /** Stretches of an index signal as a band with names: solid for what is known, otherwise a guess. */
@@ -132,31 +133,6 @@ export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) =>
   });
 }
 
-export function paintTime(
-  ctx: Pen,
-  { layout, span, frame, scheme, fontSize }: Omit<LanesGround, "switches">,
-  x: (tick: number) => number,
-): void {
-  const colours = CANVAS[scheme];
-  const startMs = span.start * frame.dtMs;
-  const endMs = span.end * frame.dtMs;
-  const splits = timeSplits(startMs, endMs, Math.max(2, (layout.right - layout.left) / (fontSize * 8)));
-  const labels = timeLabels(splits, endMs - startMs);
-  const y = layout.axis + fontSize / 2 + 4;
-  ctx.font = fontFor(fontSize, 1);
-  ctx.textAlign = "center";
-  splits.forEach((ms, i) => {
-    const at = x(ms / frame.dtMs);
-    ctx.fillStyle = colours.grid;
-    ctx.fillRect(Math.round(at), 0, 1, layout.axis);
-    ctx.fillStyle = colours.muted;
-    ctx.fillText(labels[i], at, y);
-  });
-  ctx.textAlign = "right";
-  ctx.font = fontFor(fontSize, 1, 600);
-  ctx.fillText(timeUnit(endMs - startMs).unit, layout.left - fontSize * 2.4, y);
-}
-
 /** A delay in words, the longest first; the picture takes what fits. */
 function delayWords({ delay, findable }: TruthSwitch, dtMs: number): string[] {
   if (!findable) return ["not among the hypotheses", "not among them", "none"];
@@ -168,4 +144,26 @@ function delayWords({ delay, findable }: TruthSwitch, dtMs: number): string[] {
     time,
     formatNumber(delay, 0),
   ];
+}
+
+/** A stretch of columns over which an index signal keeps one value. */
+export interface Run {
+  value: number;
+  from: number;
+  /** One past the last column. */
+  to: number;
+}
+
+/** Stretches of equal value; columns without data belong to the stretch before them. */
+export function runs(values: Float32Array): Run[] {
+  const found: Run[] = [];
+  for (let c = 0; c < values.length; c += 1) {
+    const value = values[c];
+    const last = found.at(-1);
+    if (Number.isNaN(value)) {
+      if (last) last.to = c + 1;
+    } else if (last && last.value === value) last.to = c + 1;
+    else found.push({ value, from: c, to: c + 1 });
+  }
+  return found;
 }

@@ -1,84 +1,92 @@
-import type { Pen } from "../../picture/pen";
-import { fontFor } from "../../ui/canvas-font";
+import { paintColumns, timeAxis } from "../../picture/axes";
+import { eventAxis } from "../../picture/event-marks";
+import type { Box, Look, Pen } from "../../picture/pen";
+import { type Picture, pictureName } from "../../picture/picture";
+import { within } from "../../picture/traces";
+import { columnAt, largest, lowest } from "../../stream/panel-frame";
 import { formatPercent } from "../../ui/format";
-import { CANVAS } from "../../ui/palette";
+import { CANVAS, fontFor } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
-import { columnAt } from "../scope/column-at";
-import { type LanesGround, paintBand, paintDelays, paintPicked, paintTime, paintUnexplained } from "./paint-bands";
-import { runs } from "./runs";
+import type { TruthSwitch } from "./delays";
+import type { LaneShown } from "./lane-canvas";
+import { lanesLayout } from "./lanes-layout";
+import { paintBand, paintDelays, paintPicked, paintUnexplained, placesOf, runs } from "./paint-bands";
 
-export interface LanesPicture extends LanesGround {
+export interface LanesShown extends LaneShown {
+  switches: TruthSwitch[];
   names: string[];
   /** What the lanes are called: the hypotheses in words, or by name where words have no room. */
   labels: string[];
-  hover: number | undefined;
+  /** Room for them, in sizes of the letters. */
+  gutter: number;
   /** Whether the signals end with what says that no hypothesis fits. */
   withUnexplained: boolean;
   /** The sample that is being explained. */
   picked: number | undefined;
 }
 
+/** Room for a lane and for the bands in a picture that is kept, px. */
+const LANE_PX = 46;
+const BANDS_PX = 100;
+
+const layoutOf = ({ width, height }: Box, { names, gutter }: LanesShown, { fontSize }: Look) =>
+  lanesLayout(width, height, names.length, fontSize, gutter * fontSize);
+
 /** Paint a bank: one filled lane per hypothesis, the guess hatched, the truth solid, the delay between them. */
-export function paintLanes(ctx: Pen, picture: LanesPicture): void {
-  const { frame, span, names, layout, scheme, fontSize } = picture;
+export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): void {
+  const { frame, span, names, hover } = shown;
+  const { scheme, fontSize } = look;
+  const layout = layoutOf(box, shown, look);
+  const picture = { ...shown, ...look, layout };
   const colours = CANVAS[scheme];
   const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), scheme) : colours.muted);
-  const x = (tick: number) =>
-    layout.left + ((tick - span.start) / (span.end - span.start)) * (layout.right - layout.left);
-  const perColumn = (frame.endTick - frame.startTick) / frame.columns;
-  const columnX = (c: number) => x(frame.startTick + c * perColumn);
-  const column = (signal: number, part: number) =>
-    frame.data.subarray((signal * 2 + part) * frame.columns, (signal * 2 + part + 1) * frame.columns);
-  const reading = (signal: number) =>
-    picture.hover === undefined ? frame.latest[signal] : columnAt(frame, signal, picture.hover);
+  const { x, columnX } = placesOf(picture);
+  const reading = (signal: number) => (hover === undefined ? frame.latest[signal] : columnAt(frame, signal, hover));
   const winnerNow = reading(names.length);
   const truthNow = reading(names.length + 1);
+  const field = { left: layout.left, right: layout.right, top: 0, bottom: layout.axis };
 
-  ctx.textBaseline = "middle";
-  paintTime(ctx, picture, x);
-
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(layout.left, 0, layout.right - layout.left, layout.axis);
-  ctx.clip();
-  names.forEach((_, i) => {
-    const { top, height } = layout.lanes[i];
-    const base = top + height - 2;
-    const tall = height - 4;
-    for (const [part, alpha] of [
-      [1, "66"],
-      [0, "d9"],
-    ] as const) {
-      ctx.fillStyle = colour(i) + alpha;
-      ctx.beginPath();
-      fillSteps(ctx, column(i, part), columnX, base, tall);
-      ctx.fill();
+  paintColumns(ctx, field, timeAxis(span, frame.dtMs), look);
+  within(ctx, field, () => {
+    names.forEach((_, i) => {
+      const { top, height } = layout.lanes[i];
+      const base = top + height - 2;
+      const tall = height - 4;
+      for (const [part, alpha] of [
+        [largest, "66"],
+        [lowest, "d9"],
+      ] as const) {
+        ctx.fillStyle = colour(i) + alpha;
+        ctx.beginPath();
+        fillSteps(ctx, part(frame, i), columnX, base, tall);
+        ctx.fill();
+      }
+      ctx.fillStyle = colours.axis;
+      ctx.fillRect(layout.left, base, layout.right - layout.left, 1);
+    });
+    paintBand(
+      ctx,
+      runs(largest(frame, names.length)),
+      columnX,
+      layout.winner,
+      layout.band,
+      colour,
+      names,
+      colours,
+      fontSize,
+      false,
+    );
+    if (shown.withUnexplained) paintUnexplained(ctx, runs(largest(frame, names.length + 2)), columnX, picture);
+    const truth = runs(largest(frame, names.length + 1));
+    paintBand(ctx, truth, columnX, layout.truth, layout.band, colour, names, colours, fontSize, true);
+    paintDelays(ctx, picture, x, lowest(frame, names.length));
+    paintPicked(ctx, shown.picked, x, layout.axis, colours);
+    if (hover !== undefined) {
+      ctx.fillStyle = colours.accent;
+      ctx.fillRect(Math.round(x(hover)), 0, 1, layout.axis);
     }
-    ctx.fillStyle = colours.axis;
-    ctx.fillRect(layout.left, base, layout.right - layout.left, 1);
   });
-  paintBand(
-    ctx,
-    runs(column(names.length, 1)),
-    columnX,
-    layout.winner,
-    layout.band,
-    colour,
-    names,
-    colours,
-    fontSize,
-    false,
-  );
-  if (picture.withUnexplained) paintUnexplained(ctx, runs(column(names.length + 2, 1)), columnX, picture);
-  const truth = runs(column(names.length + 1, 1));
-  paintBand(ctx, truth, columnX, layout.truth, layout.band, colour, names, colours, fontSize, true);
-  paintDelays(ctx, picture, x, column(names.length, 0));
-  paintPicked(ctx, picture.picked, x, layout.axis, colours);
-  if (picture.hover !== undefined) {
-    ctx.fillStyle = colours.accent;
-    ctx.fillRect(Math.round(x(picture.hover)), 0, 1, layout.axis);
-  }
-  ctx.restore();
+  ctx.textBaseline = "middle";
 
   names.forEach((_, i) => {
     const { top, height } = layout.lanes[i];
@@ -86,9 +94,9 @@ export function paintLanes(ctx: Pen, picture: LanesPicture): void {
     ctx.font = fontFor(fontSize, 1, i === truthNow ? 700 : 450);
     ctx.fillStyle = i === truthNow || i === winnerNow ? colours.text : colours.muted;
     ctx.textAlign = "right";
-    ctx.fillText(picture.labels[i], layout.left - 10, y);
+    ctx.fillText(shown.labels[i], layout.left - 10, y);
     ctx.font = fontFor(fontSize, 1, i === winnerNow ? 700 : 450);
-    ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 5.4, y);
+    ctx.fillText(formatPercent(reading(i)), layout.right + fontSize * 6, y);
   });
   ctx.font = fontFor(fontSize, 1, 450);
   ctx.fillStyle = colours.muted;
@@ -109,3 +117,15 @@ function fillSteps(ctx: Pen, values: Float32Array, columnX: (c: number) => numbe
   }
   if (from >= 0) ctx.rect(columnX(from), base - height, columnX(values.length) - columnX(from), height);
 }
+
+/** The lanes of a diagnoser as a picture. */
+export const lanesPicture = (shown: LanesShown, id: string): Picture => ({
+  ...pictureName(`Diagnosis by ${id.replaceAll("_", " ")}`),
+  up: "probability of each hypothesis, 0 to 1",
+  height: LANE_PX * shown.names.length + BANDS_PX,
+  time: eventAxis(shown, (box, look) => {
+    const { left, right, axis } = layoutOf(box, shown, look);
+    return { left, right, top: 0, bottom: axis };
+  }),
+  paint: (pen, box, look) => paintLanes(pen, box, { ...shown, hover: undefined, picked: undefined }, look),
+});

@@ -1,23 +1,26 @@
-import type { Pen } from "../../picture/pen";
+import { paintColumns, timeAxis } from "../../picture/axes";
+import type { Box, Look, Pen } from "../../picture/pen";
+import { within } from "../../picture/traces";
+import { largest, lowest } from "../../stream/panel-frame";
 import { CANVAS } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
+import type { TruthSwitch } from "./delays";
+import type { LaneShown } from "./lane-canvas";
 import type { LanesLayout } from "./lanes-layout";
-import { type LanesGround, paintBand, paintDelays, paintPicked, paintTime } from "./paint-bands";
-import { runs } from "./runs";
-import { stack } from "./stack";
+import { paintBand, paintDelays, paintPicked, placesOf, runs } from "./paint-bands";
 
-export interface RacePicture extends LanesGround {
+export interface RaceShown extends LaneShown {
+  switches: TruthSwitch[];
   names: string[];
   /** Whether the signals end with the index of the truth. */
   withTruth: boolean;
   /** How many of the signals are probabilities, which are stacked; the index of the verdict follows. */
   probabilities: number;
-  hover: number | undefined;
   picked: number | undefined;
 }
 
 /** Where the parts of one row of the race lie: probabilities, verdict, delay, truth. */
-export function rowLayout(width: number, height: number, fontSize: number): LanesLayout {
+function rowLayout({ width, height }: Box, { fontSize }: Look): LanesLayout {
   const band = fontSize + 5;
   const truth = height - 7;
   const delay = truth - band - 1;
@@ -26,20 +29,20 @@ export function rowLayout(width: number, height: number, fontSize: number): Lane
 }
 
 /** One diagnoser of the race: what it believes as one filled field, what it says, and how long it took. */
-export function paintRow(ctx: Pen, picture: RacePicture): void {
-  const { frame, span, layout, scheme, names, probabilities } = picture;
-  const colours = CANVAS[scheme];
-  const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), scheme) : colours.muted);
-  const x = (tick: number) => ((tick - span.start) / (span.end - span.start)) * layout.right;
-  const perColumn = (frame.endTick - frame.startTick) / frame.columns;
-  const columnX = (c: number) => x(frame.startTick + c * perColumn);
-  const low = (signal: number) => column(picture, signal, 0);
-  const high = (signal: number) => column(picture, signal, 1);
+export function paintRow(ctx: Pen, box: Box, shown: RaceShown, look: Look): void {
+  const { frame, span, names, probabilities } = shown;
+  const layout = rowLayout(box, look);
+  const picture = { ...shown, ...look, layout };
+  const colours = CANVAS[look.scheme];
+  const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), look.scheme) : colours.muted);
+  const { x, columnX } = placesOf(picture);
+  const field = { left: 0, right: layout.right, top: 0, bottom: layout.axis };
+  // the head says the times
+  within(ctx, field, () => paintColumns(ctx, field, timeAxis(span, frame.dtMs), look));
   ctx.textBaseline = "middle";
-  paintGrid(ctx, picture, x);
 
   const { top, height } = layout.lanes[0];
-  const edges = stack(Array.from({ length: probabilities }, (_, i) => middle(low(i), high(i))));
+  const edges = stack(Array.from({ length: probabilities }, (_, i) => middle(lowest(frame, i), largest(frame, i))));
   // the last layer is drawn first and fills down to the axis; each before it covers what lies below
   for (let i = edges.length - 1; i >= 0; i -= 1) {
     ctx.fillStyle = colour(i);
@@ -47,65 +50,38 @@ export function paintRow(ctx: Pen, picture: RacePicture): void {
     fillBelow(ctx, edges[i], columnX, top, height);
     ctx.fill();
   }
-  const winner = low(probabilities);
-  paintBand(
-    ctx,
-    runs(winner),
-    columnX,
-    layout.winner,
-    layout.band - 1,
-    colour,
-    names,
-    colours,
-    picture.fontSize,
-    false,
-  );
-  if (picture.withTruth) {
-    for (const run of runs(high(probabilities + 1))) {
+  const winner = lowest(frame, probabilities);
+  paintBand(ctx, runs(winner), columnX, layout.winner, layout.band - 1, colour, names, colours, look.fontSize, false);
+  if (shown.withTruth) {
+    for (const run of runs(largest(frame, probabilities + 1))) {
       ctx.fillStyle = run.value < 0 ? colours.axis : colour(run.value);
       ctx.fillRect(columnX(run.from), layout.truth, columnX(run.to) - columnX(run.from), 6);
     }
   }
   paintDelays(ctx, picture, x, winner);
-  paintPicked(ctx, picture.picked, x, layout.axis, colours);
-  if (picture.hover !== undefined) {
+  paintPicked(ctx, shown.picked, x, layout.axis, colours);
+  if (shown.hover !== undefined) {
     ctx.fillStyle = colours.accent;
-    ctx.fillRect(Math.round(x(picture.hover)), 0, 1, layout.axis);
+    ctx.fillRect(Math.round(x(shown.hover)), 0, 1, layout.axis);
   }
 }
 
 /** The head of the race: the axis of time over what is true. */
-export function paintHead(ctx: Pen, picture: RacePicture): void {
-  const { span, layout } = picture;
-  const x = (tick: number) => ((tick - span.start) / (span.end - span.start)) * layout.right;
-  ctx.textBaseline = "middle";
-  paintTime(ctx, { ...picture, layout: { ...layout, axis: 0 } }, x);
-  paintTruth(ctx, picture);
+export function paintHead(ctx: Pen, box: Box, shown: RaceShown, look: Look): void {
+  const field = { left: 0, right: box.width, top: 0, bottom: 0 };
+  paintColumns(ctx, field, timeAxis(shown.span, shown.frame.dtMs), look);
+  paintTruth(ctx, box, shown, look, look.fontSize + 10);
 }
 
 /** What is true, as a band; its index is the only signal. */
-export function paintTruth(ctx: Pen, picture: RacePicture): void {
-  const { frame, span, layout, scheme, names, fontSize } = picture;
-  const colours = CANVAS[scheme];
-  const x = (tick: number) => ((tick - span.start) / (span.end - span.start)) * layout.right;
-  const perColumn = (frame.endTick - frame.startTick) / frame.columns;
+export function paintTruth(ctx: Pen, box: Box, shown: RaceShown, look: Look, top: number): void {
+  const layout = rowLayout(box, look);
+  const colours = CANVAS[look.scheme];
+  const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), look.scheme) : colours.muted);
+  const { columnX } = placesOf({ ...shown, ...look, layout });
   ctx.textBaseline = "middle";
-  paintBand(
-    ctx,
-    runs(column(picture, 0, 1)),
-    (c) => x(frame.startTick + c * perColumn),
-    layout.truth,
-    layout.band,
-    (i) => (i >= 0 ? traceColour(hypothesisStyle(i), scheme) : colours.muted),
-    names,
-    colours,
-    fontSize,
-    true,
-  );
-}
-
-function column({ frame }: RacePicture, signal: number, part: number): Float32Array {
-  return frame.data.subarray((signal * 2 + part) * frame.columns, (signal * 2 + part + 1) * frame.columns);
+  const truth = runs(largest(shown.frame, 0));
+  paintBand(ctx, truth, columnX, top, layout.band, colour, shown.names, colours, look.fontSize, true);
 }
 
 const middle = (low: Float32Array, high: Float32Array) => low.map((value, i) => 0.5 * (value + high[i]));
@@ -122,11 +98,18 @@ function fillBelow(ctx: Pen, edge: Float32Array, columnX: (c: number) => number,
   }
 }
 
-function paintGrid(ctx: Pen, picture: RacePicture, x: (tick: number) => number): void {
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(0, 0, picture.layout.right, picture.layout.axis);
-  ctx.clip();
-  paintTime(ctx, picture, x);
-  ctx.restore();
+/** Upper edges of probabilities stacked on one another, column by column; together they fill the height. */
+export function stack(layers: readonly Float32Array[]): Float32Array[] {
+  const columns = layers[0]?.length ?? 0;
+  const edges = layers.map(() => new Float32Array(columns));
+  for (let c = 0; c < columns; c += 1) {
+    let total = 0;
+    for (const layer of layers) total += layer[c];
+    let sum = 0;
+    layers.forEach((layer, i) => {
+      sum += layer[c] / total;
+      edges[i][c] = sum;
+    });
+  }
+  return edges;
 }

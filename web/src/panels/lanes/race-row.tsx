@@ -3,14 +3,14 @@ import { useCatalog } from "../../api/use-catalog";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { pickSample } from "../../bench/why";
+import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
-import { useScheme } from "../../ui/use-scheme";
 import type { Contestant } from "./contestants";
 import type { TruthSwitch } from "./delays";
-import { FitsNone } from "./fits-none";
-import { LaneCanvas, type LanePainting } from "./lane-canvas";
-import { paintRow, type RacePicture, rowLayout } from "./paint-race";
+import { LaneCanvas, type LaneShown } from "./lane-canvas";
+import { FitsNone } from "./lanes-headline";
+import { paintRow, type RaceShown } from "./paint-race";
 import styles from "./race.module.css";
 import type { LaneTime } from "./use-lane-time";
 
@@ -19,16 +19,14 @@ interface RaceRowProps {
   time: LaneTime;
   switches: TruthSwitch[];
   place: number | undefined;
-  fontSize: number;
-  onPainted(id: string, shown: RacePicture): void;
+  onPainted(id: string, shown: RaceShown): void;
 }
 
 const ORDINAL = ["", "1st", "2nd", "3rd"];
 
 /** One diagnoser of the race. */
-export function RaceRow({ contestant, time, switches, place, fontSize, onPainted }: RaceRowProps) {
+export function RaceRow({ contestant, time, switches, place, onPainted }: RaceRowProps) {
   const { id, names, probabilities, verdict, truth } = contestant;
-  const scheme = useScheme();
   const picked = useView((s) => s.sample?.tick);
   const kind = useBench((s) => s.bench?.diagnosers[id]?.kind ?? "");
   const { block } = useCatalog();
@@ -37,22 +35,12 @@ export function RaceRow({ contestant, time, switches, place, fontSize, onPainted
     [probabilities, verdict, truth, id],
   );
   const paint = useMemo(
-    () => (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
-      const shown = {
-        ...painting,
-        layout: rowLayout(painting.width, painting.height, fontSize),
-        scheme,
-        fontSize,
-        names,
-        switches,
-        withTruth: truth,
-        probabilities: probabilities.length,
-        picked,
-      };
-      paintRow(ctx, shown);
+    () => (pen: Pen, box: Box, now: LaneShown, look: Look) => {
+      const shown = { ...now, names, switches, withTruth: truth, probabilities: probabilities.length, picked };
+      paintRow(pen, box, shown, look);
       onPainted(id, shown);
     },
-    [fontSize, scheme, names, switches, truth, probabilities, picked, id, onPainted],
+    [names, switches, truth, probabilities, picked, id, onPainted],
   );
   return (
     <section className={styles.row} aria-label={`Diagnosis by ${id}`}>

@@ -1,17 +1,16 @@
 import { type Ref, useCallback, useImperativeHandle, useMemo, useRef } from "react";
 import { useView } from "../../bench/view-store";
+import type { Box, Look, Pen } from "../../picture/pen";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
-import { currentEvents } from "../../stream/current-events";
+import { currentEvents } from "../../stream/event-log";
 import { timeUnit } from "../../ui/time-axis";
-import { useScheme } from "../../ui/use-scheme";
 import type { Contestant } from "./contestants";
-import { type TruthSwitch, truthSwitches } from "./delays";
-import { LaneCanvas, type LanePainting } from "./lane-canvas";
-import { paintHead, type RacePicture, rowLayout } from "./paint-race";
-import { printRace } from "./print-race";
+import { racePlaces, type TruthSwitch, truthSwitches } from "./delays";
+import { LaneCanvas, type LaneShown } from "./lane-canvas";
+import { paintHead, type RaceShown } from "./paint-race";
 import styles from "./race.module.css";
-import { racePlaces } from "./race-places";
+import { racePicture } from "./race-picture";
 import { RaceRow } from "./race-row";
 import type { LaneTime } from "./use-lane-time";
 
@@ -25,7 +24,6 @@ interface RaceProps {
 
 /** All diagnosers of the bench on one axis of time, under the truth: who finds it first, and who is right longest. */
 export function Race({ contestants, time, picture }: RaceProps) {
-  const scheme = useScheme();
   const fontSize = useView((s) => s.fontPx);
   const events = useBench((s) => s.events);
   const switches = useMemo(() => {
@@ -36,9 +34,9 @@ export function Race({ contestants, time, picture }: RaceProps) {
   const first = contestants.find((c) => c.truth);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const unit = timeUnit(time.view.kind === "past" ? (time.view.end - time.view.start) * dtMs : time.windowMs).unit;
-  const head = useRef<RacePicture | undefined>(undefined);
-  const rows = useRef(new Map<string, RacePicture>());
-  const keep = useCallback((id: string, row: RacePicture) => rows.current.set(id, row), []);
+  const head = useRef<RaceShown | undefined>(undefined);
+  const rows = useRef(new Map<string, RaceShown>());
+  const keep = useCallback((id: string, row: RaceShown) => rows.current.set(id, row), []);
   useImperativeHandle(
     picture,
     () => () => {
@@ -46,28 +44,18 @@ export function Race({ contestants, time, picture }: RaceProps) {
         const row = rows.current.get(id);
         return row ? [{ id, row }] : [];
       });
-      return printRace(head.current, shown);
+      return racePicture(head.current, shown);
     },
     [contestants],
   );
   const truthSignals = useMemo(() => (first ? [`${first.id}.truth`] : []), [first]);
   const paint = useMemo(
-    () => (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
-      const layout = { ...rowLayout(painting.width, painting.height, fontSize), truth: fontSize + 10, axis: 4 };
-      head.current = {
-        ...painting,
-        layout,
-        scheme,
-        fontSize,
-        names: first?.names ?? [],
-        switches: NONE,
-        withTruth: true,
-        probabilities: 0,
-        picked: undefined,
-      };
-      paintHead(ctx, head.current);
+    () => (pen: Pen, box: Box, now: LaneShown, look: Look) => {
+      const names = first?.names ?? [];
+      head.current = { ...now, names, switches: NONE, withTruth: true, probabilities: 0, picked: undefined };
+      paintHead(pen, box, head.current, look);
     },
-    [scheme, fontSize, first],
+    [first],
   );
   return (
     <div className={styles.race} style={{ "--row": `${fontSize * 6.6}px` } as React.CSSProperties}>
@@ -97,7 +85,6 @@ export function Race({ contestants, time, picture }: RaceProps) {
           time={time}
           switches={switches[contestant.id] ?? NONE}
           place={places[contestant.id]}
-          fontSize={fontSize}
           onPainted={keep}
         />
       ))}

@@ -1,6 +1,5 @@
 import { useEffect, useMemo, useRef } from "react";
-import type { TimeWindow } from "../scope/time-window";
-import { useTimeView } from "../scope/use-time-view";
+import { type TimeWindow, useTimeView } from "../scope/use-time-view";
 
 interface Span {
   start: number;

@@ -3,7 +3,7 @@ import { useMemo, useRef, useState } from "react";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
 import styles from "../phase/phase.module.css";
 import { LocusPlot, type Mass } from "./locus-plot";
 

@@ -8,14 +8,11 @@ import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
-import { useCanvas } from "../../ui/use-canvas";
-import { useScheme } from "../../ui/use-scheme";
+import { useCanvas, useScheme } from "../../ui/use-canvas";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
-import { type LocusAxes, locusAxes, type Points } from "./locus-axes";
-import { type LocusPicture, paintLocus, tiltText } from "./paint-locus";
-import { printLocus } from "./print-locus";
-import { tiltDeg } from "./tilt";
+import { type LocusAxes, locusAxes, type Points, tiltDeg } from "./locus-axes";
+import { type LocusShown, locusPicture, paintLocus, tiltText } from "./paint-locus";
 
 const MOST_COLUMNS = 4096;
 /** A figure that changes more often cannot be read. */
@@ -49,8 +46,8 @@ export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotPro
   const points = useRef<Points[]>([]);
   const axes = useRef<LocusAxes | undefined>(undefined);
   const dirty = useRef(true);
-  const painted = useRef<LocusPicture | undefined>(undefined);
-  useImperativeHandle(picture, () => () => painted.current && printLocus(painted.current), []);
+  const painted = useRef<LocusShown | undefined>(undefined);
+  useImperativeHandle(picture, () => () => painted.current && locusPicture(painted.current), []);
 
   const subscription = useMemo<Subscription | undefined>(() => {
     if (!dtMs) return undefined;
@@ -81,20 +78,16 @@ export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotPro
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
       painted.current = {
-        width: size.width,
-        height: size.height,
         axes: axes.current,
         scales: { x: unitScale(traces[0].unit, x[1]), y: unitScale(traces[1].unit, y[1]) },
         traces: points.current.map((path, i) => ({
           name: masses[i].name,
-          colour: traces[2 * i].colour,
+          slot: traces[2 * i].slot,
           points: path,
           tiltDeg: tiltDeg(path.x, path.y),
         })),
-        scheme,
-        fontSize,
       };
-      paintLocus(ctx, painted.current);
+      paintLocus(ctx, size, painted.current, { scheme, fontSize });
       const now = performance.now();
       if (now - said.current < WORDS_MS) return;
       said.current = now;

@@ -1,9 +1,9 @@
 import type { UnstableRegion } from "../../api/types";
-import type { Pen } from "../../picture/pen";
-import { fontFor } from "../../ui/canvas-font";
-import { labelsOn } from "../../ui/format";
-import { CANVAS, type Scheme } from "../../ui/palette";
-import { linearTicks } from "../../ui/ticks";
+import { linearAxis, type Plot, paintAxes } from "../../picture/axes";
+import type { Box, Look, Pen } from "../../picture/pen";
+import { type Picture, pictureName } from "../../picture/picture";
+import { paintDot, paintLine, paintRule, within } from "../../picture/traces";
+import { CANVAS, TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { Range } from "./phase-range";
 
@@ -13,9 +13,7 @@ export interface PhaseAxis {
   name: string;
 }
 
-export interface PhasePicture {
-  width: number;
-  height: number;
+export interface PhaseShown {
   x: PhaseAxis;
   y: PhaseAxis;
   points: { x: Float32Array; y: Float32Array };
@@ -24,179 +22,85 @@ export interface PhasePicture {
   map: UnstableRegion | undefined;
   /** Which parts of the map lie beneath these signals. */
   fits: { folds: boolean; boundary: boolean };
-  colour: string;
-  scheme: Scheme;
-  fontSize: number;
-  /** The titles of the axes stand outside. */
-  isFramed?: boolean;
+  /** In `TRACE_COLOURS`. */
+  slot: number;
 }
 
-const LEFT = 58;
-const BOTTOM = 38;
-const TOP = 8;
-const RIGHT = 12;
 /** The trail fades in so many pieces. */
 const PIECES = 24;
+const shaded = (alarm: string) => `${alarm}2e`;
 
-export const phaseTitle = ({ name, scale }: PhaseAxis) => (scale.unit ? `${name}, ${scale.unit}` : name);
-
-/** The square field of a plane in a picture: as large as it can be, in the middle; above it stands a title, or none. */
-export function squareField(width: number, height: number, title: number): Field {
-  const above = TOP + title;
-  const side = Math.max(0, Math.floor(Math.min(width - LEFT - RIGHT, height - above - BOTTOM)));
-  const left = Math.round(LEFT + (width - LEFT - RIGHT - side) / 2);
-  const top = Math.round(above + (height - above - BOTTOM - side) / 2);
-  return { left, top, right: left + side, bottom: top + side };
-}
-
-interface Field {
-  left: number;
-  top: number;
-  right: number;
-  bottom: number;
-}
+const axisOf = ({ range, scale, name }: PhaseAxis) =>
+  linearAxis(range, scale.unit ? `${name}, ${scale.unit}` : name, scale);
 
 /** A trajectory over the map of the unstable region. */
-export function paintPhase(ctx: Pen, picture: PhasePicture): void {
-  const { width, height, scheme, fontSize } = picture;
-  const ink = CANVAS[scheme];
-  const field = squareField(width, height, picture.isFramed ? 0 : fontSize);
-  const { left, top, right, bottom } = field;
-  const px = (value: number) => left + ((value - picture.x.range[0]) / span(picture.x.range)) * (right - left);
-  const py = (value: number) => bottom - ((value - picture.y.range[0]) / span(picture.y.range)) * (bottom - top);
-
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(left, top, right - left, bottom - top);
-  ctx.clip();
-  if (picture.map) paintMap(ctx, picture, px, py, field, ink.alarm);
-  ctx.restore();
-
-  ctx.font = fontFor(fontSize, 1);
-  ctx.strokeStyle = ink.grid;
-  ctx.fillStyle = ink.muted;
-  ctx.lineWidth = 1;
-  ctx.textAlign = "center";
-  ctx.textBaseline = "top";
-  const across = scaled(picture.x, (right - left) / 60);
-  labelsOn(picture.x.scale, across).forEach((label, i) => {
-    line(ctx, px(across[i]), top, px(across[i]), bottom);
-    ctx.fillText(label, px(across[i]), bottom + 4);
+export function paintPhase(pen: Pen, box: Box, shown: PhaseShown, look: Look): void {
+  const ink = CANVAS[look.scheme];
+  const { x, y, points, hovered } = shown;
+  const plot = paintAxes(pen, box, axisOf(x), axisOf(y), look, { isSquare: true, gutter: look.fontSize * 2.7 });
+  within(pen, plot.field, () => {
+    if (shown.map) paintMap(pen, plot, shown.map, shown.fits, ink.alarm);
+    paintTrail(pen, plot, points, TRACE_COLOURS[look.scheme][shown.slot]);
+    if (hovered === undefined) return;
+    pen.strokeStyle = ink.accent;
+    pen.lineWidth = 2;
+    pen.beginPath();
+    pen.arc(plot.x(points.x[hovered]), plot.y(points.y[hovered]), 6, 0, 2 * Math.PI);
+    pen.stroke();
   });
-  ctx.textAlign = "right";
-  ctx.textBaseline = "middle";
-  const up = scaled(picture.y, (bottom - top) / 30);
-  labelsOn(picture.y.scale, up).forEach((label, i) => {
-    line(ctx, left, py(up[i]), right, py(up[i]));
-    ctx.fillText(label, left - 6, py(up[i]));
-  });
-  if (!picture.isFramed) {
-    ctx.textBaseline = "bottom";
-    ctx.fillText(phaseTitle(picture.x), right, bottom + BOTTOM - 2);
-    ctx.textAlign = "left";
-    ctx.fillText(phaseTitle(picture.y), left - LEFT + 12, top - 4);
-  }
-
-  ctx.save();
-  ctx.beginPath();
-  ctx.rect(left, top, right - left, bottom - top);
-  ctx.clip();
-  paintTrail(ctx, picture, px, py);
-  if (picture.hovered !== undefined) {
-    ctx.strokeStyle = ink.accent;
-    ctx.lineWidth = 2;
-    ctx.beginPath();
-    ctx.arc(px(picture.points.x[picture.hovered]), py(picture.points.y[picture.hovered]), 6, 0, 2 * Math.PI);
-    ctx.stroke();
-  }
-  ctx.restore();
 }
 
-type Place = (value: number) => number;
-
-function paintMap(
-  ctx: Pen,
-  { map, fits, x, fontSize }: PhasePicture,
-  px: Place,
-  py: Place,
-  { left, top, right, bottom }: Field,
-  alarm: string,
-): void {
-  const edge = fits.boundary ? map?.boundary : undefined;
-  ctx.fillStyle = `${alarm}2e`;
+function paintMap(pen: Pen, plot: Plot, map: UnstableRegion, fits: PhaseShown["fits"], alarm: string): void {
+  const { left, right, top, bottom } = plot.field;
+  const edge = fits.boundary ? map.boundary : undefined;
+  pen.fillStyle = shaded(alarm);
   if (edge) {
-    const inside = [
-      ...edge.x_um.map((at, i) => [px(at), py(edge.speed_um_ms[i])] as const),
-      ...edge.x_um.map((at, i) => [px(at), py(-edge.speed_um_ms[i])] as const).reverse(),
-    ];
-    ctx.beginPath();
-    ctx.rect(left, top, right - left, bottom - top);
-    loop(ctx, inside);
-    ctx.fill("evenodd");
-    ctx.strokeStyle = alarm;
-    ctx.lineWidth = 1.5;
-    ctx.beginPath();
-    loop(ctx, inside);
-    ctx.stroke();
+    const there = edge.x_um.map((at, i) => [plot.x(at), plot.y(edge.speed_um_ms[i])] as const);
+    const back = edge.x_um.map((at, i) => [plot.x(at), plot.y(-edge.speed_um_ms[i])] as const).reverse();
+    pen.beginPath();
+    pen.rect(left, top, right - left, bottom - top);
+    loop(pen, [...there, ...back]);
+    pen.fill("evenodd");
+    pen.strokeStyle = alarm;
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    loop(pen, [...there, ...back]);
+    pen.stroke();
   }
-  if (!fits.folds || !map) return;
-  ctx.strokeStyle = alarm;
-  ctx.setLineDash([6, 4]);
-  ctx.font = fontFor(fontSize, 1);
-  for (const fold of map.folds) {
-    const at = px(fold.x_um);
-    if (!edge) {
-      if (fold.x_um > 0) ctx.fillRect(at, top, px(x.range[1]) - at, bottom - top);
-      else ctx.fillRect(left, top, at - left, bottom - top);
-    }
-    line(ctx, at, top, at, bottom);
+  if (!fits.folds) return;
+  for (const { x_um } of map.folds) {
+    const at = plot.x(x_um);
+    pen.fillStyle = shaded(alarm);
+    if (!edge) pen.fillRect(x_um > 0 ? at : left, top, x_um > 0 ? right - at : at - left, bottom - top);
+    paintRule(pen, [at, top], [at, bottom], { colour: alarm, width: 1, dashes: [6, 4] });
   }
-  ctx.setLineDash([]);
 }
 
-function paintTrail(ctx: Pen, { points, colour }: PhasePicture, px: Place, py: Place): void {
-  const count = points.x.length;
-  ctx.strokeStyle = colour;
-  ctx.lineWidth = 1.8;
-  ctx.lineJoin = "round";
+function paintTrail(pen: Pen, plot: Plot, { x, y }: PhaseShown["points"], colour: string): void {
+  const count = x.length;
   for (let piece = 0; piece < PIECES; piece += 1) {
     const from = Math.floor((piece * count) / PIECES);
-    const to = Math.min(count - 1, Math.floor(((piece + 1) * count) / PIECES));
-    ctx.globalAlpha = 0.12 + (0.88 * (piece + 1)) / PIECES;
-    ctx.beginPath();
-    let drawing = false;
-    for (let i = from; i <= to; i += 1) {
-      const there = Number.isFinite(points.x[i]) && Number.isFinite(points.y[i]);
-      if (there && drawing) ctx.lineTo(px(points.x[i]), py(points.y[i]));
-      if (there && !drawing) ctx.moveTo(px(points.x[i]), py(points.y[i]));
-      drawing = there;
-    }
-    ctx.stroke();
+    const to = Math.min(count, Math.floor(((piece + 1) * count) / PIECES) + 1);
+    const alpha = 0.12 + (0.88 * (piece + 1)) / PIECES;
+    paintLine(pen, plot, x.subarray(from, to), y.subarray(from, to), { colour, width: 1.8, alpha });
   }
-  ctx.globalAlpha = 1;
-  if (count === 0 || !Number.isFinite(points.x[count - 1])) return;
-  ctx.fillStyle = colour;
-  ctx.beginPath();
-  ctx.arc(px(points.x[count - 1]), py(points.y[count - 1]), 4.5, 0, 2 * Math.PI);
-  ctx.fill();
+  if (count > 0) paintDot(pen, plot.x(x[count - 1]), plot.y(y[count - 1]), 4.5, colour);
 }
 
-/** Ticks that are round in the unit shown. */
-function scaled({ range, scale }: PhaseAxis, count: number): number[] {
-  return linearTicks(range[0] * scale.factor, range[1] * scale.factor, Math.max(2, count)).map((t) => t / scale.factor);
+function loop(pen: Pen, points: readonly (readonly [number, number])[]): void {
+  pen.moveTo(...points[0]);
+  for (const point of points) pen.lineTo(...point);
+  pen.closePath();
 }
 
-const span = ([low, high]: Range) => high - low;
-
-function loop(ctx: Pen, points: readonly (readonly [number, number])[]): void {
-  ctx.moveTo(...points[0]);
-  for (const point of points) ctx.lineTo(...point);
-  ctx.closePath();
-}
-
-function line(ctx: Pen, x1: number, y1: number, x2: number, y2: number): void {
-  ctx.beginPath();
-  ctx.moveTo(Math.round(x1) + 0.5, Math.round(y1) + 0.5);
-  ctx.lineTo(Math.round(x2) + 0.5, Math.round(y2) + 0.5);
-  ctx.stroke();
+/** A phase plane as a picture. */
+export function phasePicture(shown: PhaseShown): Picture {
+  const trail = { name: "the latest darkest", colour: TRACE_COLOURS.light[shown.slot] };
+  const unstable = { name: "unstable", colour: shaded(CANVAS.light.alarm), mark: "field" as const };
+  return {
+    ...pictureName("Phase plane"),
+    legend: shown.map && shown.fits.folds ? [trail, unstable] : [trail],
+    height: 500,
+    paint: (pen, box, look) => paintPhase(pen, box, { ...shown, hovered: undefined }, look),
+  };
 }

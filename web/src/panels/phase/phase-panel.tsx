@@ -6,7 +6,7 @@ import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { NumberField } from "../../ui/number-field";
-import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
 import styles from "./phase.module.css";
 import { PhasePlot } from "./phase-plot";
 import { mapFits, mapWords } from "./unstable-map";
@@ -77,7 +77,7 @@ export function PhasePanel() {
         fits={fits}
         picture={picture}
       />
-      <p className={styles.words}>
+      <p className={`${styles.words} ${styles.beside}`}>
         {failed ??
           (!isFlat ? (
             "The turn of a moving mass about its rest; nothing pulls it in."

@@ -10,13 +10,11 @@ import type { Subscription } from "../../stream/wire";
 import { hover } from "../../ui/hover";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
-import { useCanvas } from "../../ui/use-canvas";
-import { useScheme } from "../../ui/use-scheme";
+import { useCanvas, useScheme } from "../../ui/use-canvas";
 import { useTraces } from "../scope/use-traces";
-import { type PhasePicture, paintPhase } from "./paint-phase";
+import { type PhaseShown, paintPhase, phasePicture } from "./paint-phase";
 import styles from "./phase.module.css";
 import { extent, follow, type Range, union } from "./phase-range";
-import { printPhase } from "./print-phase";
 import { mapExtent } from "./unstable-map";
 
 const MOST_COLUMNS = 4096;
@@ -43,8 +41,8 @@ export function PhasePlot({ x, y, windowMs, map, fits, picture }: PhasePlotProps
   const ranges = useRef<{ x: Range | undefined; y: Range | undefined }>({ x: undefined, y: undefined });
   const shown = useRef<{ start: number; end: number } | undefined>(undefined);
   const dirty = useRef(true);
-  const painted = useRef<PhasePicture | undefined>(undefined);
-  useImperativeHandle(picture, () => () => painted.current && printPhase(painted.current), []);
+  const painted = useRef<PhaseShown | undefined>(undefined);
+  useImperativeHandle(picture, () => () => painted.current && phasePicture(painted.current), []);
 
   const subscription = useMemo<Subscription | undefined>(() => {
     if (!dtMs) return undefined;
@@ -93,19 +91,15 @@ export function PhasePlot({ x, y, windowMs, map, fits, picture }: PhasePlotProps
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
       painted.current = {
-        width: size.width,
-        height: size.height,
         x: { range: across, scale: unitScale(first.unit, largest(across)), name: words(first.name) },
         y: { range: up, scale: unitScale(second.unit, largest(up)), name: words(second.name) },
         points: points.current,
         hovered: hoveredColumn(shown.current, points.current.x.length),
         map,
         fits,
-        colour: second.name.endsWith("velocity") ? first.colour : second.colour,
-        scheme,
-        fontSize,
+        slot: second.name.endsWith("velocity") ? first.slot : second.slot,
       };
-      paintPhase(ctx, painted.current);
+      paintPhase(ctx, size, painted.current, { scheme, fontSize });
     });
   }, [visible, canvas, size, traces, map, fits.folds, fits.boundary, scheme, fontSize, fits]);
 

@@ -2,12 +2,13 @@ import { Button, NumberInput, TextInput } from "@mantine/core";
 import { IconPlayerRecordFilled, IconPlayerStopFilled } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
+import type { Document, Wanted } from "../../api/types";
 import { layoutNow } from "../../bench/dock";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import rows from "../../ui/row-list.module.css";
+import { type Condition, conditionText } from "../condition/condition";
 import { ConditionFields } from "../condition/condition-fields";
-import { NEW_DRAFT, wantedOf } from "./wanted";
 
 /** What to record: now or when a condition holds, with how much of the past, and for how long. */
 export function RecordForm({ onChanged }: { onChanged(): void }) {
@@ -86,4 +87,28 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
       )}
     </form>
   );
+}
+
+/** What the form asks to be recorded; times in ms of the device. */
+export interface RecordDraft {
+  name: string;
+  pastMs: number;
+  /** 0: until it is stopped. */
+  lengthMs: number;
+  /** When it begins; without a signal at once. */
+  when: Condition;
+}
+
+export const NEW_DRAFT: RecordDraft = { name: "", pastMs: 1, lengthMs: 0, when: { signal: "", above: true, level: 0 } };
+
+/** The request of a draft, in ticks. */
+export function wantedOf(draft: RecordDraft, dtMs: number, layout: Document | undefined): Wanted {
+  const ticks = (ms: number) => Math.max(0, Math.round(ms / dtMs));
+  return {
+    name: draft.name.trim() || "recording",
+    past_ticks: ticks(draft.pastMs),
+    ticks: draft.lengthMs > 0 ? Math.max(1, ticks(draft.lengthMs)) : null,
+    when: draft.when.signal ? conditionText(draft.when) : null,
+    layout: layout ?? null,
+  };
 }

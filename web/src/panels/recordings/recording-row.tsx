@@ -3,7 +3,7 @@ import { IconPlayerPlay, IconTrash } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Recording } from "../../api/types";
-import { openReplay } from "../../bench/open-replay";
+import { openReplay } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { Downloads, TRACE_FORMATS } from "../../ui/downloads";
 import { formatCount, formatMoment, formatSi } from "../../ui/format";

@@ -3,7 +3,7 @@ import type { Bench } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { formatIn } from "../../ui/format";
-import { useInstances } from "../card/use-instances";
+import { useInstances } from "../card/instances";
 import { overridden } from "../controllers/slots";
 import { LoopDrawing } from "./loop-drawing";
 import {
@@ -15,7 +15,7 @@ import {
   twoAxisBoxesOf,
   twoAxisSignals,
 } from "./two-axis-loop";
-import { useActingFaults } from "./use-acting-faults";
+import { useActingFaults } from "./use-live-values";
 
 /** The two loops of a gyroscope: the one that makes x swing, and the one that reads the rate from y. */
 export function AxesLoop({ axes, slots }: Pick<Bench, "axes" | "slots">) {
@@ -60,8 +60,8 @@ export function AxesLoop({ axes, slots }: Pick<Bench, "axes" | "slots">) {
       say={(box, value) => (box === "plant" ? formatIn(value, "°", 3) : undefined)}
       faults={{
         titles: acting.map((fault) => fault.title),
-        arrows: faulted.has("plant") ? ["M236 133 H223"] : [],
-        at: hasPartner ? undefined : [240, 118],
+        arrows: faulted.has("plant") ? ["M236 112 H224"] : [],
+        at: hasPartner ? undefined : [241, 102],
       }}
     />
   );

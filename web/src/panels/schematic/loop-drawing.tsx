@@ -1,7 +1,6 @@
 import { showPanel } from "../../bench/dock";
 import { useView } from "../../bench/view-store";
-import { BOX, type DrawnBox, type Wire } from "./box";
-import { faultLines } from "./loop";
+import { BOX, DRAWING, type DrawnBox, faultLines, type Wire } from "./loop";
 import styles from "./schematic.module.css";
 import { useLiveValues } from "./use-live-values";
 
@@ -28,7 +27,7 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
   };
   return (
     // biome-ignore lint/a11y/useSemanticElements: boxes of a drawing
-    <svg viewBox="0 0 348 266" className={styles.drawing} role="group" aria-label={label}>
+    <svg viewBox={`0 0 ${DRAWING.width} ${DRAWING.height}`} className={styles.drawing} role="group" aria-label={label}>
       <defs>
         <marker
           id="arrow"
@@ -57,8 +56,8 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
             <path key={d} d={d} markerEnd="url(#arrow)" />
           ))}
           {faultLines(faults.titles).map((line, i) => (
-            <text key={line} x={faults.at?.[0]} y={(faults.at?.[1] ?? 0) + 16 * i}>
-              {line}
+            <text key={line} x={faults.at?.[0]} y={(faults.at?.[1] ?? 0) + 14 * i}>
+              {shorten(line)}
             </text>
           ))}
         </g>
@@ -84,10 +83,10 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
         >
           <title>{`${box.title} ${box.kind}: show its equations and parameters`}</title>
           <rect width={BOX.width} height={BOX.height} rx="5" />
-          <text x="8" y="16" className={styles.role}>
+          <text x="6" y="15" className={styles.role}>
             {box.title}
           </text>{" "}
-          <text x="8" y="33" className={styles.kind}>
+          <text x="6" y="31" className={styles.kind}>
             {shorten(box.kind)}
           </text>
         </g>
@@ -95,8 +94,8 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
       {boxes.map((box) => (
         <text
           key={box.id}
-          x={box.x + BOX.width - 8}
-          y={box.y + 56}
+          x={box.x + BOX.width - 6}
+          y={box.y + 49}
           textAnchor="end"
           className={styles.value}
           ref={box.id in shown ? live(box.id) : undefined}

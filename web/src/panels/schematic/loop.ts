@@ -1,5 +1,3 @@
-import type { Wire } from "./box";
-
 /** A box of the loop: its place on the drawing. */
 export interface LoopBox {
   id: "reference" | "controller" | "drive" | "plant" | "sensor" | "diagnosis" | "model" | "identifier";
@@ -14,20 +12,20 @@ export interface LoopBox {
  */
 export const LOOP: LoopBox[] = [
   { id: "reference", title: "Reference", x: 1, y: 2 },
-  { id: "controller", title: "Controller", x: 119, y: 2 },
-  { id: "drive", title: "Drive", x: 237, y: 2 },
-  { id: "plant", title: "Device", x: 237, y: 108 },
-  { id: "sensor", title: "Sensor", x: 119, y: 108 },
-  { id: "diagnosis", title: "Diagnosis", x: 1, y: 108 },
-  { id: "model", title: "Reference model", x: 1, y: 198 },
-  { id: "identifier", title: "Identifier", x: 119, y: 198 },
+  { id: "controller", title: "Controller", x: 118, y: 2 },
+  { id: "drive", title: "Drive", x: 235, y: 2 },
+  { id: "plant", title: "Device", x: 235, y: 90 },
+  { id: "sensor", title: "Sensor", x: 118, y: 90 },
+  { id: "diagnosis", title: "Diagnosis", x: 1, y: 90 },
+  { id: "model", title: "Reference model", x: 1, y: 166 },
+  { id: "identifier", title: "Identifier", x: 118, y: 166 },
 ];
 
 /** From the names of faults to the box on which they act. */
 export const FAULT_ARROWS: Record<FaultedBox, string> = {
-  plant: "M288 198 V176",
-  sensor: "M282 190 H205 V176",
-  drive: "M294 190 H345 V35 H341",
+  plant: "M287 166 V148",
+  sensor: "M281 158 H204 V148",
+  drive: "M293 158 H344 V30 H341",
 };
 
 export type FaultedBox = "plant" | "sensor" | "drive";
@@ -46,12 +44,42 @@ export function faultLines(titles: readonly string[]): string[] {
 
 /** Signal paths between the boxes. */
 export const WIRES: readonly Wire[] = [
-  { id: "r", d: "M103 35 H119", label: "r", at: [108, 29] },
-  { id: "u", d: "M221 35 H237", label: "u", at: [225, 29] },
-  { id: "v", d: "M288 68 V108", label: "V", at: [294, 92] },
-  { id: "x", d: "M237 141 H221", label: "x", at: [226, 135] },
-  { id: "z", d: "M170 108 V68", label: "z", at: [176, 104] },
-  { id: "zd", d: "M119 148 H103", label: "z", at: [108, 142] },
-  { id: "zi", d: "M170 174 V198", label: "z", at: [176, 190] },
-  { id: "ud", d: "M228 35 V86 H52 V108", label: "u", at: [58, 104] },
+  { id: "r", d: "M105 30 H118", label: "r", at: [108, 24] },
+  { id: "u", d: "M222 30 H235", label: "u", at: [224, 24] },
+  { id: "v", d: "M287 58 V90", label: "V", at: [293, 78] },
+  { id: "x", d: "M235 118 H222", label: "x", at: [225, 112] },
+  { id: "z", d: "M170 90 V58", label: "z", at: [176, 87] },
+  { id: "zd", d: "M118 124 H105", label: "z", at: [108, 118] },
+  { id: "zi", d: "M170 146 V166", label: "z", at: [176, 160] },
+  { id: "ud", d: "M228 30 V73 H53 V90", label: "u", at: [59, 87] },
 ];
+
+/** A box of a loop as drawn. */
+export interface DrawnBox {
+  id: string;
+  title: string;
+  x: number;
+  y: number;
+  /** What stands in it now. */
+  kind: string;
+  /** The card it opens. */
+  card: string | undefined;
+  /** A value in words, where no signal tells it. */
+  says?: string;
+  faulty: boolean;
+  /** Something else does its work. */
+  waits?: boolean;
+}
+
+/** A signal path between boxes. */
+export interface Wire {
+  id: string;
+  d: string;
+  label: string;
+  at: [number, number];
+}
+
+/** Letters are drawn at least at 0.88 of their size: below that the drawing scrolls. */
+export const DRAWING = { width: 348, height: 226 };
+
+export const BOX = { width: 104, height: 56 };

@@ -2,13 +2,18 @@ import { useMemo } from "react";
 import type { Bench } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
-import { useInstances } from "../card/use-instances";
-import { boxOf, FAULT_ARROWS, LOOP, type LoopBox, WIRES } from "./loop";
+import { useInstances } from "../card/instances";
+import { boxOf, FAULT_ARROWS, type LoopBox } from "./loop";
 import { LoopDrawing } from "./loop-drawing";
-import { useActingFaults } from "./use-acting-faults";
+import type { Structure } from "./structure";
+import { useActingFaults } from "./use-live-values";
+
+interface ResonatorLoopProps extends Pick<Bench, "controller" | "diagnosers"> {
+  structure: Structure;
+}
 
 /** The loop of a device with one displacement. */
-export function ResonatorLoop({ controller, diagnosers }: Pick<Bench, "controller" | "diagnosers">) {
+export function ResonatorLoop({ controller, diagnosers, structure }: ResonatorLoopProps) {
   const parameters = useBench((s) => s.bench?.parameters) ?? {};
   const scores = useBench((s) => s.scores);
   const { block } = useCatalog();
@@ -22,8 +27,9 @@ export function ResonatorLoop({ controller, diagnosers }: Pick<Bench, "controlle
       plant: "plant.displacement",
       sensor: "sensor.displacement",
       model: "model.displacement",
+      ...Object.fromEntries(structure.extra.flatMap(({ id, signal }) => (signal ? [[id, signal]] : []))),
     }),
-    [controller],
+    [controller, structure],
   );
   const diagnoser = Object.keys(diagnosers)[0];
   const identifier = Object.keys((parameters.identifiers as object | undefined) ?? {})[0];
@@ -48,20 +54,23 @@ export function ResonatorLoop({ controller, diagnosers }: Pick<Bench, "controlle
   const faulted = new Set<string>(acting.map((fault) => boxOf(fault.shows)));
   return (
     <LoopDrawing
-      label="Signal flow from the reference around the loop"
-      boxes={LOOP.map((box) => ({
-        ...box,
-        kind: kind(box),
-        card: cards[box.id],
-        faulty: faulted.has(box.id),
-        says: box.id === "diagnosis" ? verdict : undefined,
-      }))}
-      wires={WIRES}
+      label={`Signal flow from the reference around the loop${structure.figure ? `, as in figure ${structure.figure}` : ""}`}
+      boxes={[
+        ...structure.boxes.map((box) => ({
+          ...box,
+          kind: kind(box),
+          card: cards[box.id],
+          faulty: faulted.has(box.id),
+          says: box.id === "diagnosis" ? verdict : undefined,
+        })),
+        ...structure.extra.map((box) => ({ ...box, card: box.card ?? cards.controller, faulty: false })),
+      ]}
+      wires={structure.wires}
       shown={shown}
       faults={{
         titles: acting.map((fault) => fault.title),
         arrows: Object.entries(FAULT_ARROWS).flatMap(([box, d]) => (faulted.has(box) ? [d] : [])),
-        at: [229, 212],
+        at: structure.hasRoom ? [structure.figure ? 236 : 232, 181] : undefined,
       }}
     />
   );

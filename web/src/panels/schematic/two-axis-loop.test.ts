@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { BOX } from "./box";
+import { BOX } from "./loop";
 import { PARTNER, PARTNER_DRIVEN, PARTNER_WIRES, TWO_AXES, TWO_AXIS_WIRES, twoAxisBoxesOf } from "./two-axis-loop";
 
 const boxes = [...TWO_AXES, PARTNER];

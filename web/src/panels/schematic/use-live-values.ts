@@ -1,4 +1,5 @@
 import { useCallback, useMemo, useRef } from "react";
+import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatOn } from "../../ui/format";
@@ -65,4 +66,16 @@ export function useLiveValues(shown: Record<string, string>, say?: (key: string,
     },
     [],
   );
+}
+
+/** The faults that act on the bench now: their names, and the part each is seen on. */
+export function useActingFaults(): { title: string; shows: string | null | undefined }[] {
+  const faults = useBench((s) => s.bench?.faults) ?? [];
+  const { block } = useCatalog();
+  return faults
+    .filter((fault) => fault.severity !== 0)
+    .map(({ name }) => {
+      const card = block("faults", name);
+      return { title: card?.title ?? name.replaceAll("_", " "), shows: card?.shows };
+    });
 }

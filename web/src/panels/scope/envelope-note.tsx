@@ -3,8 +3,8 @@ import { type RefObject, useEffect, useState } from "react";
 import { stream } from "../../stream/stream";
 import { formatCount, formatShort } from "../../ui/format";
 import type { Banded } from "./envelope-rule";
+import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
-import type { PlotTrace } from "./scope-options";
 import type { ScopePlot } from "./scope-plot";
 
 const EVERY_MS = 300;

@@ -2,7 +2,7 @@ import { Menu } from "@mantine/core";
 import type { RefObject } from "react";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
-import { printScope } from "./print-scope";
+import { scopePicture } from "./paint-scope";
 import type { ScopePlot } from "./scope-plot";
 
 /** What the scope shows as a file: a picture with titled axes and events, or every sample of the span. */
@@ -11,7 +11,7 @@ export function ExportMenu({ plot }: { plot: RefObject<ScopePlot | undefined> })
   const take = () => {
     const shown = plot.current?.picture();
     const stem = `${bench?.scenario_id ?? "scope"}-${Math.round(shown?.span.start ?? 0)}`;
-    return shown && printScope(shown, bench?.title ?? "CombBench", stem);
+    return shown && scopePicture(shown, bench?.title ?? "CombBench", stem);
   };
   const trace = (format: string) => {
     const picture = plot.current?.picture();

@@ -1,16 +1,15 @@
 import { type RefObject, useEffect, useState } from "react";
 import { api } from "../../api/api";
-import { ApiError } from "../../api/api-error";
+import { ApiError } from "../../api/client";
 import { useBench } from "../../stream/bench-store";
+import { columnAt } from "../../stream/panel-frame";
 import { formatCount, formatIn, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";
-import { SignalName } from "../../ui/signal-name";
-import { TraceSwatch } from "../../ui/trace-swatch";
-import { columnAt } from "./column-at";
+import { SignalName, TraceSwatch } from "../../ui/trace-swatch";
 import { type Columns, type Measurement, measure, referenceFor } from "./measure";
+import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
 import type { CursorPair } from "./scope-cursors";
-import type { PlotTrace } from "./scope-options";
 import type { ScopePlot } from "./scope-plot";
 
 const EVERY_MS = 300;

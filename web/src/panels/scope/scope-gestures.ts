@@ -1,4 +1,4 @@
-import { zoomSpan } from "./time-window";
+import { zoomSpan } from "./use-time-view";
 
 export interface ScopeGestures {
   /** The span moved under the hand; ticks. */

@@ -3,10 +3,9 @@ import { IconX } from "@tabler/icons-react";
 import { type RefObject, useEffect, useRef } from "react";
 import { stream } from "../../stream/stream";
 import { formatOn, formatSi } from "../../ui/format";
-import { SignalName } from "../../ui/signal-name";
-import { TraceSwatch } from "../../ui/trace-swatch";
+import { SignalName, TraceSwatch } from "../../ui/trace-swatch";
+import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
-import type { PlotTrace } from "./scope-options";
 import type { ScopePlot } from "./scope-plot";
 import { useLegendRow } from "./use-legend-row";
 

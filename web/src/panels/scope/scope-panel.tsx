@@ -8,21 +8,19 @@ import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import { EnvelopeNote } from "./envelope-note";
 import { ExportMenu } from "./export-menu";
 import { MeasureStrip } from "./measure-strip";
-import { RearmContext } from "./rearm-context";
 import styles from "./scope.module.css";
 import { type CursorPair, type PlotArea, ScopeCursors } from "./scope-cursors";
 import { ScopeLegend } from "./scope-legend";
 import { ScopePlot } from "./scope-plot";
 import { ScopeToolbar } from "./scope-toolbar";
 import { SignalPicker } from "./signal-picker";
-import { scopeSubscription } from "./time-window";
-import type { TriggerState } from "./trigger-menu";
+import { RearmContext, type TriggerState } from "./trigger-menu";
 import { useScopeKeys } from "./use-scope-keys";
-import { useTimeView } from "./use-time-view";
+import { scopeSubscription, useTimeView } from "./use-time-view";
 import { useTraces } from "./use-traces";
 
 interface ScopePanelProps {

@@ -1,25 +1,24 @@
 import uPlot from "uplot";
+import { flagWords } from "../../bench/flag-words";
 import type { Marks } from "../../bench/marks";
-import type { PanelFrame } from "../../stream/panel-frame";
-import { fontFor } from "../../ui/canvas-font";
+import { markEvents } from "../../picture/event-marks";
+import type { Field, Look } from "../../picture/pen";
+import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { hover } from "../../ui/hover";
-import { CANVAS, DASHES } from "../../ui/palette";
-import { timeUnit } from "../../ui/time-axis";
+import { CANVAS, DASHES, fontFor } from "../../ui/palette";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
-import { columnAt } from "./column-at";
-import { columnTimes } from "./column-times";
-import { drawUnits } from "./draw-units";
 import { type Envelope, paintEnvelope } from "./envelope-path";
 import { type Banded, bandsOf } from "./envelope-rule";
+import { type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
-import { drawMarks } from "./scope-marks";
 import { type ScopeModel, scopeOptions } from "./scope-options";
-import type { ScopePicture } from "./scope-picture";
 
 const MOST_AXES = 3;
 
-export interface ScopePlotOptions extends Pick<ScopeModel, "host" | "traces" | "scheme" | "fontSize"> {
+export interface ScopePlotOptions extends Look {
+  host: HTMLElement;
+  traces: PlotTrace[];
   lineWidth: number;
   marks: () => Marks;
   gestures: ScopeGestures;
@@ -36,7 +35,7 @@ export class ScopePlot {
   private scales: UnitScale[];
   private ranges: (AxisRange | undefined)[] = [];
   private envelopes: Envelope[] = [];
-  private times: ArrayLike<number> = [];
+  private times: Float64Array = new Float64Array(0);
   /** Tick that the time axis calls zero: 0, or the trigger. */
   private origin = 0;
   private hovered = false;
@@ -109,21 +108,24 @@ export class ScopePlot {
     return { left: left / ratio, top: top / ratio, width: width / ratio, height: height / ratio };
   }
 
-  /** What is shown now, to be drawn elsewhere; nothing before the first picture has come. */
-  picture(): ScopePicture | undefined {
-    if (!this.frame) return undefined;
+  /** What is shown now; nothing before the first frame has come. */
+  picture(): ScopeShown | undefined {
+    return this.frame && { ...this.shown(this.frame), bands: this.bands()?.traces ?? [] };
+  }
+
+  private shown({ triggered, dtMs }: PanelFrame): ScopeShown {
     return {
       traces: this.options.traces,
       envelopes: this.envelopes,
-      bands: this.bands()?.traces ?? [],
-      times: columnTimes(this.frame, this.origin),
+      bands: [],
+      times: this.times,
       units: this.units,
       scales: this.scales,
       ranges: this.units.map((_, axis) => this.ranges[axis] ?? { min: -1, max: 1 }),
       span: this.span,
       origin: this.origin,
-      isTriggered: this.frame.triggered,
-      dtMs: this.frame.dtMs,
+      isTriggered: triggered,
+      dtMs,
       marks: this.options.marks(),
     };
   }
@@ -146,8 +148,6 @@ export class ScopePlot {
       units: this.units,
       time: () => this.shownTime,
       range: (axis) => [this.ranges[axis]?.min ?? -1, this.ranges[axis]?.max ?? 1],
-      scale: (axis) => this.scales[axis],
-      trace: (u, trace) => this.drawTrace(u, trace),
       drawn: (u) => this.drawn(u),
     };
   }
@@ -203,47 +203,51 @@ export class ScopePlot {
     });
   }
 
-  private drawTrace({ ctx, bbox }: uPlot, trace: number): void {
-    const envelope = this.envelopes[trace];
+  private drawn({ ctx }: uPlot): void {
+    if (!this.frame) return;
+    const { left, top, width, height } = this.area;
+    const field = { left, right: left + width, top, bottom: top + height };
+    const ratio = uPlot.pxRatio;
+    const shown = this.shown(this.frame);
+    ctx.save();
+    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    paintScope(ctx, field, shown, this.options, { trace: (trace) => this.drawTrace(ctx, trace) });
+    markEvents(ctx, shown, field, this.options, flagWords);
+    if (this.envelopes.every((e) => e.high.every(Number.isNaN))) this.drawNothing(ctx, field);
+    ctx.restore();
+  }
+
+  /** In pixels of the screen, which columns are made for. */
+  private drawTrace(ctx: CanvasRenderingContext2D, trace: number): void {
     const { traces, lineWidth } = this.options;
     const { colour, dash, unit } = traces[trace];
     const range = this.ranges[this.units.indexOf(unit)];
-    if (!envelope || !range) return;
+    if (!range) return;
     const { start, span } = this.shownTime;
     const ratio = uPlot.pxRatio;
     const ink = { colour, width: lineWidth * ratio, dashes: DASHES[dash].map((px) => px * ratio) };
-    paintEnvelope(ctx, this.times, envelope, { ...bbox, from: start, to: start + span, ...range }, ink);
-  }
-
-  private drawn(u: uPlot): void {
-    const { scheme, fontSize, marks } = this.options;
-    const { span } = this;
-    const time = timeUnit((span.end - span.start) * this.dtMs).unit;
-    drawUnits(
-      u,
-      this.scales.map((s) => s.unit),
-      time,
-      fontSize,
-      CANVAS[scheme].muted,
+    ctx.save();
+    ctx.setTransform(1, 0, 0, 1, 0, 0);
+    paintEnvelope(
+      ctx,
+      this.times,
+      this.envelopes[trace],
+      { ...this.plot.bbox, from: start, to: start + span, ...range },
+      ink,
     );
-    if (!this.frame) return;
-    drawMarks(u, marks(), span, scheme, fontSize);
-    if (this.envelopes.every((e) => e.high.every(Number.isNaN))) this.drawNothing(u);
+    ctx.restore();
   }
 
   /** A span without data says so: it lies before the history, or ahead of the board. */
-  private drawNothing(u: uPlot): void {
-    const { ctx, bbox } = u;
+  private drawNothing(ctx: CanvasRenderingContext2D, { left, right, top, bottom }: Field): void {
     const { scheme, fontSize } = this.options;
-    ctx.save();
-    ctx.font = fontFor(fontSize, uPlot.pxRatio, 500);
+    ctx.font = fontFor(fontSize, 1, 500);
     ctx.fillStyle = CANVAS[scheme].muted;
     ctx.textAlign = "center";
     ctx.textBaseline = "middle";
     const words = this.frame?.waiting
       ? "Waiting for the trigger"
       : "No data here: the bench no longer has it, or not yet";
-    ctx.fillText(words, bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
-    ctx.restore();
+    ctx.fillText(words, (left + right) / 2, (top + bottom) / 2);
   }
 }

@@ -2,7 +2,7 @@ import { ActionIcon, NativeSelect } from "@mantine/core";
 import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import type { ScopeConfig } from "../../stream/scope-config";
-import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-windows";
+import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
 import { LiveButton } from "./live-button";
 import styles from "./scope.module.css";
 import { TriggerMenu, type TriggerState } from "./trigger-menu";

@@ -1,11 +1,10 @@
 import { Button, Group, NativeSelect, NumberInput, Popover, SegmentedControl, Stack, Text } from "@mantine/core";
-import { useContext } from "react";
+import { createContext, useContext } from "react";
 import { useBench } from "../../stream/bench-store";
 import type { Trigger } from "../../stream/wire";
 import { formatShort } from "../../ui/format";
 import { unitText } from "../../ui/unit-scale";
 import { signalGroups } from "../condition/condition";
-import { RearmContext } from "./rearm-context";
 
 export type TriggerState = "none" | "waiting" | "triggered";
 
@@ -107,3 +106,6 @@ const SWEEPS: Record<Trigger["sweep"], string> = {
   normal: "Normal: without an edge the last picture stays.",
   single: "Single: the first edge is kept until armed again.",
 };
+
+/** Arms a single sweep of the scope around once more. */
+export const RearmContext = createContext<() => void>(() => undefined);

@@ -1,5 +1,5 @@
 import { type RefObject, useLayoutEffect, useRef, useState } from "react";
-import type { PlotTrace } from "./scope-options";
+import type { PlotTrace } from "./paint-scope";
 
 /** Kept free for the button of those that do not fit, px. */
 const MORE_PX = 34;
@@ -40,6 +40,7 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
     measure();
     const observer = new ResizeObserver(measure);
     observer.observe(place);
+    for (const entry of box.children) observer.observe(entry); // a value may grow
     return () => observer.disconnect();
   }, [traces]);
   return { list, ...row, fits: Math.min(row.fits, traces.length) };

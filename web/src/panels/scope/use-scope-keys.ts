@@ -1,6 +1,6 @@
 import { type KeyboardEvent, type RefObject, useCallback } from "react";
 import type { ScopePlot } from "./scope-plot";
-import { zoomSpan } from "./time-window";
+import { zoomSpan } from "./use-time-view";
 
 /** Arrow keys pan, plus and minus zoom, L goes live: what the mouse does, from the keyboard. */
 export function useScopeKeys(

@@ -1,6 +1,7 @@
 import { useCallback, useEffect, useRef, useState } from "react";
-import { jump } from "../../ui/jump";
-import type { TimeWindow } from "./time-window";
+import type { ScopeConfig } from "../../stream/scope-config";
+import type { Subscription } from "../../stream/wire";
+import { jump } from "../../ui/hover";
 
 const LIVE: TimeWindow = { kind: "live" };
 const REFETCH_MS = 60;
@@ -40,4 +41,31 @@ export function useTimeView(windowMs: number, dtMs: number | undefined, onMove: 
   );
   useEffect(() => () => clearTimeout(refetch.current), []);
   return { view, span, look, goLive };
+}
+
+/** What a scope looks at: the newest data, or a span of the past that stays. */
+export type TimeWindow = { kind: "live" } | { kind: "past"; start: number; end: number };
+
+const LEAST_TICKS = 8;
+
+/** Zoom a span about one of its ticks. */
+export function zoomSpan(start: number, end: number, about: number, factor: number): { start: number; end: number } {
+  const width = Math.max(LEAST_TICKS, (end - start) * factor);
+  const share = (about - start) / (end - start);
+  return { start: about - width * share, end: about + width * (1 - share) };
+}
+
+/** The subscription that fills `pixels` columns with what the scope looks at. */
+export function scopeSubscription(config: ScopeConfig, window: TimeWindow, pixels: number, dtMs: number): Subscription {
+  const { signals } = config;
+  const width = (ticks: number) => Math.max(2, Math.min(Math.round(pixels), Math.ceil(ticks), 4096));
+  if (window.kind === "past") {
+    const start_tick = Math.floor(window.start);
+    const end_tick = Math.max(start_tick + 1, Math.ceil(window.end));
+    return { mode: "frozen", signals, start_tick, end_tick, width: width(end_tick - start_tick) };
+  }
+  const window_ms = config.windowMs;
+  if (config.mode === "triggered")
+    return { mode: "triggered", signals, window_ms, width: width(window_ms / dtMs), trigger: config.trigger };
+  return { mode: "roll", signals, window_ms, width: width(window_ms / dtMs) };
 }

@@ -1,8 +1,8 @@
 import { useMemo } from "react";
 import { useBench } from "../../stream/bench-store";
 import { traceColour, traceStyle } from "../../ui/trace-style";
-import { useScheme } from "../../ui/use-scheme";
-import type { PlotTrace } from "./scope-options";
+import { useScheme } from "../../ui/use-canvas";
+import type { PlotTrace } from "./paint-scope";
 
 /** The traces of some signals, as far as the bench has them, in the colours they have everywhere. */
 export function useTraces(names: string[]): PlotTrace[] {
@@ -16,7 +16,7 @@ export function useTraces(names: string[]): PlotTrace[] {
       const signal = signals?.find((s) => s.name === name);
       if (!signal) return [];
       const style = traceStyle(name, all, hypotheses);
-      return [{ name, unit: signal.unit, colour: traceColour(style, scheme), dash: style.dash }];
+      return [{ name, unit: signal.unit, slot: style.slot, colour: traceColour(style, scheme), dash: style.dash }];
     });
   }, [names, signals, diagnosers, scheme]);
 }

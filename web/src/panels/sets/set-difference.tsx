@@ -6,7 +6,7 @@ import type { ParameterSet } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { formatCount } from "../../ui/format";
-import { useInstances } from "../card/use-instances";
+import { useInstances } from "../card/instances";
 import { namedPath, valueText } from "./named-path";
 import styles from "./sets.module.css";
 

@@ -1,14 +1,13 @@
-import type { Pen } from "../../picture/pen";
-import { fontFor } from "../../ui/canvas-font";
-import { formatShort, tickLabels } from "../../ui/format";
-import { CANVAS, type Scheme } from "../../ui/palette";
-import { linearTicks } from "../../ui/ticks";
+import { linearAxis, logAxis, paintAxes } from "../../picture/axes";
+import type { Box, Look, Pen } from "../../picture/pen";
+import { type Picture, pictureName } from "../../picture/picture";
+import { paintLine } from "../../picture/traces";
+import { formatShort } from "../../ui/format";
+import { TRACE_COLOURS } from "../../ui/palette";
 import { UNITS, unitText } from "../../ui/unit-scale";
 import type { Spectrum } from "./fourier";
 
-export interface SpectrumPicture {
-  width: number;
-  height: number;
+export interface SpectrumShown {
   spectrum: Spectrum;
   /** Highest frequency shown, kHz. */
   highest: number;
@@ -16,78 +15,42 @@ export interface SpectrumPicture {
   decades: [number, number];
   /** As the server writes it. */
   unit: string;
-  colour: string;
-  scheme: Scheme;
-  fontSize: number;
-  /** The titles of the axes stand outside. */
-  isFramed?: boolean;
+  /** In `TRACE_COLOURS`. */
+  slot: number;
 }
-
-const LEFT = 58;
-const RIGHT = 14;
-const TOP = 8;
-const BOTTOM = 36;
 
 /** Decades say their unit where it takes a prefix: "1 µm, 100 nm"; else the title says it. */
 const takesPrefix = (unit: string) => unit in UNITS;
 
-export const amplitudeTitle = (unit: string) =>
+const amplitudeTitle = (unit: string) =>
   unitText(unit) === "" || takesPrefix(unit) ? "amplitude" : `amplitude, ${unitText(unit)}`;
 
 /** Amplitude over frequency, logarithmic upwards; the largest of the bins that share a pixel is drawn. */
-export function paintSpectrum(ctx: Pen, picture: SpectrumPicture): void {
-  const { width, height, spectrum, highest, decades, scheme, fontSize } = picture;
-  const ink = CANVAS[scheme];
-  const right = width - RIGHT;
-  const bottom = height - BOTTOM;
-  const px = (kHz: number) => LEFT + (kHz / highest) * (right - LEFT);
-  const py = (value: number) => {
-    const share = (Math.log10(Math.max(value, 1e-30)) - decades[0]) / (decades[1] - decades[0]);
-    return bottom - Math.min(1, Math.max(0, share)) * (bottom - TOP);
-  };
-  ctx.font = fontFor(fontSize, 1);
-  ctx.strokeStyle = ink.grid;
-  ctx.fillStyle = ink.muted;
-  ctx.lineWidth = 1;
-  ctx.textAlign = "center";
-  ctx.textBaseline = "top";
-  const across = linearTicks(0, highest, (right - LEFT) / 90);
-  tickLabels(across).forEach((label, i) => {
-    line(ctx, px(across[i]), TOP, px(across[i]), bottom);
-    ctx.fillText(label, px(across[i]), bottom + 4);
+export function paintSpectrum(pen: Pen, box: Box, shown: SpectrumShown, look: Look): void {
+  const { spectrum, highest, decades, unit, slot } = shown;
+  const [least, most] = decades.map((power) => 10 ** power);
+  const write = (value: number) => formatShort(value, takesPrefix(unit) ? unit : "");
+  const up = logAxis([least, most], amplitudeTitle(unit), write);
+  const plot = paintAxes(pen, box, linearAxis([0, highest], "frequency, kHz"), up, look, {
+    gutter: look.fontSize * 3.8, // the axis moves by decades: the field stays
   });
-  ctx.textAlign = "right";
-  if (!picture.isFramed) ctx.fillText("kHz", right, bottom + 4 + fontSize);
-  ctx.textBaseline = "middle";
-  for (let power = decades[0]; power <= decades[1]; power += 1) {
-    const y = py(10 ** power);
-    line(ctx, LEFT, y, right, y);
-    ctx.fillText(formatShort(10 ** power, takesPrefix(picture.unit) ? picture.unit : ""), LEFT - 6, y);
-  }
-  if (!picture.isFramed) {
-    ctx.textAlign = "left";
-    ctx.textBaseline = "top";
-    ctx.fillText(amplitudeTitle(picture.unit), LEFT + 6, TOP + 2);
-  }
-
-  ctx.strokeStyle = picture.colour;
-  ctx.lineWidth = 1.6;
-  ctx.beginPath();
-  let column = -1;
-  let peak = 0;
+  const pixels: number[] = [];
+  const peaks: number[] = [];
   for (let i = 1; i < spectrum.frequency.length && spectrum.frequency[i] <= highest; i += 1) {
-    const here = Math.round(px(spectrum.frequency[i]));
-    if (here !== column && column >= 0) ctx.lineTo(column, py(peak));
-    peak = here === column ? Math.max(peak, spectrum.amplitude[i]) : spectrum.amplitude[i];
-    column = here;
+    const here = Math.round(plot.x(spectrum.frequency[i]));
+    const amplitude = Math.min(Math.max(spectrum.amplitude[i], least), most);
+    if (here !== pixels.at(-1)) {
+      pixels.push(here);
+      peaks.push(amplitude);
+    } else peaks[peaks.length - 1] = Math.max(amplitude, peaks[peaks.length - 1]);
   }
-  ctx.lineTo(column, py(peak));
-  ctx.stroke();
+  const stroke = { colour: TRACE_COLOURS[look.scheme][slot], width: 1.6 };
+  paintLine(pen, { x: (pixel) => pixel, y: plot.y }, pixels, peaks, stroke);
 }
 
-function line(ctx: Pen, x1: number, y1: number, x2: number, y2: number): void {
-  ctx.beginPath();
-  ctx.moveTo(Math.round(x1) + 0.5, Math.round(y1) + 0.5);
-  ctx.lineTo(Math.round(x2) + 0.5, Math.round(y2) + 0.5);
-  ctx.stroke();
-}
+/** A spectrum as a picture. */
+export const spectrumPicture = (shown: SpectrumShown, signal: string): Picture => ({
+  ...pictureName(`Spectrum of ${signal}`),
+  height: 420,
+  paint: (pen, box, look) => paintSpectrum(pen, box, shown, look),
+});

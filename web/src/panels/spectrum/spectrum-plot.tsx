@@ -7,13 +7,11 @@ import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
 import { formatSi } from "../../ui/format";
 import { usePanelVisible } from "../../ui/panel-visible";
-import { useCanvas } from "../../ui/use-canvas";
-import { useScheme } from "../../ui/use-scheme";
+import { useCanvas, useScheme } from "../../ui/use-canvas";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
 import { spectrum, strongest } from "./fourier";
-import { paintSpectrum, type SpectrumPicture } from "./paint-spectrum";
-import { printSpectrum } from "./print-spectrum";
+import { paintSpectrum, type SpectrumShown, spectrumPicture } from "./paint-spectrum";
 
 /** A spectrum is read, not watched: ten a second are enough. */
 const EVERY_MS = 100;
@@ -43,8 +41,8 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
   const samples = useRef(new Float32Array(0));
   const next = useRef(0);
   const top = useRef(LOWEST);
-  const shown = useRef<SpectrumPicture | undefined>(undefined);
-  useImperativeHandle(picture, () => () => shown.current && printSpectrum(shown.current, words(signal)), [signal]);
+  const shown = useRef<SpectrumShown | undefined>(undefined);
+  useImperativeHandle(picture, () => () => shown.current && spectrumPicture(shown.current, words(signal)), [signal]);
 
   const subscription = useMemo<Subscription>(
     () => ({ mode: "roll", signals: names, window_ms: ticks * dtMs, width: ticks }),
@@ -79,17 +77,13 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
       shown.current = {
-        width: size.width,
-        height: size.height,
         spectrum: found,
         highest,
         decades: [upper - DECADES, upper],
         unit: trace.unit,
-        colour: trace.colour,
-        scheme,
-        fontSize,
+        slot: trace.slot,
       };
-      paintSpectrum(ctx, shown.current);
+      paintSpectrum(ctx, size, shown.current, { scheme, fontSize });
     });
   }, [visible, canvas, size, trace, dtMs, highest, scheme, fontSize]);
 
@@ -103,7 +97,7 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
           aria-label={`Amplitude spectrum of ${words(signal)}`}
         />
       </div>
-      <p ref={reading} className={styles.words} />
+      <p ref={reading} className={styles.words} data-lines="1" />
     </>
   );
 }

@@ -4,7 +4,7 @@ import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatSi } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import type { Board, Compared } from "./boards";
 import { type TrackingFigures, trackingFigures } from "./tracking-figures";
 import styles from "./twins.module.css";

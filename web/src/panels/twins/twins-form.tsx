@@ -4,7 +4,7 @@ import { useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
-import { openVariant } from "../../bench/open-variant";
+import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { slotTitle } from "../controllers/slots";

@@ -1,13 +1,11 @@
 import { useMemo, useRef, useState } from "react";
 import { useView } from "../../bench/view-store";
+import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { TRACE_COLOURS } from "../../ui/palette";
-import { useScheme } from "../../ui/use-scheme";
 import { signalsOf } from "../adaptation/adaptation-strips";
-import { AXIS_PX, gutter, paintStrips, RIGHT_PX } from "../adaptation/paint-strips";
-import { IDEAL, printStrips } from "../adaptation/print-strips";
-import { LaneCanvas, type LanePainting } from "../lanes/lane-canvas";
+import { AXIS_PX, gutter, paintStrips, RIGHT_PX, stripsPicture } from "../adaptation/paint-strips";
+import { LaneCanvas, type LaneShown } from "../lanes/lane-canvas";
 import { LaneTools } from "../lanes/lane-tools";
 import { useLaneTime } from "../lanes/use-lane-time";
 import { boardsOf, comparedOn, comparison } from "./boards";
@@ -25,7 +23,6 @@ export function TwinsPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const axes = useBench((s) => s.bench?.axes);
   const dtMs = useBench((s) => s.bench?.dt_ms);
-  const scheme = useScheme();
   const fontSize = useView((s) => s.fontPx);
   const [windowMs, setWindowMs] = useState(4);
   const time = useLaneTime(windowMs, dtMs);
@@ -39,14 +36,14 @@ export function TwinsPanel() {
     [boards, compared, signals],
   );
   const names = useMemo(() => strips.flatMap(signalsOf), [strips]);
-  const shown = useRef<LanePainting | undefined>(undefined);
-  const paint = useMemo(() => {
-    const columnOf = new Map(names.map((name, i) => [name, i]));
-    return (ctx: CanvasRenderingContext2D, painting: LanePainting) => {
-      shown.current = painting;
-      paintStrips(ctx, painting, strips, columnOf, scheme, fontSize, EACH_PX);
-    };
-  }, [names, strips, scheme, fontSize]);
+  const shown = useRef<LaneShown | undefined>(undefined);
+  const paint = useMemo(
+    () => (pen: Pen, box: Box, now: LaneShown, look: Look) => {
+      shown.current = now;
+      paintStrips(pen, box, now, strips, look);
+    },
+    [strips],
+  );
   if (!id || boards.length === 0) return <EmptyState title="No bench yet">Twins begin with a bench.</EmptyState>;
   const form = <TwinsForm key={id} chosen={boards.slice(1).map((b) => b.chosen)} />;
   if (boards.length === 1)
@@ -56,8 +53,7 @@ export function TwinsPanel() {
         Choose up to three; the bench begins again at tick 0 with them beside it.
       </EmptyState>
     );
-  const legend = [...boards.map(({ name, slot }) => ({ name, colour: TRACE_COLOURS.light[slot] })), IDEAL];
-  const take = () => shown.current && printStrips(shown.current, strips, "Twins", legend);
+  const take = () => shown.current && stripsPicture(shown.current, strips, "Twins", boards);
   return (
     <section className={styles.panel} aria-label="Twins">
       <div className={styles.bar}>

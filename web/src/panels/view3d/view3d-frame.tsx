@@ -1,9 +1,7 @@
 import { useEffect, useRef, useState } from "react";
 import { useBench } from "../../stream/bench-store";
-import { softwareGl } from "../../ui/software-gl";
-import { usePageVisible } from "../../ui/use-page-visible";
-import { useScheme } from "../../ui/use-scheme";
-import { CAMERAS, type Camera } from "./cameras";
+import { usePageVisible } from "../../ui/panel-visible";
+import { useScheme } from "../../ui/use-canvas";
 import styles from "./view3d.module.css";
 
 const POLL_MS = 1000;
@@ -132,3 +130,27 @@ function query(scheme: string): URLSearchParams {
   if (scheme === "dark") wanted.set("darkMode", "1");
   return wanted;
 }
+
+let known: boolean | undefined;
+
+/** Whether WebGL is drawn by the processor here, which makes every pixel dear. */
+export function softwareGl(): boolean {
+  if (known !== undefined) return known;
+  const gl = document.createElement("canvas").getContext("webgl");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const renderer = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  known = /swiftshader|llvmpipe|software/i.test(renderer);
+  return known;
+}
+
+/** Where to look at the device from; the 3D page knows each by its name. */
+export const CAMERAS = [
+  { name: "whole", label: "Whole", title: "The whole device" },
+  { name: "top", label: "Top", title: "From above, as drawn" },
+  { name: "side", label: "Side", title: "Along the wafer" },
+  { name: "fingers", label: "Fingers", title: "The fingers of a comb" },
+  { name: "beams", label: "Beams", title: "The folded beams of one side" },
+] as const;
+
+export type Camera = (typeof CAMERAS)[number]["name"];

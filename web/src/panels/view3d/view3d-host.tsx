@@ -1,9 +1,9 @@
 import { useEffect, useRef, useState } from "react";
+import { create } from "zustand";
 import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
 import styles from "./view3d.module.css";
 import { View3dFrame } from "./view3d-frame";
-import { usePlaces } from "./view3d-places";
 
 /**
  * The 3D view, kept outside the dock and laid over the panel that is in sight.
@@ -39,4 +39,20 @@ export function View3dHost() {
       <View3dFrame key={path} path={`.${path}`} visible={visible} />
     </section>
   );
+}
+
+interface Places {
+  /** Whether the page keeps the 3D view itself and lays it over a panel; a phone draws it where it stands. */
+  hosted: boolean;
+  /** Panels that offer their place, the latest last. */
+  places: HTMLElement[];
+}
+
+/** Where the 3D view may be shown. */
+export const usePlaces = create<Places>(() => ({ hosted: false, places: [] }));
+
+/** Offer the place of a panel; returns what takes the offer back. */
+export function offerPlace(place: HTMLElement): () => void {
+  usePlaces.setState(({ places }) => ({ places: [...places, place] }));
+  return () => usePlaces.setState(({ places }) => ({ places: places.filter((other) => other !== place) }));
 }

@@ -1,11 +1,10 @@
 import { useEffect, useRef } from "react";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { usePanelVisible } from "../../ui/panel-visible";
-import { useOnScreen } from "../../ui/use-on-screen";
+import { useOnScreen, usePanelVisible } from "../../ui/panel-visible";
 import styles from "./view3d.module.css";
 import { View3dFrame } from "./view3d-frame";
-import { offerPlace, usePlaces } from "./view3d-places";
+import { offerPlace, usePlaces } from "./view3d-host";
 
 /** The shuttle in 3D, if this server draws it: the page's own view in this place, or one that stands here. */
 export function View3dPanel() {

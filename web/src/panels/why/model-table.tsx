@@ -1,7 +1,7 @@
 import type { Account } from "../../api/types";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
-import { useScheme } from "../../ui/use-scheme";
+import { useScheme } from "../../ui/use-canvas";
 import styles from "./why.module.css";
 
 interface ModelTableProps {
@@ -26,10 +26,18 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
             <th scope="col">Hypothesis</th>
             <th scope="col">Posterior</th>
             <th scope="col">Misses by</th>
-            {filtered && <th scope="col">Gain K{axes}</th>}
+            {filtered && (
+              <th scope="col" data-detail>
+                Gain K{axes}
+              </th>
+            )}
             <th scope="col">Residual{axes}</th>
-            <th scope="col">√ covariance{axes}</th>
-            <th scope="col">ln f</th>
+            <th scope="col" data-detail>
+              √ covariance{axes}
+            </th>
+            <th scope="col" data-detail>
+              ln f
+            </th>
             <th scope="col">Prior</th>
           </tr>
         </thead>
@@ -56,14 +64,14 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
                 </span>
               </td>
               <td>{formatNumber(model.missed_sigma, 1)} σ</td>
-              {filtered && <td>{lines(gains(account, i))}</td>}
+              {filtered && <td data-detail>{lines(gains(account, i))}</td>}
               <td>{lines(model.residual_um.map((value) => formatSi(value, "um", 3)))}</td>
-              <td>
+              <td data-detail>
                 {model.covariance_um2 === null
                   ? "–"
                   : lines(model.covariance_um2.map((row, j) => formatSi(Math.sqrt(row[j]), "um", 3)))}
               </td>
-              <td>{model.log_likelihood === null ? "–" : formatNumber(model.log_likelihood, 2)}</td>
+              <td data-detail>{model.log_likelihood === null ? "–" : formatNumber(model.log_likelihood, 2)}</td>
               <td>{formatPercent(model.prior, 2)}</td>
             </tr>
           ))}

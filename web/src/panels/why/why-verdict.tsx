@@ -1,7 +1,7 @@
 import { Button } from "@mantine/core";
 import type { Account, Turn } from "../../api/types";
 import { pickSample } from "../../bench/why";
-import { jump } from "../../ui/jump";
+import { jump } from "../../ui/hover";
 import styles from "./why.module.css";
 import { turnWords, whySentence } from "./why-sentence";
 

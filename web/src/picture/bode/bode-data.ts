@@ -1,8 +1,9 @@
 /** One response over frequency. */
 export interface BodeCurve {
   name: string;
-  colour: string;
-  dash?: string;
+  /** In `TRACE_COLOURS` and in `DASHES`. */
+  slot: number;
+  dash: number;
   hertz: number[];
   db: number[];
   deg: number[];
@@ -19,7 +20,8 @@ export interface BodeBand {
 /** Tones as measured, with what the magnitude may be off by. */
 export interface BodePoints {
   name: string;
-  colour: string;
+  /** In `TRACE_COLOURS`. */
+  slot: number;
   hertz: number[];
   db: number[];
   errorDb: number[];

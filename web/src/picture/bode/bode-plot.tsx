@@ -1,56 +1,52 @@
-import { useState } from "react";
+import { useCallback, useState } from "react";
 import { formatIn, formatSi } from "../../ui/format";
-import { useSize } from "../../ui/use-size";
+import { useScheme } from "../../ui/use-canvas";
+import { placeOn } from "../axes";
+import { Legend } from "../legend-list";
+import { Painted } from "../painted";
+import type { Box, Look, Pen } from "../pen";
+import { fileStem } from "../picture";
 import { PictureMenu } from "../picture-menu";
 import styles from "./bode.module.css";
-import { BodeField, type BodeFieldProps } from "./bode-field";
-import { printBode } from "./print-bode";
-
-type BodePlotProps = Pick<BodeFieldProps, "label" | "curves" | "band" | "points" | "degrees">;
+import { nearest } from "./bode-data";
+import { type BodeShown, bodeEntries, paintBode } from "./paint-bode";
 
 /** Magnitude over phase, on one logarithmic axis of frequency; the pointer reads both. */
-export function BodePlot({ label, ...shown }: BodePlotProps) {
-  const { element, size } = useSize<HTMLDivElement>();
+export function BodePlot({ label, shown }: { label: string; shown: BodeShown }) {
+  const scheme = useScheme();
   const [read, setRead] = useState<number | undefined>(undefined);
-  const { curves, band, points } = shown;
-  const hertz = curves[0].hertz;
+  const paint = useCallback((pen: Pen, box: Box, look: Look) => paintBode(pen, box, shown, look, read), [shown, read]);
+  const [first] = shown.curves;
+  const { hertz } = first;
+  const take = () => ({
+    title: label,
+    stem: fileStem(label),
+    legend: bodeEntries(shown, "light"),
+    height: 460,
+    paint: (pen: Pen, box: Box, look: Look) => paintBode(pen, box, shown, look),
+  });
   return (
     <div className={styles.plot}>
-      <ul className={styles.legend}>
-        {curves.map((curve) => (
-          <li key={curve.name}>
-            <svg width="22" height="8" aria-hidden="true">
-              <path d="M0 4 H22" stroke={curve.colour} strokeWidth="2.2" strokeDasharray={curve.dash} />
-            </svg>
-            {curve.name}
-          </li>
-        ))}
-        {points && (
-          <li>
-            <svg width="10" height="8" aria-hidden="true">
-              <circle cx="5" cy="4" r="3" fill={points.colour} />
-            </svg>
-            {points.name}
-          </li>
-        )}
-        {band && (
-          <li>
-            <i className={styles.bandMark} />
-            {band.name}
-          </li>
-        )}
+      <Legend entries={bodeEntries(shown, scheme)}>
         <li className={styles.reading}>
           {read !== undefined &&
-            `${formatSi(hertz[read], "Hz")}: ${formatIn(curves[0].db[read], "dB", 1)}, ${formatIn(curves[0].deg[read], "°", 0)}`}
+            `${formatSi(hertz[read], "Hz")}: ${formatIn(first.db[read], "dB", 1)}, ${formatIn(first.deg[read], "°", 0)}`}
         </li>
         <li>
-          <PictureMenu name={label} take={() => printBode(label, shown)} />
+          <PictureMenu name={label} take={take} />
         </li>
-      </ul>
-      <div ref={element} className={styles.stage}>
-        {size.width > 100 && size.height > 100 && (
-          <BodeField label={label} {...shown} {...size} read={read} onRead={setRead} />
-        )}
+      </Legend>
+      <div className={styles.stage}>
+        <Painted
+          label={label}
+          paint={paint}
+          onPoint={(at, { field: { left, right } }) => {
+            const ends = { range: [left, right] as const };
+            const share = at && placeOn(ends, 0, 1)(at.x);
+            const isWithin = share !== undefined && share >= 0 && share <= 1;
+            setRead(isWithin ? nearest(hertz, hertz[0] * (hertz[hertz.length - 1] / hertz[0]) ** share) : undefined);
+          }}
+        />
       </div>
     </div>
   );

@@ -1,0 +1,157 @@
+"""An expectation: what a figure should be, what was published of it, and the word that follows from both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Annotated, Literal, Self, get_args
+
+from pydantic import Field, model_validator
+
+from core.format import format_short
+from core.table import Table
+
+Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced", "ours"]
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+AGREES = 0.05
+"""Share of a published number within which a figure agrees with it, where no range is given."""
+End = Annotated[float, Field(allow_inf_nan=True)]
+
+
+class Expectation(Table):
+    """What a metric should be, and what was published.
+
+    ``published`` are the words of the text, ``published_value`` its number. A figure agrees with the text when it lies
+    in ``published_range``, ends included; where none is given, within 5 % of ``published_value``. ``fitted`` are the
+    fields of the scenario that were chosen so that it does. ``compare`` says what must miss the expectation by
+    `margin` for it to praise a controller: the open loop, that and a PID, or nothing, for a ``reason``. ``verdict`` is
+    not read: earlier files have one.
+    """
+
+    metric: str
+    min: float | None = None
+    max: float | None = None
+    value: float | None = None
+    tolerance: float | None = Field(None, ge=0)
+    published: str = ""
+    published_value: float | None = None
+    published_range: tuple[End, End] | None = None
+    fitted: list[str] = Field([])
+    compare: Literal["open_loop", "pid", "none"] | None = None
+    reason: str = ""
+    verdict: str | None = None
+    note: str = ""
+
+    @model_validator(mode="after")
+    def _bounded(self) -> Self:
+        if (self.value is None) != (self.tolerance is None):
+            raise ValueError("value and tolerance go together")
+        if self.value is None and self.min is None and self.max is None:
+            raise ValueError("needs min, max, or value with tolerance")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError(f"can never hold: min {self.min:g} is more than max {self.max:g}")
+        return self
+
+    @model_validator(mode="after")
+    def _comparable(self) -> Self:
+        low, high = self.published_range or (-math.inf, math.inf)
+        if not low <= high:
+            raise ValueError(f"published_range must be [low, high] with low <= high, got [{low:g}, {high:g}]")
+        if self.published_value == 0.0 and self.published_range is None:
+            raise ValueError("published_value 0 needs published_range: 5 % of it is nothing")
+        if self.published_value is not None and not low <= self.published_value <= high:
+            raise ValueError(f"published_value {self.published_value:g} is outside published_range")
+        if self.fitted and self.agreeing is None:
+            raise ValueError("fitted goes with published_value or published_range")
+        if (self.compare == "none") != bool(self.reason):
+            raise ValueError('compare = "none" and reason go together')
+        return self
+
+    def holds(self, measured: float | None) -> bool:
+        """Return whether a measured value is as expected."""
+        if measured is None:
+            return False
+        low, high = self.bounds()
+        return (low is None or measured >= low) and (high is None or measured <= high)
+
+    def bounds(self) -> tuple[float | None, float | None]:
+        """Return the smallest and the largest value that count as expected."""
+        if self.value is None:
+            return self.min, self.max
+        return self.value - (self.tolerance or 0.0), self.value + (self.tolerance or 0.0)
+
+    def text(self) -> str:
+        """Write the expectation as text."""
+        if self.value is not None:
+            return f"{format_short(self.value, '', 6)} ± {format_short(self.tolerance or 0.0, '', 6)}"
+        parts = [f">= {format_short(self.min, '', 6)}"] if self.min is not None else []
+        parts += [f"<= {format_short(self.max, '', 6)}"] if self.max is not None else []
+        return " and ".join(parts)
+
+    @property
+    def margin(self) -> float:
+        """How far outside its bounds a figure misses by twice the tolerance.
+
+        The tolerance is half the width of the bounds. With one bound it is what that leaves to the best there is: the
+        bound itself above 0, for a share what is left to 1, else half the bound.
+        """
+        low, high = self.bounds()
+        if low is not None and high is not None:
+            return (high - low) / 2.0
+        if high is not None:
+            return abs(high)
+        assert low is not None
+        return 1.0 - low if self.metric.endswith("fraction") else abs(low) / 2.0
+
+    def missed_twice(self, measured: float | None) -> bool:
+        """Return whether a figure misses the expectation by twice its tolerance, or is not there at all."""
+        low, high = self.bounds()
+        if measured is None:
+            return True
+        below = low is not None and measured < low and low - measured >= self.margin * (1 - 1e-9)
+        above = high is not None and measured > high and measured - high >= self.margin * (1 - 1e-9)
+        return below or above
+
+    @property
+    def agreeing(self) -> tuple[float, float] | None:
+        """The range in which a figure agrees with the text, or None where the text has nothing to compare with."""
+        if self.published_range is not None or self.published_value is None:
+            return self.published_range
+        width = AGREES * abs(self.published_value)
+        return self.published_value - width, self.published_value + width
+
+    def word(self, measured: float | None) -> Verdict | None:
+        """Return the word for a measured figure, None where words were published that nothing compares it with."""
+        if self.agreeing is None:
+            return None if self.published else "ours"
+        low, high = self.agreeing
+        return self._agreed(measured is not None and low <= measured <= high)
+
+    def promised(self) -> Verdict | None:
+        """Return the word if the expectation holds, which is all there is before a run."""
+        if self.agreeing is None:
+            return self.word(None)
+        low, high = self.bounds()
+        below = high is not None and high < self.agreeing[0]
+        above = low is not None and low > self.agreeing[1]
+        return self._agreed(not below and not above)
+
+    def _agreed(self, agrees: bool) -> Verdict:
+        if not agrees:
+            return "not reproduced"
+        return "reproduced by tuning" if self.fitted else "reproduced"
+
+
+def overall(words: Iterable[Verdict | None]) -> Verdict | None:
+    """Return the word for a scenario from those of its rows; None where none has one.
+
+    What the dissertation does not claim does not count beside what it does. If all the rest agrees, the scenario is
+    reproduced, by tuning where one row is; if nothing agrees it is not; else partly.
+    """
+    found = {word for word in words if word is not None}
+    claimed = found - {"ours"}
+    if not claimed:
+        return "ours" if found else None
+    if "not reproduced" not in claimed and "partly" not in claimed:
+        return "reproduced by tuning" if "reproduced by tuning" in claimed else "reproduced"
+    return "not reproduced" if claimed == {"not reproduced"} else "partly"

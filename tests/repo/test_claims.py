@@ -1,0 +1,47 @@
+"""The list of claims is complete: what it names is there, and every scenario of the text is named."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from core import registry
+from scenarios.library import ids
+
+OF_THE_TEXT = ("ch1-", "ch2-", "ch3-", "ch4-", "ch5-", "app")
+COLUMNS = ["Where", "What it shows", "Scenario or page", "Result"]
+
+
+@pytest.fixture(scope="module")
+def rows(root: Path) -> list[list[str]]:
+    """Return the cells of every row of the tables, headings included."""
+    lines = (root / "docs" / "claims.md").read_text().splitlines()
+    tables = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines if line.startswith("| ")]
+    return [[cell.strip() for cell in row] for row in tables]
+
+
+def spans(rows: list[list[str]]) -> set[str]:
+    return {span for row in rows for cell in row for span in re.findall(r"`([^`]+)`", cell)}
+
+
+def test_every_row_says_all_four(rows: list[list[str]]) -> None:
+    assert rows.count(COLUMNS) == 9
+    assert [row for row in rows if len(row) != len(COLUMNS) or not all(row)] == []
+
+
+def test_what_is_named_is_there(rows: list[list[str]]) -> None:
+    """A name is a scenario of the library, or a controller on whose bench a panel shows a figure."""
+    assert spans(rows) - set(ids()) - set(registry.blocks("control")) == set()
+
+
+def test_every_scenario_of_the_text_is_named(rows: list[list[str]]) -> None:
+    assert {name for name in ids() if name.startswith(OF_THE_TEXT)} - spans(rows) == set()
+
+
+def test_where_there_is_none_the_reason_stands_beside_it(rows: list[list[str]]) -> None:
+    without = [row for row in rows if row[2] == "none"]
+    assert without and all(len(row[3].split()) >= 5 for row in without)
+    shown = [row for row in rows if row != COLUMNS and row[2] != "none"]
+    assert all("`" in row[2] or re.search(r"page|panel|3D view", row[2]) for row in shown)

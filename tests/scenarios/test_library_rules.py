@@ -1,0 +1,85 @@
+"""What every file of the library must state: its sources are in the text, its words follow from numbers."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from scenarios.library import library
+
+SECTIONS = """
+    1.1 1.2 1.3 1.4 1.4.1 1.4.2 1.4.3 1.4.4 1.5 1.6 2.1 2.1.1 2.1.2 2.1.3 2.2 2.2.1 2.2.2 2.2.3 2.2.3.1
+    3.1 3.1.1 3.1.2 3.1.2.1 3.1.3 3.1.3.1 3.1.3.1.1 3.1.3.1.2 3.1.3.1.3 3.1.3.2
+    3.2 3.2.1 3.2.2 3.2.3 3.2.4 3.2.4.1 3.2.4.2 3.2.5 3.2.5.1 3.2.5.2 3.2.6 3.2.6.1 3.3 3.3.1 3.3.2 3.3.3 3.4
+    4.1 4.2 4.2.1 4.2.2 4.3 4.3.1 4.4 4.4.1 4.4.2 4.5
+    5.1 5.1.1 5.1.2 5.1.3 5.1.4 5.1.5 5.1.6 5.2 5.2.1 5.2.2 5.2.3 5.2.3.1 5.2.3.2 5.2.4 5.2.4.1 5.2.4.2
+    5.3 5.3.1 5.3.2 5.3.3 5.3.3.1 5.3.4 5.3.4.1 5.3.4.2 5.4 5.4.1 5.4.2 5.5 5.6
+    6.1 6.1.1 6.1.2 6.1.3 6.1.4 6.1.5 6.2 6.3
+    A.1 A.2 A.3 A.5 A.6 A.7 A.8 A.9 A.10 A.11 B.1 B.2 B.3 B.4 B.5
+"""
+FIGURES = """
+    1.2.1 1.3.1 1.3.2 1.3.3 1.3.4 1.4.2.1 1.4.2.2 1.4.2.3 1.4.3.1 1.4.4.1
+    2.2.1 2.2.3.1 2.3.1.1 2.3.2.1 2.3.2.2 2.3.3.1.1 2.3.3.1.2 2.3.3.1.3
+    3.1.2.1.1 3.1.3.1.1 3.1.3.1.2 3.1.3.1.3 3.1.3.1.4 3.1.3.1.5 3.1.3.1.6 3.1.3.2.1 3.1.3.2.2 3.1.3.2.3 3.1.3.2.4
+    3.1.3.2.5 3.1.3.2.6 3.1.3.2.7 3.1.3.2.8 3.1.3.2.9 3.2.2.1 3.2.2.2 3.2.6.1 3.2.6.2 3.2.6.1.1 3.2.6.1.2 3.2.6.1.3
+    3.2.6.1.4 3.2.6.1.5 3.2.6.1.6 3.2.6.1.7 3.3.2.1 3.3.3.1 3.3.3.2 3.3.3.3 3.3.3.4 3.3.3.5 3.3.3.6 3.3.3.7 3.3.3.8
+    3.3.3.9 3.3.3.10 4.3.1.1 4.3.1.2 4.3.1.3 4.3.1.4 4.3.1.5 4.4.1.1 4.4.1.2 4.4.2.1 4.4.2.2
+    5.1.3.1 5.1.3.2 5.1.3.3 5.1.5.1 5.2.1.1 5.2.4.1.1 5.2.4.1.2 5.2.4.1.3 5.2.4.1.4 5.2.4.1.5 5.2.4.1.6
+    5.2.4.2.1 5.2.4.2.2 5.2.4.2.3 5.3.1.1 5.3.4.1 5.3.4.2 5.3.4.3 5.3.4.2.1 5.3.4.2.2 5.4.2.1 5.4.2.2 5.4.2.3
+    6.1.3.1 6.1.3.2 6.1.4.1 6.1.4.2 6.1.4.3 6.1.4.4 6.1.4.5 6.1.5.1 6.1.5.2 6.1.5.3 6.1.5.4 6.3.1.1
+    B.1.1 B.1.2 B.2.1 B.2.2 B.3.1
+"""
+TABLES = "1.1 2.1 5.2.4.1.1 5.2.4.2.1 5.2.4.2.2 5.3.4.2.1 5.5.1"
+KNOWN = {"section": SECTIONS.split(), "figure": FIGURES.split(), "table": TABLES.split()}
+CITED = re.compile(r"(figure|equation|table)?s? ?\b((?:[1-6]|[AB])(?:\.\d+)+)", re.IGNORECASE)
+EVERY = pytest.mark.parametrize("scenario", library(), ids=lambda scenario: scenario.id)
+
+
+def cited(source: str) -> list[tuple[str, str]]:
+    """Return what a source cites: what follows ``figures`` up to the next semicolon is figures, and so on."""
+    found = []
+    for part in source.split(";"):
+        kind = "section"
+        for match in CITED.finditer(part):
+            kind = (match.group(1) or kind).lower()
+            found.append((kind, match.group(2)))
+    return found
+
+
+def test_citations_are_read():
+    source = "1.3, Table 1.1, equations 1.3.3 to 1.3.5; 3.2.6 (as drawn), figures 3.3.3.1-3; Micromachines 9(10) 511"
+    expected = [
+        ("section", "1.3"),
+        ("table", "1.1"),
+        ("equation", "1.3.3"),
+        ("equation", "1.3.5"),
+        ("section", "3.2.6"),
+    ]
+    assert cited(source) == [*expected, ("section", "3.2.6"), ("figure", "3.3.3.1")]
+
+
+@EVERY
+def test_sources_are_in_the_text(scenario):
+    places = cited(scenario.head.source)
+    for kind, number in places:
+        if kind == "equation":  # numbered by their section
+            assert number.rpartition(".")[0] in KNOWN["section"], f"no section of equation {number}"
+        else:
+            assert number in KNOWN[kind], f"no {kind} {number}"
+    if any(entry.agreeing is not None for entry in scenario.head.expect):
+        assert any(kind == "section" for kind, _ in places), "cites no section"
+
+
+@EVERY
+def test_words_are_derived(scenario):
+    assert scenario.warnings == [] and "verdict" not in scenario.document
+    for entry in scenario.head.expect:
+        assert entry.verdict is None, f"{entry.metric} has a typed verdict"
+        assert bool(entry.published) == (entry.agreeing is not None), f"{entry.metric}: words and numbers go together"
+
+
+def test_what_lies_beyond_the_text_is_ours():
+    for scenario in library():
+        if scenario.head.source.startswith("beyond the text") or scenario.id.startswith("gyro-"):
+            assert scenario.verdict == "ours", scenario.id

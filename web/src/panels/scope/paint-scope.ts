@@ -1,0 +1,143 @@
+import type { Marks } from "../../bench/marks";
+import { linearAxis, paintColumns, paintFrame, paintRows, placeOn, timeAxis } from "../../picture/axes";
+import type { EventAxis } from "../../picture/event-marks";
+import type { Box, Field, Look, Pen } from "../../picture/pen";
+import type { Picture } from "../../picture/picture";
+import { strokeEnvelope, within } from "../../picture/traces";
+import { CANVAS, DASHES, fontFor, TRACE_COLOURS } from "../../ui/palette";
+import type { UnitScale } from "../../ui/unit-scale";
+import type { Envelope } from "./envelope-path";
+
+/** A signal on a scope. */
+export interface PlotTrace {
+  name: string;
+  unit: string;
+  /** In `TRACE_COLOURS`; its colour on this screen. */
+  slot: number;
+  colour: string;
+  /** In `DASHES`. */
+  dash: number;
+}
+
+/** All that a scope shows at a moment. */
+export interface ScopeShown {
+  traces: PlotTrace[];
+  envelopes: Envelope[];
+  /** Traces that are seen as bands and not as signals. */
+  bands: readonly number[];
+  /** Of each column, in ms from the origin of the time axis. */
+  times: Float64Array;
+  /** Units with an axis. */
+  units: string[];
+  scales: UnitScale[];
+  /** Of each unit's axis, in the unit of the signals. */
+  ranges: { min: number; max: number }[];
+  /** Ticks shown. */
+  span: { start: number; end: number };
+  /** Tick that the time axis calls zero. */
+  origin: number;
+  isTriggered: boolean;
+  dtMs: number;
+  marks: Marks;
+}
+
+/** Room for an upright axis, in sizes of its letters: with its unit above it, and with its title beside it. */
+export const AXIS = 4;
+const TITLED_AXIS = 5.4;
+const FEET_PX = 22;
+
+interface ScopeOptions {
+  /** Ink a trace: the screen has many a second, a file is looked at closely. */
+  trace(index: number): void;
+  /** With titles beside the axes in place of units above them. */
+  isTitled?: boolean;
+}
+
+/** A scope: device time below, an upright axis for each unit, and the traces within. */
+export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look, options: ScopeOptions): void {
+  const { traces, units, scales, ranges, span, dtMs, origin } = shown;
+  const { left, right, top, bottom } = field;
+  const { fontSize } = look;
+  paintColumns(pen, field, timeAxis(span, dtMs, origin), look);
+  units.forEach((unit, i) => {
+    const onLeft = i === 0;
+    const edge = right + (i - 1) * (options.isTitled ? TITLED_AXIS : AXIS) * fontSize;
+    const axis = linearAxis([ranges[i].min, ranges[i].max], undefined, scales[i]);
+    paintRows(pen, field, axis, look, onLeft ? undefined : edge);
+    pen.font = fontFor(fontSize, 1, 600);
+    if (options.isTitled) {
+      pen.fillStyle = CANVAS[look.scheme].text;
+      const names = traces.filter((trace) => trace.unit === unit).map(({ name }) => name);
+      pen.save();
+      pen.translate(
+        onLeft ? left - (TITLED_AXIS - 0.6) * fontSize : edge + (TITLED_AXIS - 0.9) * fontSize,
+        (top + bottom) / 2,
+      );
+      pen.rotate(-Math.PI / 2);
+      pen.textAlign = "center";
+      pen.fillText(axisTitle(names, scales[i]), 0, 0, bottom - top);
+      pen.restore();
+    } else {
+      pen.fillStyle = CANVAS[look.scheme].muted;
+      pen.textAlign = onLeft ? "right" : "left";
+      pen.fillText(scales[i].unit, onLeft ? left - 6 : edge + 6, top - fontSize * 0.85 - 4);
+    }
+  });
+  within(pen, field, () => {
+    traces.forEach(({ unit }, i) => {
+      if (units.includes(unit) && shown.envelopes[i]) options.trace(i);
+    });
+  });
+  paintFrame(pen, field, look);
+}
+
+const words = (name: string) => name.replaceAll(/[._]/g, " ");
+
+/** What an axis shows: the quantities on it, and their unit. */
+export function axisTitle(names: readonly string[], scale: UnitScale): string {
+  const quantities = [...new Set(names.map((name) => words(name.split(".").slice(1).join(" ") || name)))];
+  const said = quantities.length > 3 ? `${quantities.slice(0, 3).join(", ")}, …` : quantities.join(", ");
+  return scale.unit ? `${said}, ${scale.unit}` : said;
+}
+
+/** A scope as a picture. */
+export function scopePicture(shown: ScopeShown, title: string, stem: string): Picture {
+  const { traces, envelopes, bands, units, ranges, times, span, dtMs, origin, isTriggered, marks } = shown;
+  const fieldOf = ({ width, height }: Box, fontSize: number): Field => ({
+    left: TITLED_AXIS * fontSize,
+    right: width - Math.max(4, (units.length - 1) * TITLED_AXIS * fontSize),
+    top: 0,
+    bottom: height - FEET_PX,
+  });
+  const time: EventAxis = {
+    span,
+    dtMs,
+    origin,
+    isTriggered,
+    marks,
+    field: (box, { fontSize }) => fieldOf(box, fontSize),
+  };
+  return {
+    stem,
+    title,
+    legend: traces.flatMap(({ name, unit, slot, dash }, i) => {
+      const said = bands.includes(i) ? `${words(name)}, envelope` : words(name);
+      return units.includes(unit) ? [{ name: said, colour: TRACE_COLOURS.light[slot], dashes: DASHES[dash] }] : [];
+    }),
+    height: 350,
+    time,
+    paint(pen, box, look) {
+      const field = fieldOf(box, look.fontSize);
+      const trace = (index: number) => {
+        const { unit, slot, dash } = traces[index];
+        const { min, max } = ranges[units.indexOf(unit)];
+        const start = (span.start - origin) * dtMs;
+        const ms = placeOn({ range: [start, start + (span.end - span.start) * dtMs] }, field.left, field.right);
+        const y = placeOn({ range: [min, max] }, field.bottom, field.top);
+        const stroke = { colour: TRACE_COLOURS[look.scheme][slot], width: 1.8, dashes: DASHES[dash] };
+        strokeEnvelope(pen, { x: (column) => ms(times[column]), y }, envelopes[index], stroke);
+      };
+      paintScope(pen, field, shown, look, { trace, isTitled: true });
+    },
+  };
+}

@@ -1,0 +1,88 @@
+import { formatShort } from "../ui/format";
+import { DASHES, type Scheme, TRACE_COLOURS } from "../ui/palette";
+import { linearAxis, type Plot, paintAxes, type Range } from "./axes";
+import type { LegendEntry } from "./legend";
+import type { Box, Look, Pen } from "./pen";
+import { paintLine, paintPoints, within } from "./traces";
+
+export interface ChartLine {
+  name: string;
+  x: readonly number[];
+  y: readonly number[];
+  /** Half the length of the bar at each point. */
+  spread?: readonly number[];
+  isStepped?: boolean;
+}
+
+export interface LinesShown {
+  xLabel: string;
+  yLabel: string;
+  lines: readonly ChartLine[];
+  xRange?: Range;
+  yRange?: Range;
+}
+
+const colourOf = (i: number, scheme: Scheme) => TRACE_COLOURS[scheme][1 + (i % (TRACE_COLOURS[scheme].length - 1))];
+const dashesOf = (i: number) => DASHES[i % DASHES.length];
+
+/** Names of lines, where there are several to tell apart. */
+export const lineEntries = (lines: readonly ChartLine[], scheme: Scheme): LegendEntry[] =>
+  lines.length > 1 ? lines.map(({ name }, i) => ({ name, colour: colourOf(i, scheme), dashes: dashesOf(i) })) : [];
+
+/** Lines over two titled axes. */
+export function paintLines(
+  pen: Pen,
+  box: Box,
+  { xLabel, yLabel, lines, xRange, yRange }: LinesShown,
+  look: Look,
+): Plot {
+  const across = xRange ?? spanOf(lines.flatMap((line) => line.x));
+  const up =
+    yRange ??
+    spanOf(lines.flatMap(({ y, spread }) => y.flatMap((v, i) => [v - (spread?.[i] ?? 0), v + (spread?.[i] ?? 0)])));
+  const plot = paintAxes(pen, box, linearAxis(across, xLabel), linearAxis(up, yLabel), look);
+  const { left, right, top, bottom } = plot.field;
+  // a line along an edge of the field keeps its width
+  within(pen, { left: left - 3, right: right + 3, top: top - 3, bottom: bottom + 3 }, () =>
+    lines.forEach(({ x, y, spread, isStepped }, i) => {
+      const colour = colourOf(i, look.scheme);
+      paintLine(pen, plot, x, y, { colour, dashes: dashesOf(i) }, isStepped);
+      if (spread || x.length === 1) paintPoints(pen, plot, x, y, colour, spread);
+    }),
+  );
+  return plot;
+}
+
+/** A range with some air around the values. */
+function spanOf(values: readonly number[]): Range {
+  const finite = values.filter(Number.isFinite);
+  if (finite.length === 0) return [0, 1];
+  const low = finite.reduce((a, b) => Math.min(a, b));
+  const high = finite.reduce((a, b) => Math.max(a, b));
+  if (high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high))) {
+    const air = 0.5 * Math.abs(high) || 0.5;
+    return [low - air, high + air];
+  }
+  return [low - 0.04 * (high - low), high + 0.04 * (high - low)];
+}
+
+const REACH_PX = 40;
+
+/** What the point nearest to a place says, px. */
+export function nearestPoint(
+  lines: readonly ChartLine[],
+  plot: Plot,
+  at: { x: number; y: number },
+): string | undefined {
+  let best = REACH_PX;
+  let found: string | undefined;
+  for (const line of lines)
+    line.x.forEach((x, i) => {
+      const far = Math.hypot(plot.x(x) - at.x, plot.y(line.y[i]) - at.y);
+      if (!(far < best)) return;
+      best = far;
+      const spread = line.spread?.[i] ? ` ± ${formatShort(line.spread[i], "", 3)}` : "";
+      found = `${line.name ? `${line.name}: ` : ""}${formatShort(x, "")}, ${formatShort(line.y[i], "")}${spread}`;
+    });
+  return found;
+}
