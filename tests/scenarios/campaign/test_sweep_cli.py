@@ -79,7 +79,7 @@ def test_a_campaign_leaves_report_and_tables(sweep: Any, tmp_path: Path) -> None
     again = sweep()
     assert again.exit_code == 2 and "--resume" in again.stderr and len(again.stderr.strip().splitlines()) == 1
     assert sweep("--resume", "--workers", "1").exit_code == 0 and made(folder) == before
-    (tmp_path / "mine.toml").write_text(CAMPAIGN.replace("count = 3", "count = 4"))
+    (tmp_path / "mine.toml").write_text(CAMPAIGN.replace("5:7", "5:8"))
     assert "16 of 16 runs" in sweep("--resume", "--workers", "1").stdout
     assert before.items() <= made(folder).items() and len(made(folder)) == 16
 
