@@ -5,7 +5,8 @@ change that is not meant to change a bit changes none. When physics changes on p
 digests``, look at which ones the diff names, and say in CHANGELOG.md why each of them changed. ``make digests
 ARGS=--draw`` also draws other benches.
 
-The digests must not depend on the machine: see `SAME_EVERYWHERE`.
+Runs do not depend on the machine: a test computes them again with `OLDER` libraries. Studies, whose figures numpy and
+scipy compute, do: see `SAME_EVERYWHERE`.
 """
 
 from __future__ import annotations
@@ -36,6 +37,13 @@ SAME_EVERYWHERE = {
     "NPY_DISABLE_CPU_FEATURES": "AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR",
 }
 """numpy and scipy choose their routines by the processor; told this, every processor since 2013 gives the same bits."""
+
+OLDER = {
+    "OPENBLAS_CORETYPE": "NEHALEM",
+    "NPY_DISABLE_CPU_FEATURES": SAME_EVERYWHERE["NPY_DISABLE_CPU_FEATURES"] + " AVX2 FMA3",
+    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-FMA4",
+}
+"""Told this, the libraries behave as on a processor of 2008, without fused products."""
 
 BENCHES = 50
 TICKS = 600
@@ -135,32 +143,31 @@ def kept() -> dict[str, Any]:
     return found
 
 
-def computed(benches: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return what the file should hold, computed anew."""
+def computed(benches: list[dict[str, Any]], *, studies: bool) -> dict[str, Any]:
+    """Return what the file should hold, computed anew, with or without the studies."""
+    chosen = [scenario for scenario in library() if studies or scenario.study is None]
     return {
-        "library": {scenario.id: run(scenario).digest for scenario in library()},
+        "library": {scenario.id: run(scenario).digest for scenario in chosen},
         "benches": [{"scenario": one, "digest": run(Scenario.load(one)).digest} for one in benches],
     }
 
 
-def apart(*arguments: str) -> str:
-    """Run this file in a process whose arithmetic is that of every machine; return what it prints."""
+def apart(*arguments: str, machine: dict[str, str] = SAME_EVERYWHERE) -> str:
+    """Run this file in a process whose libraries are told what machine they are on; return what it prints."""
     command = [sys.executable, "-W", "ignore", "-m", "tests.scenarios.digests", *arguments]
-    told = subprocess.run(
-        command, cwd=ROOT, env=os.environ | SAME_EVERYWHERE, capture_output=True, text=True, check=False
-    )
+    told = subprocess.run(command, cwd=ROOT, env=os.environ | machine, capture_output=True, text=True, check=False)
     assert told.returncode == 0, told.stderr
     return told.stdout
 
 
 def main() -> None:
-    """Print what the file should hold; ``--renew`` writes it, ``--draw`` with other benches."""
+    """Print what the file should hold, ``--runs`` without studies; ``--renew`` writes it, ``--draw`` other benches."""
     draw, renew = "--draw" in sys.argv, "--renew" in sys.argv
     if renew:
         FILE.write_text(apart(*(["--draw"] if draw else [])))
         return
     benches = [draw_bench(n) for n in range(BENCHES)] if draw else [one["scenario"] for one in kept()["benches"]]
-    print(json.dumps(computed(benches), indent=1))
+    print(json.dumps(computed(benches, studies="--runs" not in sys.argv), indent=1))
 
 
 if __name__ == "__main__":

@@ -24,6 +24,14 @@ def test_every_run_gives_the_bits_it_gave() -> None:
     assert changed == []
 
 
+@pytest.mark.timeout(600)
+def test_runs_do_not_depend_on_the_libraries_of_the_machine() -> None:
+    kept, now = digests.kept(), json.loads(digests.apart("--runs", machine=digests.OLDER))
+    assert len(now["library"]) > 50
+    assert {name for name, digest in now["library"].items() if kept["library"][name] != digest} == set()
+    assert [one["digest"] for one in now["benches"]] == [one["digest"] for one in kept["benches"]]
+
+
 def test_the_benches_are_worth_it() -> None:
     """Every controller, plant of a comb, fault and most diagnosers are on one of them; some have twins, some trip."""
     benches = [one["scenario"] for one in digests.kept()["benches"]]

@@ -40,7 +40,11 @@ def test_a_run_is_kept_in_five_files(tmp_path: Path) -> None:
     text = stem.with_suffix(".html").read_text()
     assert "Seven &lt;b&gt;steps" in text and "<b>steps" not in text
     assert not re.search(r"(src|href)=\"|url\(|@import|<script|<link", text)
-    assert summary["digest"] in text and "the transition from one step to the next is quick" in text and "inject added_mass +0.05" in text
+    assert (
+        summary["digest"] in text
+        and "the transition from one step to the next is quick" in text
+        and "inject added_mass +0.05" in text
+    )
     drawings = [ElementTree.fromstring(one) for one in re.findall(r"<svg .*?</svg>", text)]
     names = [one.attrib["aria-label"] for one in drawings]
     assert {"Displacement", "Voltage", "Diagnoser kalman"} <= set(names)
