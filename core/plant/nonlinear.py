@@ -170,5 +170,7 @@ def acceleration(
     p: Nonlinear.Packed, m: float, b: float, k: float, cubic: float, x: float, v: float, force: float
 ) -> float:
     """Return the acceleration at one point, um/ms^2."""
-    total = force - b * v - k * x - cubic * x * x * x - p.smoothed_friction * tanh(v / p.slip_velocity_um_ms)
+    total = force - b * v - k * x - cubic * x * x * x
+    if p.smoothed_friction != 0.0:  # most plants have none, and it takes longer than all the rest
+        total -= p.smoothed_friction * tanh(v / p.slip_velocity_um_ms)
     return float((total + wall(p.stop_um, p.stop_stiffness_n_m, p.stop_damping, x, v)) / m)
