@@ -15,9 +15,9 @@ async function pick(page: Page): Promise<void> {
   await expect(lanes.locator("dd").first()).toHaveText("healthy");
   const clock = page.getByRole("timer").locator("small");
   await expect.poll(async () => Number((await clock.innerText()).replaceAll(/\D/g, ""))).toBeGreaterThan(500);
-  const box = await lanes.locator("canvas").boundingBox();
-  if (!box) throw new Error("the lanes are not drawn");
-  await page.mouse.click(box.x + box.width - 88, box.y + 20);
+  const field = await lanes.locator("canvas ~ div").last().boundingBox(); // without the names and figures beside it
+  if (!field) throw new Error("the lanes are not drawn");
+  await page.mouse.click(field.x + field.width - 14, field.y + 20);
 }
 
 /** Lanes and Why are both in sight, and neither lies over the other. */

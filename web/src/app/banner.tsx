@@ -22,6 +22,8 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const tips = useHints();
   const lost = useLasting(connection.phase === "waiting" && !connection.reason?.quiet, BLINK_MS);
+  // a page that is busy itself hears late, and a line that comes and goes moves all panels
+  const silent = useLasting(connection.staleSince !== undefined, BLINK_MS);
 
   if (connection.phase === "closed" && connection.reason)
     return (
@@ -43,7 +45,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         </Button>
       </Line>
     );
-  if (connection.staleSince && connection.phase === "open")
+  if (silent && connection.staleSince && connection.phase === "open")
     return (
       <Line
         tone="warn"

@@ -135,9 +135,9 @@ export const BUILT_IN: Layouts = {
     size(api, width, height, {
       schematic: { w: Math.max(0.225, LOOP_PX.width / width), h: Math.max(0.32, LOOP_PX.height / height) },
       ...(wide ? { view3d: { w: 0.25, h: 0.4 } } : {}),
-      motion: { h: 0.31 },
-      voltage: { h: 0.27 },
-      lanes: { h: 0.42 },
+      motion: { h: 0.3 },
+      voltage: { h: 0.285 },
+      lanes: { h: 0.415 },
     });
   },
 };
