@@ -48,8 +48,10 @@ const PLACES: readonly [number, (card: GalleryCard) => string][] = [
 
 /** How well a card fits a word: the best place it stands in, twice as well at the start of a word; 0 if nowhere. */
 function weightOf(card: GalleryCard, word: string): number {
-  const start = new RegExp(`(?:^|[\\s(-])${word.replaceAll(/[\\^$.*+?()[\]{}|]/g, "\\$&")}`);
   const isNumber = /^\d+$/.test(word); // which is no part of another number
+  const start = new RegExp(
+    `(?:^|[\\s(-])${word.replaceAll(/[\\^$.*+?()[\]{}|]/g, "\\$&")}${isNumber ? "(?![\\d.]*\\d)" : ""}`,
+  );
   let best = 0;
   for (const [weight, of] of PLACES) {
     const text = of(card).toLowerCase();
