@@ -72,10 +72,11 @@ class Counted(float):
     __rmul__ = __mul__
 
 
-COUNTED = [
+EXPONENTIAL, *OTHERS = (
     getattr(function, "py_func", function)
-    for function in (elementary.exp, elementary.log, elementary.sin, elementary.cos, elementary.atan2, math.sqrt)
-]
+    for function in (elementary.exp, elementary.log, elementary.sin, elementary.cos, elementary.atan2)
+)
+COUNTED = (EXPONENTIAL, *OTHERS, math.sqrt)
 """Functions that are counted; of others, as of rounding, it is not known what they cost."""
 
 
@@ -111,7 +112,7 @@ def plain_step(block: type[Block], tally: Tally) -> Any:
         if name == "flush_tiny":
             return lambda number: number
         if name == "shrunk":  # an exponential, though it is left out where it would be nothing
-            return counted(elementary.exp, tally)
+            return counted(EXPONENTIAL, tally)
         return counted(value, tally)
 
     # a conversion to float would lose the count

@@ -86,12 +86,8 @@ class Consistency(KalmanBank):
         consistent: Vector = tap("1", "1 while the hypothesis is consistent with the window", each="hypotheses")
         power: Vector = tap("1", "power of the normalised residuals over the window", each="hypotheses")
         tone: Vector = tap("1", "part of the normalised residuals at the tone, 2 on average", each="hypotheses")
-        cosine: Vector = tap(
-            "1", "that part by the cosine of the tone, 1 at the limit of the test", each="hypotheses"
-        )
-        sine: Vector = tap(
-            "1", "that part by the sine of the tone, 1 at the limit of the test", each="hypotheses"
-        )
+        cosine: Vector = tap("1", "that part by the cosine of the tone, 1 at the limit of the test", each="hypotheses")
+        sine: Vector = tap("1", "that part by the sine of the tone, 1 at the limit of the test", each="hypotheses")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

@@ -92,7 +92,9 @@ def sweep_sine(
     held = not copy.spec.is_analogue
 
     def measure(frequencies: FloatArray) -> list[Tone]:
-        ticks = (len(frequencies) * settle * decay_ms + cycles * float(np.sum(1e3 / frequencies))) / copy.dt_ms
+        with np.errstate(over="ignore"):  # endless periods are refused as too long
+            periods = float(np.sum(1e3 / frequencies))
+        ticks = (len(frequencies) * settle * decay_ms + cycles * periods) / copy.dt_ms
         if most_ticks is not None and ticks > most_ticks:
             hint = "fewer points or cycles, less settling, or a device that rings for a shorter time"
             raise InputError(f"would take {ticks:.3g} ticks, at most {most_ticks:.3g}", "study", hint)
