@@ -17,7 +17,7 @@ test("what is known to be weak stands beside the block, on its card and where it
   expect(beam.length).toBeGreaterThan(0);
 
   await openBench("lab", { "device.id": "lcr-350", "plant.model": "planar", "sensor.kind": "single_beam" });
-  await page.getByRole("button", { name: /Sensor ?Single beam/ }).click();
+  await page.getByRole("button", { name: /Recovery unit ?Single beam/ }).click();
   const card = page.getByRole("region", { name: "Block: Single beam, several hypotheses" });
   await expect(card.getByRole("note")).toHaveText(beam.map((text) => `Known weakness ${text}`));
 
