@@ -45,7 +45,7 @@ load: setup  ## Many watchers of one bench for 20 s: frame rate, latency, board 
 	@.venv/bin/python scripts/load.py $(ARGS)
 
 page-speed: setup  ## How often eight scopes are drawn, what a frame costs, how soon a click acts, the heap over 30 min
-	@scripts/npm --prefix web exec -- playwright test -c measure.config.ts $(ARGS)
+	@cd web && ../scripts/npm exec -- playwright test -c measure.config.ts $(ARGS)
 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
 	@.venv/bin/python scripts/load.py --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
