@@ -39,6 +39,17 @@ def keep_on(shelf: Shelf) -> None:
     _shelves[:] = [shelf]
 
 
+def get(name: str) -> bytes | None:
+    """Return a kernel from the shelf, if there is one and the kernel is on it."""
+    return next((code for shelf in _shelves if (code := shelf.get(name)) is not None), None)
+
+
+def put(name: str, code: bytes) -> None:
+    """Keep a kernel on the shelf, if there is one."""
+    for shelf in _shelves:
+        shelf.put(name, code)
+
+
 class KernelCache:
     """Compiled code of one kernel; numba asks here before it compiles, and tells what it has compiled."""
 
@@ -51,21 +62,17 @@ class KernelCache:
     def load_overload(self, signature: Any, target: Any) -> Any:
         """Return the code compiled for a signature, or nothing."""
         target.refresh()
-        for shelf in _shelves:
-            code = shelf.get(self._name(signature, target))
-            if code is not None:
-                try:
-                    return CompileResult._rebuild(target, *pickle.loads(code))
-                except (EOFError, pickle.UnpicklingError, ValueError, TypeError, AttributeError):
-                    return None  # another version wrote it, or half of it is lost: compile again
-        return None
+        code = get(self._name(signature, target))
+        try:
+            return CompileResult._rebuild(target, *pickle.loads(code)) if code is not None else None
+        except (EOFError, pickle.UnpicklingError, ValueError, TypeError, AttributeError):
+            return None  # another version wrote it, or half of it is lost: compile again
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep the code compiled for a signature."""
         KernelCache.compiled += 1
         if not result.library.has_dynamic_globals:
-            for shelf in _shelves:
-                shelf.put(self._name(signature, result.target_context), serialize.dumps(result._reduce()))
+            put(self._name(signature, result.target_context), serialize.dumps(result._reduce()))
 
     def _name(self, signature: Any, target: Any) -> str:
         parts = (key(self._function), self._layouts, signature, target.codegen().magic_tuple())

@@ -10,13 +10,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from inspect import get_annotations
-from typing import Any, ClassVar, Generic, Self, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 """Several numbers under one name, ``s.x1[i]``."""
+
+Choice = Annotated[float, "choice"]
+"""A number that says how a step runs, such as a count, an interval or a form.
+
+Boards side by side share it, so that a branch on it is a branch for all of them and a loop has one length.
+"""
 
 BLANK_BITS = 0x7FF8_B1A2_4B1A_24B1
 BLANK = np.uint64(BLANK_BITS)
@@ -41,6 +47,8 @@ class Field:
         Of the record, or of each of several.
     tail : bool
         Whether it stands behind the fixed fields.
+    is_choice : bool
+        Whether boards side by side share it.
     """
 
     name: str
@@ -49,6 +57,7 @@ class Field:
     count: int = 0
     inner: Layout | None = None
     tail: bool = False
+    is_choice: bool = False
 
 
 @dataclass(frozen=True)
@@ -125,7 +134,7 @@ class Record:
     def __init_subclass__(cls) -> None:
         """Lay the fields out: those of the bases first, then its own."""
         declared = {name: many for base in cls.__bases__ for name, many in getattr(base, "_declared", {}).items()}
-        hints = get_type_hints(cls)
+        hints = get_type_hints(cls, include_extras=True)
         for name in get_annotations(cls):
             declared[name] = (hints[name], cls.__dict__.get(name))
         cls._declared = declared
@@ -196,8 +205,8 @@ def _laid_out(owner: str, declared: dict[str, tuple[Any, Any]]) -> Layout:
         inner = record.layout if record else None
         count = many.count if isinstance(many, _Many) else -1
         if count < 0:
-            if hint is float:
-                fields.append(Field(name, SCALAR, at))
+            if hint in (float, Choice):
+                fields.append(Field(name, SCALAR, at, is_choice=hint is not float))
                 at += 1
             elif inner is not None and get_origin(hint) is None and not inner.tails:
                 fields.append(Field(name, RECORD, at, 1, inner))

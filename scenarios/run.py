@@ -14,10 +14,11 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
+from core.board.idle import leave_out_idle
 from core.board.observer import cautions
 from core.board.parse import changed
 from core.errors import InputError
-from core.signals import Signal, SignalTable
+from core.signals import Signal
 from scenarios.expectation import overall
 from scenarios.measure import rate
 from scenarios.measure.metrics import device_metrics, measure
@@ -37,7 +38,7 @@ TRACED_FIGURES = (
 
 @dataclass
 class Result:
-    """The result of a run."""
+    """The result of a run; ``names`` are those of the columns of ``outputs``."""
 
     scenario: Scenario
     seed: int
@@ -46,6 +47,7 @@ class Result:
     elapsed_s: float
     metrics: dict[str, float]
     warnings: list[str]
+    names: list[str]
     outputs: FloatArray
     taps: FloatArray | None = field(default=None, repr=False)
 
@@ -57,7 +59,8 @@ class Result:
     @property
     def kept(self) -> list[Signal]:
         """Signals whose traces were kept: the outputs, and the taps if the caller asked for them."""
-        return [signal for signal in self.board.signals if signal.kind == "output" or self.taps is not None]
+        kept = set(self.names)
+        return [s for s in self.board.signals if s.name in kept or (s.kind == "tap" and self.taps is not None)]
 
     def signal(self, name: str) -> FloatArray:
         """Return the trace of one signal.
@@ -65,14 +68,14 @@ class Result:
         Raises
         ------
         InputError
-            When there is no such signal, or it is a tap and taps were not kept.
+            When there is no such signal, or it was not kept.
         """
         column = self.board.signals.index(name)
-        if column < self.outputs.shape[1]:
-            return self.outputs[:, column]
-        if self.taps is None:
-            raise InputError("is a tap, and taps were not kept", name)
-        return self.taps[:, column - self.outputs.shape[1]]
+        if name in self.names:
+            return self.outputs[:, self.names.index(name)]
+        if self.taps is None or column < self.board.signals.outputs:
+            raise InputError("was not kept", name)
+        return self.taps[:, column - self.board.signals.outputs]
 
     def expectations(self) -> list[dict[str, Any]]:
         """Return each expectation with the measured figure."""
@@ -168,10 +171,10 @@ WORKER_BYTES, WORKING_COLUMNS = 400_000_000, 16
 """Memory beside the trace: the process itself, a piece of the trace being written, and the columns worked on."""
 
 
-def run_bytes(board: Board, samples: int, *, taps: bool) -> int:
+def run_bytes(board: Board, samples: int, *, taps: bool = False, figures_only: bool = False) -> int:
     """Return the most memory the process of a run takes."""
     columns = len(board.signals) if taps else board.signals.outputs
-    return WORKER_BYTES + 8 * samples * (columns + WORKING_COLUMNS)
+    return WORKER_BYTES + 8 * samples * ((len(watched(board)) if figures_only else columns) + WORKING_COLUMNS)
 
 
 def run(
@@ -179,6 +182,7 @@ def run(
     seed: int | None = None,
     *,
     taps: bool = False,
+    figures_only: bool = False,
     compiled: bool = True,
     on_tick: Callable[[int], None] | None = None,
 ) -> Result:
@@ -192,6 +196,8 @@ def run(
         Instead of the scenario's own.
     taps : bool
         Keep the inner signals as well.
+    figures_only : bool
+        Keep only the outputs that figures are made of, and leave out what nobody reads then.
     compiled : bool
         Run compiled blocks.
     on_tick : callable, optional
@@ -201,25 +207,32 @@ def run(
     if scenario.study is not None:
         return _run_study(scenario, board)
     samples = scenario.samples or DEFAULT_SAMPLES
-    outputs = np.empty((samples, board.signals.outputs))
+    names = board.signals.names[: board.signals.outputs]
+    if figures_only:
+        names = watched(board)
+        if not isinstance(board, Ensemble):  # what one of its boards does not need, another may
+            leave_out_idle(board)
+    columns = np.array([board.signals.index(name) for name in names], dtype=np.int64)
+    outputs = np.empty((samples, len(names)))
     kept = np.empty((samples, len(board.signals) - board.signals.outputs)) if taps else None
     began = time.perf_counter()
     while board.tick < samples:
         rows = board.advance(samples - board.tick)
         if rows.count == 0:
             break  # tripped, and no waiting command would reset it
-        outputs[rows.first_tick : board.tick] = rows.outputs
+        outputs[rows.first_tick : board.tick] = rows.outputs[:, columns] if figures_only else rows.outputs
         if kept is not None:
             kept[rows.first_tick : board.tick] = rows.taps
         if on_tick is not None:
             on_tick(board.tick)
     elapsed = time.perf_counter() - began
     outputs = outputs[: board.tick]
-    metrics = _figures(board, outputs, scenario)
+    trace = dict(zip(names, outputs.T, strict=True))
+    metrics = figures(board, trace, scenario)
     if isinstance(board, Ensemble):
         for name, twin in board.twins.items():
-            figures = _figures(twin, outputs, scenario, board.signals, f"{name}:")
-            metrics |= {f"twins.{name}.{metric}": value for metric, value in figures.items()}
+            own = figures(twin, trace, scenario, f"{name}:")
+            metrics |= {f"twins.{name}.{metric}": value for metric, value in own.items()}
     return Result(
         scenario,
         board.spec.seed,
@@ -229,28 +242,40 @@ def run(
         metrics,
         # a warning that came and went is listed once
         list(dict.fromkeys(entry.text for entry in board.log if entry.kind == "warning")),
+        names,
         outputs,
         kept[: board.tick] if kept is not None else None,
     )
 
 
-def _figures(
-    board: Board, outputs: FloatArray, scenario: Scenario, signals: SignalTable | None = None, prefix: str = ""
-) -> dict[str, float]:
-    """Return the figures of a board from the trace, or those of a twin from the trace of all boards."""
-    table = signals or board.signals
-    names = figure_signals(board, table, prefix)
-    trace = {name: outputs[: board.tick, table.index(prefix + name)] for name in names}
-    return measure(board, trace, scenario.head.metrics)
+def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, prefix: str = "") -> dict[str, float]:
+    """Return the figures of a board from its trace, or those of a twin from the trace of all boards."""
+    names = [name for name in figure_signals(board) if prefix + name in trace]
+    # numpy adds neighbours in another order than numbers that lie apart
+    own = {name: np.ascontiguousarray(trace[prefix + name][: board.tick]) for name in names}
+    return measure(board, own, scenario.head.metrics)
 
 
-def figure_signals(board: Board, table: SignalTable, prefix: str = "") -> list[str]:
-    """Return the signals of a board that its figures are made of, as far as they are in a table of signals."""
+def watched(board: Board) -> list[str]:
+    """Return the outputs that the figures of a run are made of, those of twins with their prefix."""
+    wanted = {*figure_signals(board), *evidence_signals(board)}
+    if isinstance(board, Ensemble):
+        for name, twin in board.twins.items():
+            wanted |= {f"{name}:{signal}" for signal in figure_signals(twin)}
+    return [signal.name for signal in board.signals if signal.kind == "output" and signal.name in wanted]
+
+
+def evidence_signals(board: Board) -> list[str]:
+    """Return the probabilities of all diagnosers that choose between hypotheses."""
+    return [f"{name}.probability.{hypothesis}" for name, s in board.scores().items() for hypothesis in s.names]
+
+
+def figure_signals(board: Board) -> list[str]:
+    """Return the signals that the figures of a board are made of."""
     moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
     names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]
-    known = set(table.names)
-    return [name for name in names if prefix + name in known]
+    return [name for name in names if name in board.signals]
 
 
 def _run_study(scenario: Scenario, board: Board) -> Result:
@@ -265,4 +290,5 @@ def _run_study(scenario: Scenario, board: Board) -> Result:
     figures = np.array([metrics[name] for name in sorted(metrics)])
     digest = hashlib.sha256(figures.tobytes()).hexdigest()
     told = [*scenario.warnings, *cautions(board.spec)]
-    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, *nothing)
+    names = board.signals.names[: board.signals.outputs]
+    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, names, *nothing)

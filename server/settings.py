@@ -57,7 +57,9 @@ class Settings(BaseSettings):
     max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
     max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
     max_run_mb: int = Field(
-        1000, ge=1, description="Memory of the process of a headless run; where taps have no room, outputs only."
+        1000,
+        ge=1,
+        description="Memory of the process of a run; it keeps taps and outputs as far as they have room.",
     )
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")

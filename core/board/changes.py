@@ -14,7 +14,6 @@ from core.board.commands import Command, Heal, Inject, Set, Switch, Trip
 from core.board.difference import change
 from core.board.document import CHOSEN, as_written
 from core.board.fitting import misfit
-from core.board.log import LogEntry
 from core.board.parse import changed
 from core.board.spec import Section, Spec
 from core.board.wiring import Wiring, command_of, engage, wire
@@ -40,7 +39,7 @@ class Board(Protocol):
     def link(self) -> None:
         """Take over a wiring that has changed."""
 
-    def note(self, actor: str, kind: str, text: str) -> LogEntry:
+    def note(self, actor: str, kind: str, text: str) -> object:
         """Write an entry of the log."""
 
 

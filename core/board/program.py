@@ -51,7 +51,7 @@ def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io
     return types.void(types.int64, types.int64, types.int64, types.int64, types.int64), generate
 
 
-_call: Callable[[Any, Any, Any, Any, Any], None] = intrinsic(_generate_call)  # type: ignore[assignment]
+call: Callable[[Any, Any, Any, Any, Any], None] = intrinsic(_generate_call)  # type: ignore[assignment]
 """Call the C function at an address with four pointers given as integers."""
 
 
@@ -88,7 +88,7 @@ def run(
             every = table[b, EVERY]
             # a division costs more than most blocks, and most run at every tick
             if every == 1 or tick % every == 0:
-                _call(
+                call(
                     int(table[b, ADDRESS]),
                     p_address + 8 * table[b, P_OFFSET],
                     s_address + 8 * table[b, S_OFFSET],

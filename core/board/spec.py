@@ -151,6 +151,14 @@ class Spec:
             sensors={name: section.params for name, section in self.sensors.items()},
         )
 
+    def with_seed(self, seed: int) -> Spec:
+        """Return this bench with other noise; it goes on with all that was worked out of this one."""
+        spec = object.__new__(Spec)
+        contexts = {place: replace(context, seed=seed) for place, context in self._contexts.items()}
+        frame = self.frame.model_copy(update={"seed": seed})
+        vars(spec).update(vars(self), frame=frame, document={**self.document, "seed": seed}, _contexts=contexts)
+        return spec
+
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:
         """Return this bench with other faults; it goes on with all that was worked out of this one."""
         spec = object.__new__(Spec)

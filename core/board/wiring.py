@@ -47,6 +47,8 @@ class Wiring:
     """Row by row, whether its parameters leave it nothing to do, as those of a fault of no severity."""
     tap_rows: IntArray
     """The row that every tap comes from."""
+    left_out: set[int] = field(default_factory=set)
+    """Rows that never run, because nobody watches them."""
     resting: set[int] = field(default_factory=set)
     is_changed: bool = True
     """Whether other rows may have to run than before, or at other ticks."""
@@ -69,13 +71,13 @@ class Wiring:
         return self._part(self.s, self.rows[key], program.S_OFFSET)
 
     def parameters(self, key: str) -> Any:
-        """Return what the step of an instance reads, a record."""
+        """Return what the step of an instance reads, a record; of a board among others a copy."""
         row = self.rows[key]
-        return self.instances[row].block.Packed(self.packed(row))
+        return self.instances[row].block.Packed(np.ascontiguousarray(self.packed(row)))
 
     def state(self, key: str) -> Any:
-        """Return the state of an instance, a record."""
-        return self.instances[self.rows[key]].block.State(self.state_of(key))
+        """Return the state of an instance, a record; of a board among others a copy."""
+        return self.instances[self.rows[key]].block.State(np.ascontiguousarray(self.state_of(key)))
 
     def ports(self, row: int) -> IntArray:
         """Return the places of the ports of a row, a view."""
@@ -94,7 +96,8 @@ class Wiring:
     def rest(self, spec: Spec) -> list[int]:
         """Return the rows that run; make those that rest as new, and their signals 0."""
         self.is_changed = False
-        running = [row for row in range(len(self.instances)) if not (self.unread[row] or self.absent[row])]
+        rows = [row for row in range(len(self.instances)) if row not in self.left_out]
+        running = [row for row in rows if not (self.unread[row] or self.absent[row])]
         if len(running) + len(self.resting) != len(self.instances) or not self.resting.isdisjoint(running):
             self._put_to_rest(spec, set(range(len(self.instances))) - {*running} - self.resting)
             self.resting = set(range(len(self.instances))) - {*running}

@@ -35,7 +35,7 @@ from core.estimation import (
 )
 from core.kernel import flush_tiny
 from core.ports import tap
-from core.record import Record, Vector, vector
+from core.record import Choice, Record, Vector, vector
 from core.voltage import Motion, moves
 
 PARAMETERS = ("gain", "a1", "a2")
@@ -107,7 +107,7 @@ class IndirectMrac(Block):
         trace_limit: float
         low: float
         high: float
-        printed: float
+        printed: Choice
 
     class State(Record):
         """Estimate, covariance, the regressor, scratch numbers, filters, the last measurement, whether it has run."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, parameter
@@ -56,7 +57,7 @@ def read(p: ReadOut, s: Filtered, x: ReadPorts) -> None:
     if p.corrected != 0.0:
         force_cosine += p.sense.damper * s.in_step
         force_sine -= p.sense.damper * s.with_velocity
-    swing = (s.in_step * s.in_step + s.with_velocity * s.with_velocity) ** 0.5
+    swing = math.sqrt(s.in_step * s.in_step + s.with_velocity * s.with_velocity)
     x.swing = PM_PER_UM * swing
     if x.amplitude > 1e-6:
         x.rate = -p.sense.dps * force_cosine / x.amplitude

@@ -11,7 +11,7 @@ from core.control.velocity import PackedVelocity, Source, VelocityState, velocit
 from core.elementary import exp
 from core.kernel import flush_tiny, kernel
 from core.ports import tap
-from core.record import Record
+from core.record import Choice, Record
 
 FADING = 1000.0
 """Time over which the peak of the needed layer fades, in 1/w0."""
@@ -79,7 +79,7 @@ class SlidingPacked(SwitchingPacked):
 
     share: float
     equivalent: float
-    printed: float
+    printed: Choice
 
 
 class SwitchingState(Record):

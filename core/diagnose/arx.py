@@ -22,7 +22,7 @@ from core.elementary import log
 from core.estimation import diagonal, triangle
 from core.kernel import flush_tiny, kernel
 from core.ports import output, tap
-from core.record import Record, Vector, vector
+from core.record import Choice, Record, Vector, vector
 from core.voltage import Gathered, Interval, ObservedPorts, gather, interval_of, weighed_voltages
 
 SIZE = 4
@@ -152,8 +152,8 @@ class ArxBank(Bank):
         Each hypothesis has four coefficients, the variance of the equation error, and half its logarithm.
         """
 
-        count: float
-        every: float
+        count: Choice
+        every: Choice
         filter_a1: float
         filter_a2: float
         memory: float

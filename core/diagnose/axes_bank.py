@@ -16,7 +16,7 @@ from core.diagnose.weights import floored, take_floored_softmax, winner_of
 from core.elementary import exp, log
 from core.kernel import flush_tiny
 from core.ports import BlockPorts, output, reads, tap
-from core.record import Record, Records, Vector, tail, vector
+from core.record import Choice, Record, Records, Vector, tail, vector
 from core.units import MS_PER_S, rate_deg_s, rate_rad_ms
 
 LEAST_NOISE = 1e-6
@@ -106,8 +106,8 @@ class AxesBank(Bank):
     class Packed(Record):
         """Models, ticks between samples, walk of the rate per sample, share of the swing kept, limits; the models."""
 
-        count: float
-        every: float
+        count: Choice
+        every: Choice
         walk: float
         kept: float
         least: float

@@ -7,7 +7,7 @@ and so are the bits.
 
 from __future__ import annotations
 
-from core.record import Record, Vector, vector
+from core.record import Choice, Record, Vector, vector
 
 LANE = 16
 """Length of a lane: the largest number of hypotheses of a bank."""
@@ -21,11 +21,11 @@ class PackedFilters(Record):
     device over one tick is as in `core.voltage`.
     """
 
-    count: float
+    count: Choice
     sensor: float
-    steady: float
-    printed: float
-    every: float
+    steady: Choice
+    printed: Choice
+    every: Choice
     taken: float
     memory: float
     least_drive: float

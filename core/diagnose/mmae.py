@@ -14,7 +14,7 @@ from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import exp, log
 from core.kernel import kernel
 from core.ports import tap
-from core.record import Vector, vector
+from core.record import Choice, Vector, vector
 
 TWO_PI_ROOT = math.sqrt(2.0 * math.pi)
 
@@ -101,7 +101,7 @@ class Mmae(KalmanBank):
     class Packed(KalmanBank.Packed):
         """Parameters of the filters; whether probabilities are stored as such, their floor and its logarithm."""
 
-        linear: float
+        linear: Choice
         probability_floor: float
         log_floor: float
 

@@ -22,7 +22,7 @@ from core.diagnose.weights import take_softmax
 from core.estimation import diagonal, entry, estimate, trace_of, triangle
 from core.kernel import flush_tiny, kernel
 from core.ports import tap
-from core.record import Vector, vector
+from core.record import Choice, Vector, vector
 
 MODES = ("fixed", "direct", "stepped", "printed")
 FIXED, DIRECT, STEPPED, PRINTED = 0.0, 1.0, 2.0, 3.0
@@ -151,7 +151,7 @@ class SelfTuning(ArxBank):
         """Forgetting and how it adapts, limit of the covariance, variance of the equation error."""
 
         forgetting: float
-        mode: float
+        mode: Choice
         forgetting_step: float
         gate: float
         least_forgetting: float

@@ -24,7 +24,7 @@ from core.diagnose.kalman import KalmanBank
 from core.diagnose.lanes import LANE
 from core.elementary import cos, floor, sin
 from core.kernel import inlined, kernel
-from core.record import Record, Records, Vector, tail, vector
+from core.record import Choice, Record, Records, Vector, tail, vector
 
 MOST = 512
 """Longest window that the block chooses by itself."""
@@ -39,7 +39,7 @@ class Packed(KalmanBank.Packed):
     cycles_per_ms: float
     tick_ms: float
     samples: float
-    capacity: float
+    capacity: Choice
     along: float
     across: float
     span: float

@@ -10,6 +10,7 @@ from core.identify.discrete import Discrete, DiscreteParams, N, gather_voltage, 
 from core.identify.identifier import between_updates
 from core.kernel import kernel
 from core.ports import tap
+from core.record import Choice
 
 READINGS = ("direct", "step", "printed")
 DIRECT, STEPWISE, PRINTED = 0.0, 1.0, 2.0
@@ -120,7 +121,7 @@ class AdaptiveForgetting(Discrete):
     class Packed(Discrete.Packed):
         """Reading, variance of the innovation, memory of the ratio, and limits."""
 
-        mode: float
+        mode: Choice
         variance: float
         memory: float
         gate: float

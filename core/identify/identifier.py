@@ -14,7 +14,7 @@ from core.block import Block, BlockParams, Context, Oscillator, parameter
 from core.estimation import triangle
 from core.kernel import kernel
 from core.ports import output, reads, tap
-from core.record import Record, Vector, vector
+from core.record import Choice, Record, Vector, vector
 from core.theory.persistency import add_outer_product, smallest_eigenvalue
 from core.voltage import ObservedPorts
 
@@ -99,7 +99,7 @@ class Identifier(Block):
         window: float
         least_excitation: float
         h: float
-        every: float
+        every: Choice
 
     class State(Record):
         """The window of the excitation."""

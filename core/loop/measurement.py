@@ -8,7 +8,7 @@ from typing import Any
 from core.block import Block, BlockParams, Context
 from core.elementary import floor
 from core.ports import BlockPorts, output, reads, tap
-from core.record import Record, Records
+from core.record import Choice, Record, Records
 from core.sense.past import KEPT, Entry, note
 from core.voltage import AppliedPorts
 
@@ -38,7 +38,7 @@ class Measurement(Block):
         """Variance of a sample, and how often there is one."""
 
         variance: float
-        every: float
+        every: Choice
 
     class Ports(ChosenPorts, AppliedPorts):
         """The sensor in use and the voltage in, what is measured and the past out."""

@@ -14,7 +14,7 @@ from core.diagnose.lanes import LANE
 from core.diagnose.weights import winner_of
 from core.kernel import inlined
 from core.ports import BlockPorts, output, reads, tap
-from core.record import Record, Records, Vector, tail, vector
+from core.record import Choice, Record, Records, Vector, tail, vector
 
 HELD = 20.0
 """Right verdicts in a row that count as recognised."""
@@ -41,8 +41,8 @@ class Factors(Record):
 class Turns(Record):
     """Number of hypotheses, ticks between two verdicts, limit of an average of normalised residuals squared."""
 
-    count: float
-    every: float
+    count: Choice
+    every: Choice
     limit: float
 
 

@@ -23,7 +23,7 @@ from core.block import BlockParams, Context, parameter
 from core.elementary import exp, expm1, floor, log
 from core.kernel import kernel
 from core.noise import key, normal
-from core.record import Record, Vector, vector
+from core.record import Choice, Record, Vector, vector
 from core.units import DEG_H_PER_DEG_S, DEG_H_RT_H_PER_DEG_S_RT_S, DEG_RT_H_PER_DEG_RT_S, MS_PER_S
 
 PROCESSES = 9
@@ -53,7 +53,7 @@ class PackedDrift(Record):
     walk: float
     decay: float
     kick: float
-    every: float
+    every: Choice
     white_key: float
     walk_key: float
     flicker_keys: Vector = vector(PROCESSES)

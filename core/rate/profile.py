@@ -11,7 +11,7 @@ from core.block import BlockParams, Context, Equation, parameter
 from core.kernel import kernel
 from core.rate.drift import DriftParams
 from core.rate.generator import NOISE, RateGenerator
-from core.record import Record, Records, tail
+from core.record import Choice, Record, Records, tail
 
 
 class Point(BlockParams):
@@ -62,7 +62,7 @@ class Profile(RateGenerator):
     class Packed(RateGenerator.Packed):
         """How many breakpoints, and each."""
 
-        count: float
+        count: Choice
         points: Records[PackedPoint] = tail()
 
     @classmethod

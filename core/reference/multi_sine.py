@@ -8,7 +8,7 @@ from core.block import BlockParams, Context, Equation, parameter
 from core.device.ranges import Sized
 from core.elementary import sin_of_turns
 from core.kernel import kernel
-from core.record import Record, Records, tail
+from core.record import Choice, Record, Records, tail
 from core.reference.waveform import ReferenceParams, Waveform, line
 
 
@@ -42,7 +42,7 @@ class MultiSine(Waveform):
     class Packed(Waveform.Packed):
         """How many tones, and each."""
 
-        count: float
+        count: Choice
         tones: Records[PackedTone] = tail()
 
     @classmethod

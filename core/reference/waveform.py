@@ -12,7 +12,7 @@ from core.block import Block, BlockParams, Context, parameter
 from core.elementary import sin
 from core.errors import InputError
 from core.ports import BlockPorts, output
-from core.record import Record
+from core.record import Choice, Record
 
 
 class ReferenceParams(BlockParams):
@@ -50,7 +50,7 @@ class Waveform(Block):
         """Every reference: ms of a tick, whether it also plays between ticks, amplitude and constant in V."""
 
         dt_ms: float
-        analogue: float
+        analogue: Choice
         scale: float
         offset: float
 

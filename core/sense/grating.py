@@ -20,7 +20,7 @@ from core.block import Context, parameter
 from core.elementary import cos, exp, sin
 from core.kernel import kernel
 from core.noise import key, uniform
-from core.record import Record, Vector, tail
+from core.record import Choice, Record, Vector, tail
 from core.sense.sensor import SensorParams
 
 HARMONICS = 64
@@ -34,7 +34,7 @@ class Grating(Record):
     mean: float
     wave: float
     offset: float
-    count: float
+    count: Choice
     amplitudes: Vector = tail()
 
 

@@ -15,7 +15,7 @@ from core.block import Context, Equation, Oscillator, parameter
 from core.device.oscillator import transition
 from core.elementary import log
 from core.kernel import flush_tiny, kernel
-from core.record import Record
+from core.record import Choice, Record
 from core.sense.sensor import Sensor, SensorParams
 from core.voltage import AppliedPorts, Gathered, Tick, gather, tick_of
 
@@ -34,7 +34,7 @@ class Tracked(Record):
     force1: float
     force2: float
     walk: float
-    every: float
+    every: Choice
     tick: Tick
 
 

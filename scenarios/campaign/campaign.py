@@ -13,8 +13,8 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from statistics import fmean
 from typing import Any, Protocol
 
+from scenarios.campaign.batch import outcomes
 from scenarios.campaign.executor import LOST, open_executor, width_of
-from scenarios.campaign.outcome import outcome
 from scenarios.campaign.sweep import Point, Sweep
 from scenarios.key import code_version
 from scenarios.schema import Scenario
@@ -57,13 +57,12 @@ def compute(tasks: list[Task], version: str) -> Found:
     """
     if version != code_version():
         raise RuntimeError(f"the worker runs version {code_version()} of the code, the campaign is of {version}")
-    outcomes: Found = []
-    scenario, read = None, None
-    for key, document, seed in tasks:
-        if scenario is None or document is not read:
-            scenario, read = Scenario.load(document), document
-        outcomes.append((key, outcome(scenario, seed).model_dump()))
-    return outcomes
+    read: dict[int, Scenario] = {}
+    for _, document, _ in tasks:
+        if id(document) not in read:
+            read[id(document)] = Scenario.load(document)
+    found = outcomes([(read[id(document)], seed) for _, document, seed in tasks])
+    return [(key, outcome.model_dump()) for (key, _, _), outcome in zip(tasks, found, strict=True)]
 
 
 class Campaign:

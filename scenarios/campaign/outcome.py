@@ -10,9 +10,10 @@ import numpy as np
 from pydantic import BaseModel
 
 from core.block import FloatArray
+from core.board.board import Board
 from core.errors import InputError
 from core.loop.score import Scores
-from scenarios.run import Result, run
+from scenarios.run import judge, run
 from scenarios.schema import Scenario
 
 EVIDENCE = np.linspace(-8.0, 8.0, 161)
@@ -59,35 +60,43 @@ def outcome(scenario: Scenario, seed: int) -> Outcome:
     """Run a scenario and count its results; a scenario that cannot be run gives its error."""
     began = time.perf_counter()
     try:
-        result = run(scenario, seed)
+        result = run(scenario, seed, figures_only=True)
     except InputError as error:
         return Outcome(seed=seed, error=str(error))
-    summed = Outcome(
-        seed=seed,
-        digest=result.digest,
-        ticks=result.board.tick,
-        ok=all(entry["ok"] for entry in result.expectations()),
-        trip=result.trip.reason if result.trip is not None else "",
-        metrics={name: value for name, value in result.metrics.items() if math.isfinite(value)},
-        diagnosis={name: _diagnosis(result, name, scores) for name, scores in result.board.scores().items()},
+    trace = dict(zip(result.names, result.outputs.T, strict=True))
+    found = summed(scenario, result.board, result.metrics, result.digest, trace)
+    found.elapsed_s = time.perf_counter() - began
+    return found
+
+
+def summed(
+    scenario: Scenario, board: Board, metrics: dict[str, float], digest: str, trace: dict[str, FloatArray]
+) -> Outcome:
+    """Return the outcome of a run that has come to its end."""
+    return Outcome(
+        seed=board.spec.seed,
+        digest=digest,
+        ticks=board.tick,
+        ok=all(entry["ok"] for entry in judge(scenario, metrics)),
+        trip=board.trip.reason if board.trip is not None else "",
+        metrics={name: value for name, value in metrics.items() if math.isfinite(value)},
+        diagnosis={name: _diagnosis(board, name, scores, trace) for name, scores in board.scores().items()},
     )
-    summed.elapsed_s = time.perf_counter() - began
-    return summed
 
 
-def _diagnosis(result: Result, name: str, scores: Scores) -> Diagnosis:
+def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatArray]) -> Diagnosis:
     counted = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
-    params: Any = result.board.spec.diagnosers[name].params
+    params: Any = board.diagnosers[name].params
     healthy = next(
         (position for position, item in enumerate(params.hypotheses) if item.is_nominal),
         None,
     )
     columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
-    if healthy is None or columns[0] not in {signal.name for signal in result.kept} or not len(result.outputs):
+    if healthy is None or columns[0] not in trace or board.tick == 0:
         return counted
-    probability = np.array([result.signal(column) for column in columns])
+    probability = np.array([trace[column] for column in columns])
     bins = np.digitize(_log_odds(probability, healthy), EVIDENCE)
-    is_healthy = result.signal(f"{name}.truth") == healthy
+    is_healthy = trace[f"{name}.truth"] == healthy
     counted.healthy = np.bincount(bins[is_healthy], minlength=len(EVIDENCE) + 1).tolist()
     counted.faulty = np.bincount(bins[~is_healthy], minlength=len(EVIDENCE) + 1).tolist()
     return counted

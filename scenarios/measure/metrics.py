@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import lru_cache
 
 import numpy as np
 
 from core.block import FloatArray
 from core.board.board import Board
 from core.board.spec import Spec
+from core.kernel import kernel
 from core.loop.environment import Environment
 from core.loop.score import Scores
 from scenarios.measure.lateral import lateral_metrics
@@ -26,11 +28,25 @@ SETTLED = 0.02
 
 def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tick: int = 0) -> complex:
     r"""Return the phasor of one tone by least squares, :math:`x\approx\mathrm{Im}\{Ce^{j\omega t}\}`."""
-    t = (first_tick + np.arange(len(signal))) * dt_ms / 1e3
-    angle = 2.0 * math.pi * frequency_hz * t
-    basis = np.column_stack([np.sin(angle), np.cos(angle), np.ones_like(t)])
-    coefficients, *_ = np.linalg.lstsq(basis, signal, rcond=None)
-    return complex(coefficients[0], coefficients[1])
+    sine, cosine = (weighed(row, signal) for row in _projection(frequency_hz, dt_ms, first_tick, len(signal)))
+    return complex(sine, cosine)
+
+
+@lru_cache(maxsize=32)
+def _projection(frequency_hz: float, dt_ms: float, first_tick: int, samples: int) -> FloatArray:
+    """Return the two rows that make sine and cosine of a signal, which may have an offset."""
+    angle = 2.0 * math.pi * frequency_hz * (first_tick + np.arange(samples)) * dt_ms / 1e3
+    rows: FloatArray = np.linalg.pinv(np.column_stack([np.sin(angle), np.cos(angle), np.ones(samples)]))[:2]
+    return np.ascontiguousarray(rows)
+
+
+@kernel
+def weighed(weights: FloatArray, signal: FloatArray) -> float:
+    """Return the sum of a signal under weights, in the order of its samples wherever they lie in memory."""
+    total = 0.0
+    for i in range(len(weights)):
+        total += weights[i] * signal[i]
+    return total
 
 
 def device_metrics(spec: Spec) -> dict[str, float]:

@@ -25,7 +25,7 @@ def check_length(scenario: Scenario, seeds: int, settings: Settings, what: str, 
     Raises
     ------
     ApiError
-        If it has too many ticks, or takes too much memory though it keeps its outputs only.
+        If it has too many ticks, or takes too much memory though it keeps only what figures are made of.
     """
     samples = scenario.samples or DEFAULT_SAMPLES
     if samples * seeds > settings.max_run_ticks:
@@ -33,7 +33,7 @@ def check_length(scenario: Scenario, seeds: int, settings: Settings, what: str, 
         raise ApiError(422, "too_long", text, field)
     if scenario.study is not None:
         return
-    needed = run_bytes(build(scenario), samples, taps=False) / 1e6
+    needed = run_bytes(build(scenario), samples, figures_only=True) / 1e6
     if needed > settings.max_run_mb:
         text = f"{what} takes {needed:.0f} MB, the limit is {settings.max_run_mb} (max_run_mb)"
         raise ApiError(422, "too_long", text, field)

@@ -57,7 +57,7 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     folder : str
         Where the results go, each under a temporary name first.
     most_bytes : int
-        Memory of the process; taps that would not fit are left out.
+        Memory of the process; taps that would not fit are left out, then outputs that no figure is made of.
 
     Returns
     -------
@@ -82,11 +82,15 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     summaries: list[dict[str, Any]] = []
     samples = scenario.samples or DEFAULT_SAMPLES
     watch = Watch(place, samples * len(seeds))
-    has_room = run_bytes(build(scenario), samples, taps=True) <= most_bytes
+    board = build(scenario)
+    has_room = run_bytes(board, samples, taps=True) <= most_bytes
+    figures_only = run_bytes(board, samples) > most_bytes
     kept: Result | None = None
     for number, seed in enumerate(seeds):
         watch.at(number * samples)(0)
-        result = run(scenario, seed, taps=has_room and number == 0, on_tick=watch.at(number * samples))
+        told = watch.at(number * samples)
+        taps = has_room and number == 0
+        result = run(scenario, seed, taps=taps, figures_only=figures_only or number > 0, on_tick=told)
         summaries.append(result.summary())
         kept = kept or result
     assert kept is not None

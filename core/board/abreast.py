@@ -1,0 +1,273 @@
+"""Boards abreast: up to eight boards of one structure, a tick of all of them at a time.
+
+What is alike for them (blocks, wiring, intervals, choices) is there once; numbers of one board stand beside those of
+the next, and ``core.lanes`` has the steps compiled for all of them at once. The bits of each board are those it has
+alone. A board whose course becomes its own (it trips, or commands change what runs) cannot stay: it runs alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from core.block import FloatArray, IntArray
+from core.board import changes, program
+from core.board.board import Board
+from core.board.commands import Command
+from core.board.fold import FACTOR_A, FACTOR_B, S29, S32, Words
+from core.board.instances import instances
+from core.board.log import Log, LogEntry
+from core.board.pattern import Pattern, Uneven, is_same_but_seed, is_same_structure, numbers
+from core.board.pending import Queue
+from core.board.program import EVERY, IO_OFFSET, P_OFFSET, S_OFFSET, call
+from core.board.spec import Spec
+from core.board.wiring import Wiring
+from core.kernel import kernel
+from core.lanes import code
+from core.lanes.numbers import WIDTH
+from core.ports import RESERVED, TICK, TIME_MS
+
+ALIGNMENT = 8
+"""Numbers of a cache line, at which rows of lanes begin."""
+
+
+@kernel
+def run(
+    n: int,
+    first_tick: int,
+    dt_ms: float,
+    table: IntArray,
+    p: FloatArray,
+    s: FloatArray,
+    w: FloatArray,
+    io: IntArray,
+    columns: IntArray,
+    trace: FloatArray,
+    folded: IntArray,
+    folds: Words,
+    trip: int,
+) -> int:
+    """Run up to ``n`` ticks of all boards; return how many, fewer when one of them trips at the last of them.
+
+    Parameters
+    ----------
+    p, s, w : ndarray, shape (numbers, WIDTH)
+        Parameters, states and signals, a column for each board.
+    columns : ndarray, shape (kept,)
+        The signals to keep.
+    trace : ndarray, shape (kept, WIDTH, ticks)
+        Where they are kept, by tick.
+    folded : ndarray, shape (counted,)
+        The outputs whose bits count.
+    folds : ndarray of uint64, shape (2, outputs, WIDTH)
+    """
+    bits = w.view(np.uint64)
+    p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
+    w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
+    for i in range(n):
+        tick = first_tick + i
+        for k in range(WIDTH):
+            w[TICK, k] = tick
+            w[TIME_MS, k] = tick * dt_ms
+        for b in range(table.shape[0]):
+            every = table[b, EVERY]
+            if every == 1 or tick % every == 0:
+                call(
+                    int(table[b, 0]),
+                    p_address + 8 * WIDTH * table[b, P_OFFSET],
+                    s_address + 8 * WIDTH * table[b, S_OFFSET],
+                    w_address,
+                    io_address + 8 * table[b, IO_OFFSET],
+                )
+        for c in range(len(columns)):
+            for k in range(WIDTH):
+                trace[c, k, tick] = w[columns[c], k]
+        for f in range(len(folded)):
+            column = folded[f]
+            for k in range(WIDTH):
+                sample = bits[RESERVED + column, k]
+                a = (folds[0, column, k] ^ sample) * FACTOR_A
+                b_ = (folds[1, column, k] + sample) * FACTOR_B
+                folds[0, column, k] = a ^ (a >> S32)
+                folds[1, column, k] = b_ ^ (b_ >> S29)
+        tripped = False
+        for k in range(WIDTH):
+            tripped = tripped or w[trip, k] != 0.0
+        if tripped:
+            return i + 1
+    return n
+
+
+class Lane(Board):
+    """A board among others: its arrays are columns of theirs, and it keeps no log."""
+
+    def __init__(self, spec: Spec, wiring: Wiring, folds: Words, pending: Queue) -> None:
+        self.spec, self.wiring, self.folds, self.pending = spec, wiring, folds, pending
+        self.base = spec.document
+        self.compiled, self.tick, self.trip = True, 0, None
+        self.log, self.done, self.used = Log(), [], set()
+
+    def link(self) -> None:
+        """Leave it to all boards together."""
+
+    def _do(self, command: Command, actor: str) -> LogEntry | None:  # type: ignore[override]
+        changes.carry_out(self, command)
+        self.done.append((self.tick, command))
+        return None
+
+    def note(self, *_arguments: object, **_named: object) -> None:  # type: ignore[override]
+        """Keep nothing."""
+
+
+class Abreast:
+    """Boards of one structure, run together.
+
+    Parameters
+    ----------
+    pattern : Pattern
+        What they share.
+    specs : sequence of Spec
+        The bench of each, at most ``WIDTH``.
+    pending : sequence of Queue
+        The commands that wait, of each.
+    columns : sequence of str
+        The signals to keep.
+    samples : int
+        Ticks of the longest run.
+
+    Raises
+    ------
+    Uneven
+        When they are not of one structure.
+    """
+
+    def __init__(
+        self, pattern: Pattern, specs: Sequence[Spec], pending: Sequence[Queue], columns: Sequence[str], samples: int
+    ) -> None:
+        self._pattern = pattern
+        wiring = pattern.board.wiring
+        self._p, self._s, self._w = (_lanes(array) for array in (wiring.p, wiring.s, wiring.w))
+        self._folds = np.repeat(pattern.board.folds[:, :, None], WIDTH, axis=2)
+        self._columns = np.array([wiring.index[name] for name in columns], dtype=np.int64)
+        self._trace = np.empty((len(columns), WIDTH, samples))
+        self._names = list(columns)
+        self.boards = [
+            self._board(lane, spec, queue) for lane, (spec, queue) in enumerate(zip(specs, pending, strict=True))
+        ]
+        for lane in range(len(self.boards), WIDTH):  # lanes nobody needs follow the first
+            for array in (self._p, self._s, self._w):
+                array[:, lane] = array[:, 0]
+        self.tick = 0
+        self._table: IntArray = np.empty(0, dtype=np.int64)
+        self._io = self.boards[0].wiring.io
+        self._link()
+
+    def _board(self, lane: int, spec: Spec, queue: Queue) -> Lane:
+        """Return the board of a lane, with what its bench has of its own."""
+        pattern, before = self._pattern, self._pattern.board
+        order = before.wiring.instances
+        rows = pattern.seeded
+        if spec is not before.spec and not is_same_but_seed(spec, before.spec):
+            order = instances(spec)
+            if not is_same_structure(before, spec, order):
+                raise Uneven("another structure")
+            rows = pattern.used
+        wiring = replace(
+            before.wiring,
+            instances=[*order],
+            p=self._p[:, lane],
+            s=self._s[:, lane],
+            w=self._w[:, lane],
+            io=before.wiring.io.copy(),
+            table=before.wiring.table.copy(),
+            unread=[*before.wiring.unread],
+            absent=[*before.wiring.absent],
+            resting={*before.wiring.resting},
+        )
+        for row in rows:
+            parameters, state = numbers(order[row], spec)
+            packed, own = wiring.packed(row), wiring.state_of(order[row].key)
+            if len(parameters) != len(packed) or len(state) != len(own):
+                raise Uneven("other lengths")
+            packed[:], own[:] = parameters, state
+        return Lane(spec, wiring, self._folds[:, :, lane], queue)
+
+    def run(self, samples: int) -> list[bool]:
+        """Run all boards to the end; return of each whether it came there, and did not trip.
+
+        Raises
+        ------
+        Uneven
+            When commands have made their structures different.
+        """
+        tripped = [False] * len(self.boards)
+        while self.tick < samples and not all(tripped):
+            moments = [board.pending.next_tick for board in self.boards]
+            if self.tick in moments:
+                for board in self.boards:
+                    board.apply_due()
+                self._link()
+                moments = [board.pending.next_tick for board in self.boards]
+            end = min([samples, *(moment for moment in moments if moment is not None)])
+            ran = self._run(end - self.tick)
+            self.tick += ran
+            for lane, board in enumerate(self.boards):
+                board.tick = self.tick
+                board.used |= {*board.spec.driving.values(), board.spec.measuring}
+                tripped[lane] = tripped[lane] or self._w[board.wiring.trip, lane] != 0.0
+            self._silence(tripped)
+        return [not gone for gone in tripped]
+
+    def trace(self, lane: int) -> dict[str, FloatArray]:
+        """Return the signals kept of a board, by name."""
+        return {name: self._trace[column, lane, : self.tick] for column, name in enumerate(self._names)}
+
+    def _run(self, n: int) -> int:
+        board = self.boards[0]
+        return int(
+            run(
+                n, self.tick, board.dt_ms, self._table, self._p, self._s, self._w, self._io,
+                self._columns, self._trace, self._pattern.folded, self._folds, board.wiring.trip,
+            )
+        )  # fmt: skip
+
+    def _silence(self, tripped: list[bool]) -> None:
+        """Let the lane of a board that has tripped follow another, which has not."""
+        if True not in tripped or False not in tripped:
+            return
+        going = tripped.index(False)
+        for lane in [*(i for i, gone in enumerate(tripped) if gone), *range(len(tripped), WIDTH)]:
+            for array in (self._p, self._s, self._w):
+                array[:, lane] = array[:, going]
+
+    def _link(self) -> None:
+        """Work out which rows run now, the same for all boards."""
+        first = self.boards[0].wiring
+        for board in self.boards:
+            wiring = board.wiring
+            if not np.shares_memory(wiring.p, self._p):
+                raise Uneven("a block was exchanged")
+            running = wiring.rest(board.spec)
+            if wiring is first:
+                rows = running
+            elif running != rows or not np.array_equal(wiring.io, first.io):
+                raise Uneven("other blocks run")
+            elif not np.array_equal(wiring.table[:, EVERY], first.table[:, EVERY]):
+                raise Uneven("other intervals")
+        shared = self._p[self._pattern.choices, : len(self.boards)]
+        if not np.array_equal(shared.view(np.uint64), np.repeat(shared[:, :1], shared.shape[1], 1).view(np.uint64)):
+            raise Uneven("other choices")
+        self._io = first.io
+        self._table = first.table[rows]
+        self._table[:, program.ADDRESS] = [code.address(first.instances[row].block) for row in rows]
+
+
+def _lanes(array: FloatArray) -> FloatArray:
+    """Return an array with a column for each board, its rows at the beginning of a cache line."""
+    room = np.empty(array.size * WIDTH + ALIGNMENT)
+    start = -(room.ctypes.data // 8) % ALIGNMENT
+    found = room[start : start + array.size * WIDTH].reshape(-1, WIDTH)
+    found[:] = array[:, None]
+    return found

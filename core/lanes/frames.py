@@ -1,0 +1,77 @@
+"""Calls while a step is translated: names, the boards that have returned, loops."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from types import FunctionType
+from typing import Any
+
+from core.lanes.numbers import Number, Unsupported
+
+Kinds = dict[str, tuple[int, bool]]
+"""Of every variable of every call its kind, and whether each board has its own."""
+
+
+@cache
+def tree_of(function: FunctionType) -> ast.FunctionDef:
+    """Return the syntax tree of a function."""
+    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
+    if not isinstance(tree, ast.FunctionDef):
+        raise Unsupported(f"{function.__name__} is no function with statements")
+    return tree
+
+
+@cache
+def stored(tree: ast.FunctionDef) -> frozenset[str]:
+    """Return the names that a function assigns to."""
+    return frozenset(
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    )
+
+
+@cache
+def returns(tree: ast.AST) -> int:
+    """Return how often a tree says return."""
+    return sum(isinstance(node, ast.Return) for node in ast.walk(tree))
+
+
+Masks = tuple[Number | None, Number | None]
+
+
+def says(statements: Sequence[ast.AST], kind: type[ast.AST]) -> bool:
+    """Say whether statements hold one of a kind."""
+    return any(isinstance(node, kind) for statement in statements for node in ast.walk(statement))
+
+
+@dataclass
+class Loop:
+    """A loop: where it goes on and ends, the branches around it, the boards that are out or skip this round."""
+
+    again: Any
+    behind: Any
+    branches: int
+    out: Any = None
+    skipped: Any = None
+    is_uneven: bool = False
+
+
+@dataclass
+class Frame:
+    """One call: names with what they are bound to, the boards that have returned, the mask within the call."""
+
+    function: FunctionType
+    path: str
+    names: dict[str, Any]
+    exit: Any
+    mask: Number | None = None
+    returned: Any = None
+    result: Any = None
+    calls: int = 0
+    branches: int = 0
+    variables: dict[str, Any] = field(default_factory=dict)
+    loops: list[Loop] = field(default_factory=list)

@@ -1,0 +1,79 @@
+"""Functions that steps may call and that are instructions: roots, absolute values, conversions, bits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from core.elementary.bits import bits_of, number_of
+from core.lanes.numbers import FLOAT, INT, UINT, Arithmetic, Number, type_of
+
+
+def _absolute(a: Arithmetic, value: Any) -> Any:
+    if not isinstance(value, Number):
+        return abs(value)
+    if value.kind == FLOAT:
+        return a.intrinsic("fabs", value)
+    return a.select(a.compare("<", value, 0), a.negative(value), value)
+
+
+def _extreme(sign: str) -> Callable[..., Any]:
+    def extreme(a: Arithmetic, first: Any, *others: Any) -> Any:
+        for other in others:
+            # the first of two that are alike, as in Python
+            is_beyond = a.compare(sign, other, first)
+            first = (
+                a.select(is_beyond, other, first) if isinstance(is_beyond, Number) else (other if is_beyond else first)
+            )
+        return first
+
+    return extreme
+
+
+def _as(kind: int, plain: Any) -> Callable[..., Any]:
+    def convert(a: Arithmetic, value: Any) -> Any:
+        if isinstance(value, Number):
+            return a.truth(value) if plain is bool else a.as_kind(value, kind)
+        return plain(value)
+
+    return convert
+
+
+def _finite(a: Arithmetic, value: Any) -> Any:
+    return a.compare("<", _absolute(a, value), math.inf)
+
+
+def _floor(a: Arithmetic, value: Any) -> Any:
+    return a.as_kind(a.intrinsic("floor", value), INT) if isinstance(value, Number) else math.floor(value)
+
+
+def _bits(a: Arithmetic, value: Any) -> Any:
+    number = a.as_kind(value, FLOAT)
+    return Number(a.builder.bitcast(number.value, type_of(INT, is_lanes=number.is_lanes)), INT)
+
+
+def _from_bits(a: Arithmetic, value: Any) -> Any:
+    number = a.as_kind(value, INT)
+    return Number(a.builder.bitcast(number.value, type_of(FLOAT, is_lanes=number.is_lanes)), FLOAT)
+
+
+FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    abs: _absolute,
+    min: _extreme("<"),
+    max: _extreme(">"),
+    int: _as(INT, int),
+    float: _as(FLOAT, float),
+    bool: _as(INT, bool),
+    np.int64: _as(INT, np.int64),
+    np.uint64: _as(UINT, np.uint64),
+    np.float64: _as(FLOAT, np.float64),
+    math.sqrt: lambda a, value: a.intrinsic("sqrt", value),
+    math.copysign: lambda a, size, sign: a.intrinsic("copysign", size, sign),
+    math.isfinite: _finite,
+    math.floor: _floor,
+    bits_of: _bits,
+    number_of: _from_bits,
+}

@@ -1,0 +1,129 @@
+"""Boards abreast give each board the bits it has alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from core import registry
+from core.board.abreast import Abreast
+from core.board.board import Board
+from core.board.commands import parse_command
+from core.board.document import with_values
+from core.board.parse import parse
+from core.board.pattern import Pattern, Uneven
+from core.lanes import code
+from tests.lab import AXES_RICH, RICH
+
+TICKS = 700
+ONE_AFTER_ANOTHER = {"diagnose.moving_bank"}
+"""Its models are numbered from a centre of its own in every board."""
+
+
+def waiting(board: Board, events: list[dict[str, Any]]) -> Board:
+    for event in events:
+        board.apply(parse_command(event))
+    return board
+
+
+def alone(document: dict[str, Any], events: list[dict[str, Any]]) -> Board:
+    board = waiting(Board(document), events)
+    while board.tick < TICKS and board.advance(TICKS - board.tick).count:
+        pass
+    return board
+
+
+def together(documents: list[dict[str, Any]], events: list[list[dict[str, Any]]], names: list[str]) -> Abreast:
+    boards = [waiting(Board(parse(document)), own) for document, own in zip(documents, events, strict=True)]
+    pattern = Pattern(boards[0])
+    return Abreast(pattern, [board.spec for board in boards], [board.pending for board in boards], names, TICKS)
+
+
+EVENTS = [
+    {"at_sample": 100, "fault": "added_mass", "severity": 0.1},
+    {"at_sample": 250, "set": {"reference.amplitude_v": 6.0}},
+    {"at_sample": 251, "fault": "sensor_dropout", "severity": 0.3},
+    {"at_sample": 400, "heal": "all"},
+]
+
+
+def test_boards_with_seeds_of_their_own():
+    documents = [with_values(RICH, {"seed": seed}) for seed in range(1, 7)]
+    abreast = together(documents, [EVENTS] * 6, ["plant.displacement", "kalman.probability.m+5"])
+    assert abreast.run(TICKS) == [True] * 6
+    for lane, document in enumerate(documents):
+        board = alone(document, EVENTS)
+        assert abreast.boards[lane].digest() == board.digest()
+        assert abreast.boards[lane].scores() == board.scores()
+        assert abreast.trace(lane)["plant.displacement"][-1] == board.value("plant.displacement")
+
+
+def test_boards_with_other_devices_commands_and_moments():
+    documents = [
+        with_values(RICH, {"device.bias_v": 5.0 + lane, "plant.drive_noise_v": 0.01 * lane, "seed": 4})
+        for lane in range(5)
+    ]
+    events = [[{**EVENTS[0], "at_sample": 100 + 37 * lane, "severity": 0.02 * (lane + 1)}] for lane in range(5)]
+    # a fault that acts at one board is part of the loop of all: none of them may begin while another has none
+    with pytest.raises(Uneven, match="other blocks run"):
+        together(documents, events, []).run(TICKS)
+    events = [[{**EVENTS[0], "severity": 0.02 * (lane + 1)}] for lane in range(5)]
+    abreast = together(documents, events, [])
+    assert abreast.run(TICKS) == [True] * 5
+    for lane, (document, own) in enumerate(zip(documents, events, strict=True)):
+        assert abreast.boards[lane].digest() == alone(document, own).digest()
+
+
+def test_two_axes_and_their_controllers():
+    documents = [with_values(AXES_RICH, {"seed": seed}) for seed in (3, 4, 9)]
+    abreast = together(documents, [[]] * 3, [])
+    assert abreast.run(TICKS) == [True] * 3
+    for lane, document in enumerate(documents):
+        assert abreast.boards[lane].digest() == alone(document, []).digest()
+
+
+def test_a_board_that_trips_leaves_and_the_others_go_on():
+    documents = [with_values(RICH, {"guard.travel_um": travel, "seed": 2}) for travel in (25.0, 0.3, 20.0)]
+    abreast = together(documents, [[]] * 3, [])
+    boards = [alone(document, []) for document in documents]
+    assert boards[1].trip is not None
+    assert abreast.run(TICKS) == [True, False, True]
+    assert [abreast.boards[lane].digest() == boards[lane].digest() for lane in (0, 2)] == [True, True]
+
+
+@pytest.mark.parametrize(
+    ("values", "why"),
+    [
+        ({"sensor.kind": "capacitive"}, "structure"),
+        ({"sample_rate_khz": 50}, "structure"),
+        ({"diagnosers.kalman.form": "steady"}, "choices"),
+        ({"diagnosers.kalman.hypotheses": [{"name": "healthy"}, {"name": "m+5", "mass": 1.05}]}, "lengths"),
+    ],
+)
+def test_boards_of_other_structures_are_refused(values, why):
+    with pytest.raises(Uneven, match=why):
+        together([RICH, with_values(RICH, values), RICH], [[]] * 3, [])
+
+
+def test_a_board_that_waits_for_a_condition_runs_alone():
+    board = waiting(Board(RICH), [{"when": "plant.displacement > 0.1", "fault": "added_mass", "severity": 0.1}])
+    with pytest.raises(Uneven, match="condition"):
+        Pattern(board)
+
+
+def test_controllers_that_look_on_are_left_out_unless_a_command_may_switch_to_them():
+    pattern = Pattern(Board(RICH))
+    wiring = pattern.board.wiring
+    assert wiring.row("pid") in wiring.left_out and wiring.row("open_loop") not in wiring.left_out
+    board = waiting(Board(RICH), [{"at_sample": 50, "switch": "pid"}])
+    pattern = Pattern(board)
+    assert board.wiring.row("pid") not in board.wiring.left_out and board.wiring.row("mrac") in board.wiring.left_out
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_all_steps_but_one_run_for_all_boards_at_once():
+    blocks = {block for family in registry.FAMILIES for block in registry.blocks(family).values()}
+    slow = {f"{block.family}.{block.name}" for block in blocks if not code.translated(block)[1]}
+    assert slow == ONE_AFTER_ANOTHER

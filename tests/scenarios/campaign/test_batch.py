@@ -1,0 +1,107 @@
+"""Runs abreast in a campaign have the figures, the digest and the verdicts of runs alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scenarios.campaign import batch
+from scenarios.campaign.outcome import Outcome, outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.library import get, library
+from scenarios.run import run
+from scenarios.schema import Scenario
+
+TICKS = 800
+ALONE = (
+    "ch1-shock ch3-indirect-mrac-b30 ch3-mrac-noise ch3-optical-loop ch3-pull-in-map ch3-stvsc-estimate "
+    "ch3-stvsc-pull-in ch3-vsc ch4-double-integrator-gains ch4-tracking-vsmrc ch5-light-two-devices ch6-drift "
+    "ch6-phase-sync ch6-sense-axis-sync gyro-comb-device gyro-forced-drive gyro-half-sample gyro-not-exciting "
+    "gyro-off-resonance"
+).split()
+"""Scenarios with twins, commands that wait for conditions, switches on a plant with axes; and one that trips."""
+
+
+def said(found: Outcome) -> str:
+    return str(found.model_dump(exclude={"elapsed_s"}))
+
+
+def cut(scenario: Scenario) -> Scenario:
+    document = {key: value for key, value in scenario.document.items() if key != "duration_ms"}
+    return Scenario.load({**document, "samples": min(TICKS, scenario.samples or TICKS)})
+
+
+@pytest.fixture
+def abreast(monkeypatch: Any) -> Any:
+    """Count the runs that are carried out alone."""
+    alone: list[int] = []
+    monkeypatch.setattr(batch, "outcome", lambda *run: alone.append(run[1]) or outcome(*run))
+    return alone
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_the_library(abreast):
+    ran_alone = []
+    for scenario in (cut(entry) for entry in library() if entry.study is None):
+        runs = [(scenario, seed) for seed in (1, 2, 3)]
+        abreast.clear()
+        found = batch.outcomes(runs)
+        if abreast:
+            ran_alone.append(scenario.id)
+        for one, ours in zip(runs, found, strict=True):
+            assert said(ours) == said(outcome(*one)), scenario.id
+    assert ran_alone == ALONE
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_two_hundred_points(abreast):
+    ranges = {
+        "device.bias_v": {"min": 4.0, "max": 8.0},
+        "device.force_n_per_v": {"min": 5e-9, "max": 8e-9},
+        "sensor.noise_um": {"min": 0.01, "max": 0.1},
+        "plant.drive_noise_v": {"min": 0.0, "max": 0.02},
+        "diagnosers.kalman.probability_floor": {"min": 1e-4, "max": 1e-2},
+        "reference.amplitude_v": {"min": 6.0, "max": 12.0},
+    }
+    sweep = Sweep.load(
+        {
+            "scenario": "ch5-seven-step",
+            "set": {"samples": 4500},
+            "seeds": "7:8",
+            "latin_hypercube": {"points": 100, "seed": 3, "ranges": ranges},
+        }
+    )
+    runs = [(Scenario.load(point.document), seed) for point in sweep.points for seed in sweep.seeds]
+    found = batch.outcomes(runs)
+    assert len(found) == 200 and not abreast
+    for one, ours in zip(runs, found, strict=True):
+        assert said(ours) == said(outcome(*one))
+    assert found[0].digest == run(runs[0][0], 7).digest != found[1].digest
+
+
+def test_seeds_of_one_scenario_and_those_of_another(abreast):
+    scenarios = [cut(get(name)) for name in ("ch5-seven-step", "ch3-stvsc-mass")]
+    runs = [(scenarios[number % 2], number) for number in range(12)]
+    found = batch.outcomes(runs)
+    assert not abreast and [entry.seed for entry in found] == list(range(12))
+    for one, ours in zip(runs, found, strict=True):
+        assert said(ours) == said(outcome(*one))
+
+
+def test_a_run_that_trips_is_told_of_as_it_is_alone(abreast):
+    scenario = cut(get("ch5-seven-step"))
+    tight = Scenario.load({**scenario.document, "guard": {"travel_um": 0.45}})
+    runs = [(tight, 1), (scenario, 2), (tight, 3), (scenario, 4)]
+    found = batch.outcomes(runs)
+    assert [bool(entry.trip) for entry in found] == [True, False, True, False] and sorted(abreast) == [1, 3]
+    assert [said(entry) for entry in found] == [said(outcome(*one)) for one in runs]
+
+
+def test_a_block_that_a_command_exchanges(abreast):
+    document = {**cut(get("ch5-seven-step")).document, "events": [{"at_sample": 5, "set": {"plant.model": "planar"}}]}
+    found = batch.outcomes([(Scenario.load(document), seed) for seed in (1, 2, 3)])
+    assert len(abreast) == 3
+    assert [said(entry) for entry in found] == [said(outcome(Scenario.load(document), seed)) for seed in (1, 2, 3)]
