@@ -32,7 +32,7 @@ def correct_velocity(s: Filters, i: int, residual: float, psi: float) -> tuple[f
 
 
 class TwoOutput(KalmanBank):
-    r"""The bank of 5.2.4, where both states are measured.
+    r"""The bank with C = I, equation 5.2.4: both states are measured.
 
     .. math:: z=\begin{bmatrix}y\\ \dot y\end{bmatrix}+v,\quad \psi=P^-+R,\quad
         p_k\leftarrow p_k\,\frac{e^{-r_k^T\psi_k^{-1}r_k/2}}{|\psi_k|^{1/2}}

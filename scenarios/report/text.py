@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 from core.format import format_figure, format_in, format_short, format_si
 
 BESIDE = ("measured", "open_loop", "pid")
 """Figures of one expectation: its own, and those of other controllers in the same scenario."""
+WIDTH = 100
+"""Columns of the gallery."""
 
 
 def run_text(summary: dict[str, Any]) -> str:
@@ -30,18 +33,33 @@ def run_text(summary: dict[str, Any]) -> str:
 
 
 def gallery_text(summary: dict[str, Any]) -> str:
-    """Return what a scenario claims, its verdict, its warnings and its expectations."""
-    mark, word = "ok  " if summary["ok"] else "MISS", summary["verdict"] or ""
-    lines = [f"{mark} {summary['scenario']:<28} {word:<22} {summary['claim']}"]
-    lines += [f"       warning: {text}" for text in summary["warnings"]]
-    lines += [f"       {_row(entry)}" for entry in summary["expectations"]]
+    """Return what a scenario claims, its verdict, its warnings and its expectations, at most `WIDTH` wide."""
+    mark = "ok  " if summary["ok"] else "MISS"
+    lines = [_ended(f"{mark} {summary['scenario']}", summary["verdict"]), *_wrapped(summary["claim"], 5)]
+    lines += [line for text in summary["warnings"] for line in _wrapped(f"warning: {text}", 5)]
+    for entry in summary["expectations"]:
+        lines += [_ended(f"       {entry['metric']}", entry["verdict"]), *_wrapped(_figures(entry), 9)]
     return "\n".join(lines)
 
 
+def _ended(text: str, word: str | None) -> str:
+    """Return a line with a word at its right end."""
+    return f"{text} {word or '':>{WIDTH - len(text) - 1}}".rstrip()
+
+
+def _wrapped(text: str, indent: int) -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent=" " * indent, subsequent_indent=" " * indent)
+
+
 def _row(entry: dict[str, Any]) -> str:
-    """Return an expectation: what was measured, what other controllers give, what was published, and the word."""
+    """Return an expectation in one line."""
+    return f"{entry['metric']} {_figures(entry)}" + (f", {entry['verdict']}" if entry["verdict"] else "")
+
+
+def _figures(entry: dict[str, Any]) -> str:
+    """Return what was expected, what was measured, what other controllers give, and what was published."""
     figures = {name: entry[name] for name in BESIDE if entry.get(name) is not None}
     said = [f"{name.replace('_', ' ')} {format_figure(entry['metric'], value, 6)}" for name, value in figures.items()]
+    said += [] if "measured" in figures else ["not measured"]
     said += [f"published: {entry['published']}"] if entry["published"] else []
-    said += [entry["verdict"]] if entry["verdict"] else []
-    return f"{entry['metric']} {entry['expected']}: {', '.join(said) or 'not measured'}"
+    return f"{entry['expected']}: {', '.join(said)}"

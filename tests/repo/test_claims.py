@@ -9,8 +9,9 @@ import pytest
 
 from core import registry
 from scenarios.library import ids
+from tests.scenarios.test_library_rules import FIGURES, TABLES
 
-OF_THE_TEXT = ("ch1-", "ch2-", "ch3-", "ch4-", "ch5-", "app")
+OF_THE_TEXT = ("ch1-", "ch2-", "ch3-", "ch4-", "ch5-", "ch6-", "app")
 COLUMNS = ["Where", "What it shows", "Scenario or page", "Result"]
 
 
@@ -27,8 +28,23 @@ def spans(rows: list[list[str]]) -> set[str]:
 
 
 def test_every_row_says_all_four(rows: list[list[str]]) -> None:
-    assert rows.count(COLUMNS) == 9
+    assert rows.count(COLUMNS) == 10
     assert [row for row in rows if len(row) != len(COLUMNS) or not all(row)] == []
+
+
+def placed(where: str) -> set[str]:
+    """Return the numbers a cell names: ``1.1 to 3`` are three of them, ``1.1 and 3`` two, ``2.1`` is one."""
+    found: set[str] = set()
+    for stem, first, joint, last in re.findall(r"\b([1-6AB](?:\.\d+)*)\.(\d+)\b(?: (to|and) (\d+)\b(?!\.))?", where):
+        own = range(int(first), int(last) + 1) if joint == "to" else {first, last or first}
+        found |= {f"{stem}.{number}" for number in own}
+    return found
+
+
+def test_every_figure_and_table_of_the_text_has_a_row(rows: list[list[str]]) -> None:
+    cells = [row[0] for row in rows if re.search("figure|table", row[0], re.IGNORECASE)]
+    named = set().union(*(placed(cell) for cell in cells))
+    assert {*FIGURES.split(), *TABLES.split()} - named == set()
 
 
 def test_what_is_named_is_there(rows: list[list[str]]) -> None:

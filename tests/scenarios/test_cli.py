@@ -208,6 +208,11 @@ def test_gallery_runs_every_scenario(call):
     assert all(set(entry) >= RUN_KEYS for entry in found)
     people = call("gallery", "--only", "ch3-mrac-*")
     assert people.exit_code == 0 and "ch3-mrac-spring-x2" in people.stdout and "ch5" not in people.stdout
+    lines = people.stdout.splitlines()
+    assert max(map(len, lines)) <= 100
+    effort = lines.index(next(line for line in lines if "effort_ratio" in line))
+    assert lines[effort].endswith(" reproduced")
+    assert all(word in lines[effort + 1] for word in ("± ", "measured ", "open loop ", "published: "))
 
 
 def test_catalog_lists_every_block(call):

@@ -10,37 +10,44 @@ from scenarios.schema import Scenario
 from tests.scenarios.fast_run import fast, figures
 
 SEEDS = range(1, 51)
-FEWEST = 0.95
-"""Share of the seeds at which all expectations must hold."""
+MOST_MISSED = 2
+"""Seeds of the fifty at which an expectation may miss: the others are at least 95 %."""
 
 
-def is_noisy(scenario: Scenario) -> bool:
-    return bool(scenario.head.expect) and figures(scenario, 1) != figures(scenario, 2)
+def longest_first() -> list[Scenario]:
+    """Return the scenarios in an order in which no process is left with a long one in the end."""
+    return sorted(library(), key=lambda scenario: scenario.samples or 0, reverse=True)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("scenario", library(), ids=lambda scenario: scenario.id)
-def test_a_claim_holds_over_seeds(scenario):
+@pytest.mark.parametrize("scenario", longest_first(), ids=lambda scenario: scenario.id)
+def test_a_claim_holds_over_seeds(scenario: Scenario) -> None:
+    if not scenario.head.expect:
+        pytest.skip("claims nothing")
+    missed: list[list[str]] = []
+    before: dict[str, float] = {}
     with fast(scenario):
-        if not is_noisy(scenario):
-            pytest.skip("nothing is left to chance")
-        missed: dict[str, int] = {}
-        held = 0
         for seed in SEEDS:
             found = figures(scenario, seed)
+            if seed == SEEDS[1] and found == before:
+                pytest.skip("nothing is left to chance")
+            before = found
             wrong = [entry.metric for entry in scenario.head.expect if not entry.holds(found.get(entry.metric))]
-            missed |= {metric: missed.get(metric, 0) + 1 for metric in wrong}
-            held += not wrong
-    assert held >= FEWEST * len(SEEDS), f"holds at {held} of {len(SEEDS)} seeds; missed: {missed}"
+            missed += [wrong] if wrong else []
+            assert len(missed) <= MOST_MISSED, f"misses at {len(missed)} of the first {seed} seeds: {missed}"
+            if seed - len(missed) == len(SEEDS) - MOST_MISSED:
+                break  # whatever the others give
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["ch5-seven-step", "gyro-diagnosis", "ch6-drift", "ch2-doppler", "gyro-allan"])
-def test_the_fast_run_gives_the_figures_of_a_run(name):
+@pytest.mark.parametrize(
+    "name", ["ch5-seven-step", "ch3-pull-in-map", "gyro-diagnosis", "ch6-drift", "ch2-doppler", "gyro-allan"]
+)
+def test_the_fast_run_gives_the_figures_of_a_run(name: str) -> None:
     scenario = next(entry for entry in library() if entry.id == name)
     with fast(scenario):
         found = figures(scenario, 3)
     metrics = run(scenario, 3).metrics
     for entry in scenario.head.expect:
-        assert found[entry.metric] == metrics[entry.metric]
+        assert found[entry.metric] == pytest.approx(metrics[entry.metric], rel=1e-12)
