@@ -27,9 +27,8 @@ def test_a_claim_holds_over_seeds(scenario: Scenario) -> None:
         pytest.skip("claims nothing")
     missed: list[list[str]] = []
     before: dict[str, float] = {}
-    with fast(scenario):
-        for seed in SEEDS:
-            found = figures(scenario, seed)
+    with fast():
+        for seed, found in zip(SEEDS, figures(scenario, SEEDS), strict=True):
             if seed == SEEDS[1] and found == before:
                 pytest.skip("nothing is left to chance")
             before = found
@@ -46,8 +45,8 @@ def test_a_claim_holds_over_seeds(scenario: Scenario) -> None:
 )
 def test_the_fast_run_gives_the_figures_of_a_run(name: str) -> None:
     scenario = next(entry for entry in library() if entry.id == name)
-    with fast(scenario):
-        found = figures(scenario, 3)
+    with fast():
+        found = [*figures(scenario, [1, 2, 3])][-1]
     metrics = run(scenario, 3).metrics
     for entry in scenario.head.expect:
         assert found[entry.metric] == pytest.approx(metrics[entry.metric], rel=1e-12)
