@@ -24,6 +24,7 @@ function draw(low: number[], high: number[], { width = low.length - 1, dashes = 
   const columns = { low: Float32Array.from(low), high: Float32Array.from(high) };
   paintEnvelope(
     pen,
+    pen,
     low.map((_, i) => i),
     columns,
     field,
@@ -57,6 +58,12 @@ it("leaves no gap between columns that follow each other, up or down", () => {
 it("draws a line of its width, in the middle of its value", () => {
   const { bars } = draw([4, 4, 4], [4, 4, 4]);
   expect(at(bars, 1)).toMatchObject({ top: 59, bottom: 61 });
+});
+
+it("leaves no gap where a pixel has no column of its own", () => {
+  const flat = Array(20).fill(5);
+  const { bars } = draw(flat, flat, { width: 24 });
+  for (let x = 2; x < 23; x += 1) expect(at(bars, x)).toBeDefined();
 });
 
 it("joins columns that lie apart by a plain line, and bridges columns without data", () => {

@@ -1,4 +1,5 @@
 import type { Pen } from "../../picture/pen";
+import type { BarRaster } from "./bar-raster";
 
 /** The least and the most of a signal in each column; NaN where it has no data. */
 export type Envelope = { low: Float32Array; high: Float32Array };
@@ -30,9 +31,11 @@ const CLOSE = 1.3;
  *
  * Bars are rectangles and no path: eight scopes of six fast traces are drawn in a tenth of the time that a stroke takes
  * where no graphics card helps. A spike of one tick is a bar of its full height, dashes or not, so it cannot be missed.
+ * The pen has the lines that join columns; the bars go to whoever is quickest at them.
  */
 export function paintEnvelope(
   pen: Pen,
+  bars: Pick<BarRaster, "fillStyle" | "fillRect">,
   times: ArrayLike<number>,
   { low, high }: Envelope,
   field: TraceField,
@@ -43,20 +46,15 @@ export function paintEnvelope(
   const perValue = height / (max - min);
   const bottom = top + height;
   const zero = bottom + min * perValue;
-  // as wide as a column and no wider: what is filled is what costs
-  const bar = Math.max(
-    1,
-    Math.ceil(Math.min(CLOSE, (perTime * (times[times.length - 1] - times[0])) / (times.length - 1))),
-  );
   const half = ink.width / 2;
   const isInk = dashing(ink.dashes);
   pen.save();
-  pen.fillStyle = pen.strokeStyle = ink.colour;
+  bars.fillStyle = pen.strokeStyle = ink.colour;
   pen.lineWidth = ink.width;
   pen.lineJoin = "round";
   pen.setLineDash([...ink.dashes]);
   pen.beginPath();
-  const before = { x: Number.NaN, high: 0, low: 0 };
+  const before = { x: Number.NaN, pixel: 0, high: 0, low: 0 };
   let drawing = false;
   let hasLines = false;
   for (let c = 0; c < times.length; c += 1) {
@@ -64,12 +62,14 @@ export function paintEnvelope(
     const x = left + (times[c] - from) * perTime;
     const yHigh = clamp(zero - high[c] * perValue, top, bottom);
     const yLow = clamp(zero - low[c] * perValue, top, bottom);
+    const pixel = Math.floor(x);
     const meets = x - before.x <= CLOSE;
     if (meets && isInk(x - left)) {
       const head = Math.min(yHigh, before.low) - half;
-      pen.fillRect(Math.round(x - bar / 2), head, bar, Math.max(yLow, before.high) + half - head);
+      const wide = Math.max(1, pixel - before.pixel); // over a pixel that has no column too
+      bars.fillRect(pixel + 1 - wide, head, wide, Math.max(yLow, before.high) + half - head);
     } else if (standsOut(low, high, c) && yLow - yHigh > 1) {
-      pen.fillRect(Math.round(x - bar / 2), yHigh, bar, yLow - yHigh);
+      bars.fillRect(pixel, yHigh, 1, yLow - yHigh);
     }
     const isJoined = !meets && !Number.isNaN(before.x);
     if (isJoined) {
@@ -79,6 +79,7 @@ export function paintEnvelope(
     }
     drawing = isJoined;
     before.x = x;
+    before.pixel = pixel;
     before.high = yHigh;
     before.low = yLow;
   }
