@@ -46,6 +46,11 @@ export function paintEnvelope(
   const perValue = height / (max - min);
   const bottom = top + height;
   const zero = bottom + min * perValue;
+  // as wide as a column and no wider: what is filled is what costs
+  const bar = Math.max(
+    1,
+    Math.ceil(Math.min(CLOSE, (perTime * (times[times.length - 1] - times[0])) / (times.length - 1))),
+  );
   const half = ink.width / 2;
   const isInk = dashing(ink.dashes);
   pen.save();
@@ -54,7 +59,7 @@ export function paintEnvelope(
   pen.lineJoin = "round";
   pen.setLineDash([...ink.dashes]);
   pen.beginPath();
-  const before = { x: Number.NaN, pixel: 0, high: 0, low: 0 };
+  const before = { x: Number.NaN, high: 0, low: 0 };
   let drawing = false;
   let hasLines = false;
   for (let c = 0; c < times.length; c += 1) {
@@ -62,14 +67,12 @@ export function paintEnvelope(
     const x = left + (times[c] - from) * perTime;
     const yHigh = clamp(zero - high[c] * perValue, top, bottom);
     const yLow = clamp(zero - low[c] * perValue, top, bottom);
-    const pixel = Math.floor(x);
     const meets = x - before.x <= CLOSE;
     if (meets && isInk(x - left)) {
       const head = Math.min(yHigh, before.low) - half;
-      const wide = Math.max(1, pixel - before.pixel); // over a pixel that has no column too
-      bars.fillRect(pixel + 1 - wide, head, wide, Math.max(yLow, before.high) + half - head);
+      bars.fillRect(Math.round(x - bar / 2), head, bar, Math.max(yLow, before.high) + half - head);
     } else if (standsOut(low, high, c) && yLow - yHigh > 1) {
-      bars.fillRect(pixel, yHigh, 1, yLow - yHigh);
+      bars.fillRect(Math.round(x - bar / 2), yHigh, bar, yLow - yHigh);
     }
     const isJoined = !meets && !Number.isNaN(before.x);
     if (isJoined) {
@@ -79,7 +82,6 @@ export function paintEnvelope(
     }
     drawing = isJoined;
     before.x = x;
-    before.pixel = pixel;
     before.high = yHigh;
     before.low = yLow;
   }
