@@ -121,7 +121,7 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
           className={styles.newest}
           style={{ width: right }}
           aria-label="Explain the newest sample"
-          title="Explain the newest sample"
+          title="Explain the newest sample, whose figures these are"
           onClick={() => onPick(stream.client.head.tick - 1)}
         />
       )}
