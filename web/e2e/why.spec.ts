@@ -67,6 +67,10 @@ test("a click on a sample shows the numbers behind it, and the next sample is on
   await expect(why.getByText(/^Sample 999999999 is not kept; the history has/)).toBeVisible();
   await why.getByRole("button", { name: "Explain the latest sample" }).click();
   await expect(healthy).toBeVisible();
+  // the figures beside the lanes are those of the newest sample, and answer a click too
+  const before = await sample();
+  await page.getByRole("button", { name: "Explain the newest sample" }).click();
+  await expect.poll(sample).toBeGreaterThan(before);
 });
 
 test("why opens beside the lanes in every layout, and goes to where the verdict turned", async ({

@@ -15,9 +15,8 @@ import styles from "./replay-bar.module.css";
 
 /** While the page plays a recording: where it is, how fast, which span again and again, and the way back. */
 export function ReplayBar() {
-  const replay = useBench((s) => s.bench?.replay_of);
-  const bench = useBench((s) => s.bench);
-  return replay && bench ? <Bar key={bench.id} recording={replay} bench={bench} /> : null;
+  const bench = useBench((s) => (s.bench?.replay_of ? s.bench : undefined));
+  return bench?.replay_of ? <Bar key={bench.id} recording={bench.replay_of} bench={bench} /> : null;
 }
 
 function Bar({ recording, bench }: { recording: string; bench: Bench }) {

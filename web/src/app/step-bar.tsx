@@ -15,8 +15,8 @@ import styles from "./step-bar.module.css";
 /** The steps of a scenario: which comes next and when, on to it or back, and in the end what was found at each. */
 export function StepBar() {
   const steps = useSteps();
-  const bench = useBench((s) => s.bench);
-  return bench && steps.length > 1 ? <Bar key={bench.id} bench={bench} steps={steps} /> : null;
+  const bench = useBench((s) => (steps.length > 1 ? s.bench : undefined));
+  return bench ? <Bar key={bench.id} bench={bench} steps={steps} /> : null;
 }
 
 /** Which step of a scenario comes next, or was the last. */

@@ -1,4 +1,5 @@
 import { useEffect, useMemo, useState } from "react";
+import { useShallow } from "zustand/react/shallow";
 import { useSteps } from "../bench/steps";
 import { useBench } from "../stream/bench-store";
 import { type Hints, hintsOf } from "./hints";
@@ -15,7 +16,13 @@ const storedDone = () => (localStorage.getItem(DONE) ?? "").split(" ").filter(Bo
 
 /** What to try on the bench of the page, ticked off as it is done; nothing once it was dismissed, or all was done. */
 export function useHints(): TickedHints | undefined {
-  const bench = useBench((s) => s.bench);
+  const bench = useBench(
+    useShallow(({ bench }) => {
+      if (!bench) return undefined;
+      const { axes, controllers, diagnosers, replay_of, signals } = bench;
+      return { axes, controllers, diagnosers, replay_of, signals };
+    }),
+  );
   const events = useBench((s) => s.events);
   const hasSteps = useSteps().length > 1;
   const [dismissed, setDismissed] = useState(() => localStorage.getItem(DISMISSED) !== null);

@@ -106,10 +106,11 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
     const subscription = containerApi.onDidMaximizedGroupChange(() => setMaximised(containerApi.hasMaximizedGroup()));
     return () => subscription.dispose();
   }, [containerApi]);
-  const bench = useBench((s) => s.bench);
+  const all = useBench((s) => s.bench?.signals);
+  const axes = useBench((s) => s.bench?.axes);
   const scopes = SCOPE_PRESETS.map(({ title, pick }) => ({
     title,
-    signals: (bench?.signals ?? []).map((s) => s.name).filter((name) => pick.test(name)),
+    signals: (all ?? []).map((s) => s.name).filter((name) => pick.test(name)),
   })).filter((preset) => preset.signals.length > 0);
   return (
     <div className="dock-actions">
@@ -134,7 +135,7 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
           <Menu.Item onClick={() => addScope("Scope", [])}>Empty scope</Menu.Item>
           <Menu.Divider />
           {Object.entries(PANELS)
-            .filter(([kind, panel]) => kind !== "scope" && suits(panel, bench))
+            .filter(([kind, panel]) => kind !== "scope" && suits(panel, axes && { axes }))
             .map(([kind, { title }]) => (
               <Menu.Item key={kind} onClick={() => addPanel(kind)}>
                 {title}

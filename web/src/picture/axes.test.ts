@@ -1,6 +1,6 @@
 // @vitest-environment jsdom
 import { expect, it, vi } from "vitest";
-import { linearAxis, logAxis, paintAxes, placeOn, squareWithin, timeAxis } from "./axes";
+import { linearAxis, logAxis, paintAxes, paintColumns, placeOn, squareWithin, timeAxis } from "./axes";
 import { PAPER } from "./pen";
 import { SvgPen } from "./svg-pen";
 
@@ -35,6 +35,15 @@ it("writes titles and numbers of both axes, and leaves out numbers without room"
   });
   expect(texts).toEqual(expect.arrayContaining(["time, ms", "gain", "1", "10", "100", "1000"]));
   expect(texts.filter((text) => /^\d+$/.test(text ?? "")).length).toBeLessThan(24);
+});
+
+it("leaves out the numbers that a picture would cut at its edges", () => {
+  const field = { left: 0, right: 400, top: 0, bottom: 100 };
+  const axis = linearAxis([0, 4]);
+  expect(painted((pen) => paintColumns(pen, field, axis, PAPER)).slice(0)).toContain("0");
+  const kept = painted((pen) => paintColumns(pen, field, axis, PAPER, [0, 400]));
+  expect(kept).toContain("2");
+  expect(kept.filter((text) => text === "0" || text === "4")).toEqual([]);
 });
 
 it("gives both axes one scale where a unit across is as long as one up", () => {

@@ -139,8 +139,18 @@ function about(axis: Axis, length: number): Axis {
   return { ...axis, range: [middle - length / 2, middle + length / 2] };
 }
 
-/** The grid and the numbers of an axis across, under a field; a number without room is left out. */
-export function paintColumns(pen: Pen, { left, right, top, bottom }: Field, axis: Axis, look: Look): void {
+/**
+ * The grid and the numbers of an axis across, under a field; a number without room is left out.
+ *
+ * The room ends where others stand, or where the picture does.
+ */
+export function paintColumns(
+  pen: Pen,
+  { left, right, top, bottom }: Field,
+  axis: Axis,
+  look: Look,
+  room: Range = [Number.NEGATIVE_INFINITY, Number.POSITIVE_INFINITY],
+): void {
   const { fontSize } = look;
   const ink = CANVAS[look.scheme];
   const place = placeOn(axis, left, right);
@@ -150,14 +160,14 @@ export function paintColumns(pen: Pen, { left, right, top, bottom }: Field, axis
   pen.font = fontFor(fontSize, 1);
   pen.textAlign = "center";
   pen.textBaseline = "middle";
-  let free = Number.NEGATIVE_INFINITY;
+  let free = room[0];
   ticks.forEach((tick, i) => {
     const at = place(tick);
     pen.fillStyle = ink.grid;
     pen.fillRect(Math.round(at), top, 1, bottom - top);
     if (labels[i] === undefined) return;
     const half = pen.measureText(labels[i]).width / 2;
-    if (at - half < free) return;
+    if (at - half < free || at + half > room[1]) return;
     free = at + half + fontSize * 0.7;
     pen.fillStyle = ink.muted;
     pen.fillText(labels[i], at, middle);

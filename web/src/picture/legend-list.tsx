@@ -12,6 +12,8 @@ export function Legend({ entries, children }: { entries: readonly LegendEntry[];
           <svg width="24" height="10" aria-hidden="true">
             {mark === "dot" ? (
               <circle cx="12" cy="5" r="3.5" fill={colour} />
+            ) : mark === "cross" ? (
+              <path d="M7.5 .5l9 9m0 -9l-9 9" stroke={colour} strokeWidth="2" />
             ) : mark === "field" ? (
               <rect width="24" height="10" rx="2" fill={colour} />
             ) : (

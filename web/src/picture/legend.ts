@@ -1,5 +1,6 @@
 import { CANVAS, fontFor } from "../ui/palette";
 import type { Pen } from "./pen";
+import { paintCross } from "./traces";
 
 export interface LegendEntry {
   name: string;
@@ -7,7 +8,7 @@ export interface LegendEntry {
   /** Of a line; px. */
   dashes?: readonly number[];
   /** What stands before the name, unless a line. */
-  mark?: "dot" | "field";
+  mark?: "dot" | "cross" | "field";
 }
 
 const LINE = 20;
@@ -37,6 +38,7 @@ export function paintLegend(
     pen.fillStyle = pen.strokeStyle = colour;
     pen.beginPath();
     if (mark === "field") pen.fillRect(x, y - 6, MARK, 12);
+    else if (mark === "cross") paintCross(pen, x + MARK / 2, y, { colour, width: 2.4 });
     else if (mark === "dot") {
       pen.arc(x + MARK / 2, y, 4.5, 0, 2 * Math.PI);
       pen.fill();

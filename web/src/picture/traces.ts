@@ -81,6 +81,19 @@ export function paintDot(pen: Pen, x: number, y: number, radius: number, colour:
   pen.fill();
 }
 
+/** Half of a cross, px. */
+export const CROSS = 7;
+
+/** A cross at a point, px. */
+export function paintCross(pen: Pen, x: number, y: number, stroke: Stroke): void {
+  pen.beginPath();
+  for (const rise of [CROSS, -CROSS]) {
+    pen.moveTo(x - CROSS, y - rise);
+    pen.lineTo(x + CROSS, y + rise);
+  }
+  ink(pen, stroke);
+}
+
 /** Points with bars for what they may be off by. */
 export function paintPoints(
   pen: Pen,

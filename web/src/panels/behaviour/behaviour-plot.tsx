@@ -1,5 +1,7 @@
 import { type ReactNode, type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
 import { useView } from "../../bench/view-store";
+import type { LegendEntry } from "../../picture/legend";
+import type { Box, Look, Pen } from "../../picture/pen";
 import { pictureName } from "../../picture/picture";
 import type { TakePicture } from "../../picture/picture-menu";
 import type { PanelFrame } from "../../stream/panel-frame";
@@ -9,11 +11,16 @@ import type { Subscription } from "../../stream/wire";
 import { usePanelVisible } from "../../ui/panel-visible";
 import { useCanvas, useScheme } from "../../ui/use-canvas";
 import styles from "./behaviour.module.css";
-import type { Drawing, Look } from "./drawing";
 
 /** Words that change more often cannot be read. */
 const WORDS_MS = 200;
-const PAPER: Look = { scheme: "light", fontSize: 13, isFramed: true };
+
+/** What a diagnoser says, as a picture and as a sentence. */
+export interface Drawing {
+  words: string;
+  legend: readonly LegendEntry[];
+  paint(pen: Pen, box: Box, look: Look): void;
+}
 
 interface BehaviourPlotProps {
   title: string;
@@ -40,16 +47,7 @@ export function BehaviourPlot({ title, signals, windowMs, columns, draw, picture
     picture,
     () => () => {
       const shown = drawing.current;
-      if (!shown) return undefined;
-      const { across, up, legend } = shown;
-      return {
-        ...pictureName(title),
-        across,
-        up,
-        legend,
-        height: 560,
-        paint: (pen, box) => shown.paint(pen, box, PAPER),
-      };
+      return shown && { ...pictureName(title), legend: shown.legend, height: 600, paint: shown.paint };
     },
     [title],
   );

@@ -1,8 +1,12 @@
-import { expect, it } from "vitest";
+// @vitest-environment jsdom
+import { expect, it, vi } from "vitest";
+import { pictureSvg } from "../../picture/picture";
 import { drawRegions } from "./paint-regions";
 import { drawSets, reachOf } from "./paint-sets";
 import { peaks, regionsWords } from "./regions";
 import { type Behaviour, setsOf, setsWords } from "./sets";
+
+vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 
 const behaviour = (name: string, x: number, y: number, holds = false): Behaviour => ({
   name,
@@ -40,6 +44,20 @@ it("holds every disc and the measured output in a square", () => {
     expect(Math.abs(px - x)).toBeLessThanOrEqual(half);
     expect(Math.abs(py - y)).toBeLessThanOrEqual(half);
   }
+});
+
+it("keeps a picture with titled axes, round discs, and a cross in the legend as in the plot", () => {
+  const drawing = drawSets([behaviour("healthy", 0.2, -0.1, true), behaviour("m+5", -5, 3)], 1);
+  if (!drawing) throw new Error("nothing is drawn");
+  const svg = pictureSvg({ stem: "s", title: "Behaviours", height: 600, ...drawing });
+  const document = new DOMParser().parseFromString(svg, "image/svg+xml");
+  const texts = [...document.querySelectorAll("text")].map((node) => node.textContent);
+  expect(texts).toContain("output by the sine of the drive, in limits of the test");
+  expect(texts).toContain("measured");
+  const crosses = [...document.querySelectorAll("path")].filter((path) =>
+    /^M\S+ \S+L\S+ \S+M\S+ \S+L\S+ \S+$/.test(path.getAttribute("d") ?? ""),
+  );
+  expect(crosses).toHaveLength(3); // its rim and itself in the plot, and the one of the legend
 });
 
 it("says which behaviours hold, and the verdict", () => {

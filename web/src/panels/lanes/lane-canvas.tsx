@@ -115,6 +115,16 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
         onPointerMove={(e) => point(e.nativeEvent.offsetX)}
         onPointerLeave={() => point(undefined)}
       />
+      {right > 0 && onPick && (
+        <button
+          type="button"
+          className={styles.newest}
+          style={{ width: right }}
+          aria-label="Explain the newest sample"
+          title="Explain the newest sample, whose figures these are"
+          onClick={() => onPick(stream.client.head.tick - 1)}
+        />
+      )}
     </div>
   );
 }

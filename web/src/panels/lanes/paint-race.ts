@@ -69,7 +69,7 @@ export function paintRow(ctx: Pen, box: Box, shown: RaceShown, look: Look): void
 /** The head of the race: the axis of time over what is true. */
 export function paintHead(ctx: Pen, box: Box, shown: RaceShown, look: Look): void {
   const field = { left: 0, right: box.width, top: 0, bottom: 0 };
-  paintColumns(ctx, field, timeAxis(shown.span, shown.frame.dtMs), look);
+  paintColumns(ctx, field, timeAxis(shown.span, shown.frame.dtMs), look, [0, box.width]);
   paintTruth(ctx, box, shown, look, look.fontSize + 10);
 }
 

@@ -19,12 +19,16 @@ export function EnvelopeNote({ traces, plot }: EnvelopeNoteProps) {
   const [bands, setBands] = useState<Banded | undefined>(undefined);
   useEffect(() => {
     let last = 0;
+    let said: string | undefined;
     return stream.loop.add(() => {
       const now = performance.now();
       if (now - last < EVERY_MS) return;
       last = now;
       const found = plot.current?.bands();
-      setBands((before) => (JSON.stringify(before) === JSON.stringify(found) ? before : found));
+      const says = JSON.stringify(found);
+      if (says === said) return; // React keeps each call that changes nothing until the next that does
+      said = says;
+      setBands(found);
     });
   }, [plot]);
   if (!bands) return null;

@@ -4,11 +4,7 @@ import { paintEnvelope } from "./envelope-path";
 
 /** Keeps what was inked instead of writing it down. */
 class Notes extends SvgPen {
-  bars: { x: number; top: number; width: number; bottom: number }[] = [];
   points: [number, number][] = [];
-  override fillRect(x: number, y: number, width: number, height: number) {
-    this.bars.push({ x, top: y, width, bottom: y + height });
-  }
   override moveTo(x: number, y: number) {
     this.points.push([x, y]);
   }
@@ -17,22 +13,32 @@ class Notes extends SvgPen {
   }
 }
 
+class Bars {
+  fillStyle = "";
+  all: { x: number; top: number; width: number; bottom: number }[] = [];
+  fillRect(x: number, y: number, width: number, height: number) {
+    this.all.push({ x, top: y, width, bottom: y + height });
+  }
+}
+
 /** A field of 100 px by 100 px over values from 0 to 10. */
 function draw(low: number[], high: number[], { width = low.length - 1, dashes = [] as number[] } = {}) {
   const pen = new Notes();
+  const bars = new Bars();
   const field = { left: 0, top: 0, width, height: 100, from: 0, to: low.length - 1, min: 0, max: 10 };
   const columns = { low: Float32Array.from(low), high: Float32Array.from(high) };
   paintEnvelope(
     pen,
+    bars,
     low.map((_, i) => i),
     columns,
     field,
     { colour: "#123456", width: 2, dashes },
   );
-  return pen;
+  return { bars: bars.all, points: pen.points };
 }
 
-const at = (bars: Notes["bars"], x: number) => bars.find((bar) => bar.x <= x && x < bar.x + bar.width);
+const at = (bars: Bars["all"], x: number) => bars.find((bar) => bar.x <= x && x < bar.x + bar.width);
 
 it("shows a spike of one tick in full height, however many ticks its column covers", () => {
   for (const dashes of [[], [1, 50]]) {
@@ -57,6 +63,12 @@ it("leaves no gap between columns that follow each other, up or down", () => {
 it("draws a line of its width, in the middle of its value", () => {
   const { bars } = draw([4, 4, 4], [4, 4, 4]);
   expect(at(bars, 1)).toMatchObject({ top: 59, bottom: 61 });
+});
+
+it("leaves no gap where a pixel has no column of its own", () => {
+  const flat = Array(20).fill(5);
+  const { bars } = draw(flat, flat, { width: 24 });
+  for (let x = 2; x < 23; x += 1) expect(at(bars, x)).toBeDefined();
 });
 
 it("joins columns that lie apart by a plain line, and bridges columns without data", () => {

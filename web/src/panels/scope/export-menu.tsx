@@ -7,13 +7,14 @@ import type { ScopePlot } from "./scope-plot";
 
 /** What the scope shows as a file: a picture with titled axes and events, or every sample of the span. */
 export function ExportMenu({ plot }: { plot: RefObject<ScopePlot | undefined> }) {
-  const bench = useBench((s) => s.bench);
   const take = () => {
+    const { bench } = useBench.getState();
     const shown = plot.current?.picture();
     const stem = `${bench?.scenario_id ?? "scope"}-${Math.round(shown?.span.start ?? 0)}`;
     return shown && scopePicture(shown, bench?.title ?? "CombBench", stem);
   };
   const trace = (format: string) => {
+    const { bench } = useBench.getState();
     const picture = plot.current?.picture();
     if (!picture || !bench) return;
     const query = new URLSearchParams({

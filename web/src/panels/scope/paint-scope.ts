@@ -47,8 +47,8 @@ const TITLED_AXIS = 5.4;
 const FEET_PX = 22;
 
 interface ScopeOptions {
-  /** Ink a trace: the screen has many a second, a file is looked at closely. */
-  trace(index: number): void;
+  /** Ink traces: the screen has many a second, a file is looked at closely. */
+  ink(traces: readonly number[]): void;
   /** With titles beside the axes in place of units above them. */
   isTitled?: boolean;
 }
@@ -83,11 +83,8 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
       pen.fillText(scales[i].unit, onLeft ? left - 6 : edge + 6, top - fontSize * 0.85 - 4);
     }
   });
-  within(pen, field, () => {
-    traces.forEach(({ unit }, i) => {
-      if (units.includes(unit) && shown.envelopes[i]) options.trace(i);
-    });
-  });
+  const inked = traces.flatMap(({ unit }, i) => (units.includes(unit) && shown.envelopes[i] ? [i] : []));
+  within(pen, field, () => options.ink(inked));
   paintFrame(pen, field, look);
 }
 
@@ -137,7 +134,7 @@ export function scopePicture(shown: ScopeShown, title: string, stem: string): Pi
         const stroke = { colour: TRACE_COLOURS[look.scheme][slot], width: 1.8, dashes: DASHES[dash] };
         strokeEnvelope(pen, { x: (column) => ms(times[column]), y }, envelopes[index], stroke);
       };
-      paintScope(pen, field, shown, look, { trace, isTitled: true });
+      paintScope(pen, field, shown, look, { ink: (inked) => inked.forEach(trace), isTitled: true });
     },
   };
 }

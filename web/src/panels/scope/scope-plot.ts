@@ -8,6 +8,7 @@ import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, fontFor } from "../../ui/palette";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
+import { BarRaster } from "./bar-raster";
 import { type Envelope, paintEnvelope } from "./envelope-path";
 import { type Banded, bandsOf } from "./envelope-rule";
 import { type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
@@ -39,6 +40,9 @@ export class ScopePlot {
   /** Tick that the time axis calls zero: 0, or the trigger. */
   private origin = 0;
   private hovered = false;
+  private readonly raster = new BarRaster();
+  /** What the raster is laid over the grid with. */
+  private readonly bars = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
   private readonly dispose: (() => void)[] = [];
 
   constructor(options: ScopePlotOptions) {
@@ -211,30 +215,38 @@ export class ScopePlot {
     const shown = this.shown(this.frame);
     ctx.save();
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
-    paintScope(ctx, field, shown, this.options, { trace: (trace) => this.drawTrace(ctx, trace) });
+    paintScope(ctx, field, shown, this.options, { ink: (traces) => this.inkTraces(ctx, traces) });
     markEvents(ctx, shown, field, this.options, flagWords);
     if (this.envelopes.every((e) => e.high.every(Number.isNaN))) this.drawNothing(ctx, field);
     ctx.restore();
   }
 
   /** In pixels of the screen, which columns are made for. */
-  private drawTrace(ctx: CanvasRenderingContext2D, trace: number): void {
+  private inkTraces(ctx: CanvasRenderingContext2D, inked: readonly number[]): void {
     const { traces, lineWidth } = this.options;
-    const { colour, dash, unit } = traces[trace];
-    const range = this.ranges[this.units.indexOf(unit)];
-    if (!range) return;
+    const { left, top, width, height } = this.plot.bbox;
     const { start, span } = this.shownTime;
     const ratio = uPlot.pxRatio;
-    const ink = { colour, width: lineWidth * ratio, dashes: DASHES[dash].map((px) => px * ratio) };
+    // the raster lies on whole pixels, the field need not
+    const [x, y] = [Math.floor(left), Math.floor(top)];
+    this.raster.clear(Math.ceil(left + width) - x, Math.ceil(top + height) - y);
+    const field = { left: left - x, top: top - y, width, height, from: start, to: start + span };
     ctx.save();
-    ctx.setTransform(1, 0, 0, 1, 0, 0);
-    paintEnvelope(
-      ctx,
-      this.times,
-      this.envelopes[trace],
-      { ...this.plot.bbox, from: start, to: start + span, ...range },
-      ink,
-    );
+    ctx.setTransform(1, 0, 0, 1, x, y);
+    for (const trace of inked) {
+      const { colour, dash, unit } = traces[trace];
+      const range = this.ranges[this.units.indexOf(unit)];
+      const ink = { colour, width: lineWidth * ratio, dashes: DASHES[dash].map((px) => px * ratio) };
+      if (range) paintEnvelope(ctx, this.raster, this.times, this.envelopes[trace], { ...field, ...range }, ink);
+    }
+    if (this.bars && !this.raster.isEmpty) {
+      const { canvas } = this.bars;
+      const { image } = this.raster;
+      if (canvas.width !== image.width) canvas.width = image.width;
+      if (canvas.height !== image.height) canvas.height = image.height;
+      this.bars.putImageData(image, 0, 0);
+      ctx.drawImage(canvas, 0, 0);
+    }
     ctx.restore();
   }
 

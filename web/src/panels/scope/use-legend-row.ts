@@ -21,6 +21,7 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
     const box = list.current;
     const place = box?.parentElement;
     if (!box || !place) return;
+    let known: Pick<LegendRow, "fits" | "isShort"> | undefined;
     const measure = () => {
       const [first] = place.getElementsByTagName("ul");
       const last = place.lastElementChild as HTMLElement;
@@ -34,7 +35,10 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
       const shown = isShort ? widths(true) : whole;
       const fits = countFitting(shown, room, MORE_PX);
       box.style.maxWidth = `${fits < shown.length ? sum(shown.slice(0, fits)) : room}px`;
-      setRow((now) => (now.fits === fits && now.isShort === isShort ? now : { fits, isShort }));
+      if (known?.fits !== fits || known.isShort !== isShort) {
+        known = { fits, isShort };
+        setRow(known); // React keeps every call that changes nothing until the next that does
+      }
       first.dataset.short = String(isShort);
     };
     measure();

@@ -17,10 +17,13 @@ export function View3dHost() {
   useEffect(() => {
     usePlaces.setState({ hosted: true });
     let laid = "";
+    let seen = false;
     const stop = stream.loop.add(() => {
       const places = usePlaces.getState().places.map((place) => place.getBoundingClientRect());
       const rect = places.findLast(({ width, height }) => width > 0 && height > 0);
-      setVisible(rect !== undefined);
+      // React keeps every call that changes nothing until the next that does
+      if (seen !== (rect !== undefined)) setVisible(!seen);
+      seen = rect !== undefined;
       if (!rect || !host.current) return;
       const wanted = `${rect.left}px ${rect.top}px ${rect.width}px ${rect.height}px`;
       if (wanted === laid) return;
