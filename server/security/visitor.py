@@ -8,7 +8,7 @@ from collections.abc import Iterable
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>CombBench</title>
 <style>
-:root {{ color-scheme: light dark }}
+:root {{ color-scheme: light dark; color: CanvasText; background: Canvas }}
 body {{ max-width: 34rem; margin: 12vh auto; padding: 0 1.5rem; font: 16px/1.6 system-ui }}
 h1 {{ font-size: 1.4rem }}
 form {{ display: flex; flex-wrap: wrap; gap: .5rem; align-items: end; margin: 1.5rem 0 }}

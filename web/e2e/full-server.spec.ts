@@ -1,5 +1,6 @@
 import { expect, test } from "@playwright/test";
 import { LabServer } from "./lab-server";
+import { expectFits } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
 test("a full server says what to do; a bench it let go is there again when its page comes back", async ({ page }) => {
@@ -11,6 +12,7 @@ test("a full server says what to do; a bench it let go is there again when its p
     await expect(page.getByRole("heading", { name: "Every bench of this server is taken" })).toBeVisible();
     await expect(page.getByText("wait until somebody closes one")).toBeVisible();
     expect(await seriousViolations(page)).toEqual([]);
+    await expectFits(page, "a full server");
     await page.getByRole("button", { name: /^Join / }).click();
     await expect(page.getByTestId("bench-state")).toHaveText("running");
 

@@ -34,7 +34,8 @@ export class LabServer {
 
   async start(): Promise<void> {
     // figures take some seconds of the machine: only the test of the gallery has them made
-    const env = { ...process.env, COMBBENCH_FIGURES: "false", ...this.settings };
+    // packages come without bytecode, and without keeping it each start and each worker compiles them for seconds
+    const env = { ...process.env, PYTHONDONTWRITEBYTECODE: "", COMBBENCH_FIGURES: "false", ...this.settings };
     const child = spawn(COMBBENCH, ["serve", "--port", String(this.port), "--data", this.data], { env });
     this.process = child;
     let said = "";

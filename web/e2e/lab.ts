@@ -2,6 +2,8 @@ import { test as base, expect, type Locator, type Page } from "@playwright/test"
 import { LabServer } from "./lab-server";
 
 interface LabFixtures {
+  /** Whether the device is drawn in 3D: done in software, it takes half of the machine. */
+  drawn: boolean;
   /** Closes what a test has opened, for the next one to find the server empty. */
   tidy: undefined;
   /** Open a fresh bench of the first-look scenario in a layout, with values written over; closed after the test. */
@@ -16,12 +18,20 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
     // biome-ignore lint/correctness/noEmptyPattern: the fixture depends on no other
     async ({}, use) => {
       // the pictures of the documents show the gallery as it is after its figures have been made
-      const server = await LabServer.create(process.env.PICTURES ? { COMBBENCH_FIGURES: "true" } : {});
+      // canvases are drawn in software: each picture of the traces costs as much as a step of a test
+      const server = await LabServer.create(
+        process.env.PICTURES ? { COMBBENCH_FIGURES: "true" } : { COMBBENCH_FRAME_RATE_HZ: "8" },
+      );
       await use(server);
       await server.destroy();
     },
     { scope: "worker", timeout: 150_000 },
   ],
+  drawn: [Boolean(process.env.PICTURES), { option: true }],
+  page: async ({ page, drawn }, use) => {
+    if (!drawn) await page.route("**/3d/", (route) => route.fulfill({ contentType: "text/html", body: "" }));
+    await use(page);
+  },
   tidy: [
     async ({ server }, use) => {
       await use(undefined);

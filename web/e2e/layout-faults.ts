@@ -8,6 +8,20 @@ import type { Page } from "@playwright/test";
  */
 export const layoutFaults = (page: Page, within = "body"): Promise<string[]> => page.evaluate(findFaults, within);
 
+/** The same in either scheme, in one visit to the page. */
+export const faultsInBothSchemes = (page: Page, within = "body"): Promise<string[]> =>
+  page.evaluate(`(${inBothSchemes})(${findFaults}, ${JSON.stringify(within)})`);
+
+function inBothSchemes(find: (within: string) => string[], within: string): string[] {
+  const name = "data-mantine-color-scheme";
+  const now = document.documentElement.getAttribute(name) ?? "light";
+  const other = now === "dark" ? "light" : "dark";
+  return [other, now].flatMap((scheme) => {
+    document.documentElement.setAttribute(name, scheme);
+    return find(within).map((fault) => `${scheme}: ${fault}`);
+  });
+}
+
 /** Runs in the page, so it holds all it needs. */
 function findFaults(within: string): string[] {
   interface Box {
@@ -38,13 +52,24 @@ function findFaults(within: string): string[] {
     styles.set(e, known);
     return known;
   };
+  const boxes = new Map<Element, DOMRect>();
+  const boxOf = (e: Element) => {
+    const known = boxes.get(e) ?? e.getBoundingClientRect();
+    boxes.set(e, known);
+    return known;
+  };
   const shown = (e: Element) => e.checkVisibility({ opacityProperty: true, visibilityProperty: true });
   /** For those who listen only. */
-  const unseen = (e: Element) => {
-    if (e.closest(".katex-mathml, [aria-hidden=true]")) return true;
-    for (let up: Element | null = e; up; up = up.parentElement)
-      if (up.clientWidth === 1 && up.clientHeight === 1) return true;
-    return false;
+  const hidden = new Map<Element, boolean>();
+  const unseen = (e: Element): boolean => {
+    const known = hidden.get(e);
+    if (known !== undefined) return known;
+    const is: boolean =
+      e.matches(".katex-mathml, [aria-hidden=true]") ||
+      (e.clientWidth === 1 && e.clientHeight === 1) ||
+      (e.parentElement !== null && unseen(e.parentElement));
+    hidden.set(e, is);
+    return is;
   };
   /** Menus and dialogs are meant to lie over the page. */
   const layer = (e: Element) => e.closest("[data-portal], [role=dialog], [role=menu]");
@@ -63,7 +88,7 @@ function findFaults(within: string): string[] {
       const holds = !absolute || style.position !== "static";
       if (holds) absolute = false;
       if (holds && style.overflowX !== "visible" && style.display !== "inline") {
-        const edge = up.getBoundingClientRect();
+        const edge = boxOf(up);
         if (/auto|scroll/.test(style.overflowX) || up.matches("[role=tablist]")) {
           reach.left = Math.max(reach.left, edge.left);
           reach.right = Math.min(reach.right, edge.right);

@@ -2,6 +2,7 @@ import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
 import { ProxyServer } from "./proxy-server";
 
 test.use({
+  drawn: true,
   ignoreHTTPSErrors: true,
   launchOptions: async ({ launchOptions }, use) => {
     await use({

@@ -1,4 +1,5 @@
 import { expect, test } from "./lab";
+import { expectFits } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
 interface Recording {
@@ -43,6 +44,7 @@ test("a bench is recorded with its past, replayed with a loop, compared and dele
   await expect(panel.getByRole("status")).toHaveText(/^Fail/);
   await expect(panel.getByRole("row", { name: /plant.displacement .*fail/ })).toBeVisible();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
+  await expectFits(page, "recordings", undefined, "recordings");
 
   const [download] = await Promise.all([
     page.waitForEvent("download"),

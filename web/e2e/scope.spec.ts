@@ -2,9 +2,6 @@ import type { Locator } from "@playwright/test";
 import { expect, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
-/** A view in 3D, drawn in software, would take the time of these tests. */
-test.beforeEach(({ page }) => page.route("**/3d/**", (route) => route.abort()));
-
 /** What a scope draws, read from its own canvas: rows with the axis' numbers below, rows the traces cover. */
 async function drawn(scope: Locator): Promise<{ below: number; traces: number; height: number }> {
   const field = await scope.locator(".u-over").boundingBox();

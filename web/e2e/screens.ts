@@ -1,47 +1,62 @@
 import type { CDPSession, Page } from "@playwright/test";
 import { expect } from "./lab";
-import { layoutFaults } from "./layout-faults";
+import { faultsInBothSchemes } from "./layout-faults";
 import { faintLetters } from "./serious-violations";
-
-type Scheme = "light" | "dark";
 
 export interface Screen {
   width: number;
   height: number;
-  scheme: Scheme;
 }
 
 /** The screens the page is made for: a projector, a large one, a tablet and a phone. */
 export const SCREENS: Screen[] = [
-  { width: 1366, height: 768, scheme: "light" },
-  { width: 1920, height: 1080, scheme: "dark" },
-  { width: 820, height: 1180, scheme: "light" },
-  { width: 390, height: 844, scheme: "dark" },
+  { width: 1366, height: 768 },
+  { width: 1920, height: 1080 },
+  { width: 820, height: 1180 },
+  { width: 390, height: 844 },
 ];
+
+export const SCHEMES = ["dark", "light"] as const;
+
+export const isPhone = ({ width }: Screen): boolean => width < 600;
 
 export const nameOf = ({ width, height }: Screen): string => `${width} x ${height}`;
 
 const sessions = new WeakMap<Page, CDPSession>();
 
 /** Show a page on a screen, without loading it again; what is small is touched. */
-export async function showOn(page: Page, { width, height, scheme }: Screen): Promise<void> {
+export async function showOn(page: Page, { width, height }: Screen): Promise<void> {
   // what a session emulates ends with it
   const session = sessions.get(page) ?? (await page.context().newCDPSession(page));
   sessions.set(page, session);
   await session.send("Emulation.setTouchEmulationEnabled", { enabled: width < 1000 });
-  await page.emulateMedia({ colorScheme: scheme });
   await page.setViewportSize({ width, height });
 }
 
-/** Nothing overlaps or is cut; what comes or goes may do so for a moment. */
+/** Nothing overlaps or is cut in either scheme; what comes or goes may do so for a moment. */
 export async function expectClean(page: Page, where: string, within?: string): Promise<void> {
-  await expect.soft.poll(() => layoutFaults(page, within), { message: where, timeout: 10_000 }).toEqual([]);
+  await expect.soft.poll(() => faultsInBothSchemes(page, within), { message: where, timeout: 10_000 }).toEqual([]);
 }
 
-/** Whatever is written can be read in both schemes. */
-export async function expectReadable(page: Page, where: string, within?: string): Promise<void> {
-  for (const colorScheme of ["dark", "light"] as const) {
-    await page.emulateMedia({ colorScheme });
-    expect.soft(await faintLetters(page, within), `${where}, ${colorScheme}`).toEqual([]);
+/** Whatever is written can be read in a scheme. */
+export async function expectReadable(
+  page: Page,
+  where: string,
+  colorScheme: "dark" | "light",
+  within?: string,
+): Promise<void> {
+  await page.emulateMedia({ colorScheme });
+  expect.soft(await faintLetters(page, within), `${where}, ${colorScheme}`).toEqual([]);
+}
+
+/** A page, or a part of it, lies right on every screen and can be read; a phone shows a panel when it is chosen. */
+export async function expectFits(page: Page, what: string, within?: string, panel?: string): Promise<void> {
+  const before = page.viewportSize() ?? SCREENS[0];
+  for (const screen of SCREENS) {
+    await showOn(page, screen);
+    if (panel && isPhone(screen)) await page.getByRole("combobox", { name: "Another panel" }).selectOption(panel);
+    await expectClean(page, `${what} at ${nameOf(screen)}`, within);
   }
+  await showOn(page, before);
+  for (const scheme of SCHEMES) await expectReadable(page, what, scheme, within);
 }

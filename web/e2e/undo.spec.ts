@@ -1,4 +1,5 @@
 import { expect, test } from "./lab";
+import { expectFits } from "./screens";
 
 test("what is done to a bench or its panels is taken back by key, by button and in the notice, and made again", async ({
   page,
@@ -68,6 +69,7 @@ test("values are kept as a set, compared, and put back in one tick", async ({ pa
   await expect(sets.getByRole("row", { name: /Noise.*50.nm.*200.nm/ })).toBeVisible();
   await sets.getByRole("button", { name: "Put as it came on the bench" }).click();
   await expect(sets.getByText(/^No difference in/)).toBeVisible();
+  await expectFits(page, "parameter sets", undefined, "sets");
 
   await sets.getByRole("textbox", { name: "Keep the values of now as" }).fill("as it came");
   await sets.getByRole("button", { name: "Keep", exact: true }).click();

@@ -1,5 +1,7 @@
 import { expect, test } from "./lab";
 
+test.use({ drawn: true });
+
 test("the device is alive in 3D: it is drawn, and it moves", async ({ page, openBench }) => {
   await openBench("research");
   const canvas = page.frameLocator("iframe[title='The device in 3D']").locator("canvas").first();

@@ -1,4 +1,5 @@
 import { expect, test } from "./lab";
+import { expectFits } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
 test("a visitor without a token is told what this is and whom to ask, and goes on with one", async ({
@@ -9,11 +10,13 @@ test("a visitor without a token is told what this is and whom to ask, and goes o
   await expect(page.getByRole("heading", { name: "CombBench" })).toBeVisible();
   await expect(page.getByText("Ask whoever runs it")).toBeVisible();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
+  await expectFits(page, "the page of a visitor");
   if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/visitor.png` });
 
   await page.getByLabel("Access token").fill("guessed");
   await page.getByRole("button", { name: "Open" }).click();
   await expect(page.getByRole("alert")).toHaveText("This token is not the one of this bench.");
+  await expectFits(page, "a wrong token");
 
   await page.getByLabel("Access token").fill(new URL(server.url).searchParams.get("token") ?? "");
   await page.getByRole("button", { name: "Open" }).click();

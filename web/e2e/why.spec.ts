@@ -4,8 +4,6 @@ import { seriousViolations } from "./serious-violations";
 
 const lanesOf = (page: Page) => page.getByRole("region", { name: "Diagnosis by kalman" });
 const whyOf = (page: Page) => page.getByRole("region", { name: "Why this sample" });
-/** A view in 3D, drawn in software, would take the time of these tests. */
-test.beforeEach(({ page }) => page.route("**/3d/**", (route) => route.abort()));
 
 const SENTENCE = /^(healthy|[mkb]\+\d+) wins.* by [\d.]+ σ/;
 

@@ -4,7 +4,7 @@ import { useMemo, useState } from "react";
 import type { Bench } from "../api/types";
 import { actions } from "../bench/actions";
 import { hypothesisWords } from "../bench/hypothesis-words";
-import { type BenchStep, useSteps } from "../bench/steps";
+import { type BenchStep, hasEnded, useSteps } from "../bench/steps";
 import { conditionWords } from "../panels/condition/condition";
 import { type TruthSwitch, truthSwitches } from "../panels/lanes/delays";
 import { useBench } from "../stream/bench-store";
@@ -39,7 +39,7 @@ export function StepWords({ bench, steps }: { bench: Bench; steps: BenchStep[] }
 function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
   const next = steps.findIndex((step) => !step.done);
   const now = steps[(next < 0 ? steps.length : next) - 1];
-  const ended = next < 0 && (!bench.samples || bench.tick >= bench.samples);
+  const ended = hasEnded(bench, steps);
   const [asked, setAsked] = useState<boolean | undefined>(undefined);
   const open = asked ?? ended;
   const repeats = steps.every((step) => step.ofScenario);

@@ -1,6 +1,6 @@
 import { useEffect, useMemo, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
-import { useSteps } from "../bench/steps";
+import { hasEnded, useSteps } from "../bench/steps";
 import { useBench } from "../stream/bench-store";
 import { type Hints, hintsOf } from "./hints";
 
@@ -14,7 +14,7 @@ interface TickedHints extends Hints {
 
 const storedDone = () => (localStorage.getItem(DONE) ?? "").split(" ").filter(Boolean);
 
-/** What to try on the bench of the page, ticked off as it is done; nothing once it was dismissed, or all was done. */
+/** What to try on the bench, ticked off as it is done; nothing once dismissed, all done, or the scenario at its end. */
 export function useHints(): TickedHints | undefined {
   const bench = useBench(
     useShallow(({ bench }) => {
@@ -24,7 +24,8 @@ export function useHints(): TickedHints | undefined {
     }),
   );
   const events = useBench((s) => s.events);
-  const hasSteps = useSteps().length > 1;
+  const steps = useSteps();
+  const hasSteps = steps.length > 1;
   const [dismissed, setDismissed] = useState(() => localStorage.getItem(DISMISSED) !== null);
   const [before] = useState(storedDone);
   const hints = useMemo(() => bench && hintsOf(bench, hasSteps), [bench, hasSteps]);
@@ -33,6 +34,8 @@ export function useHints(): TickedHints | undefined {
   useEffect(() => {
     localStorage.setItem(DONE, [...new Set([...storedDone(), ...done.split(" ").filter(Boolean)])].join(" "));
   }, [done]);
+  // what was found at each step stands in their place then
+  if (bench && hasSteps && hasEnded(bench, steps)) return undefined;
   if (dismissed || !hints || hints.hints.every((hint) => before.includes(hint.id))) return undefined;
   return {
     ...hints,

@@ -37,6 +37,10 @@ export function useSteps(): BenchStep[] {
   return useMemo(() => (shown && pending ? stepsOf(currentEvents(events), pending) : NONE), [events, pending, shown]);
 }
 
+/** Whether the last step was taken and the scenario is over. */
+export const hasEnded = (bench: Pick<Bench, "samples" | "tick">, steps: readonly BenchStep[]): boolean =>
+  steps.every(({ done }) => done) && (!bench.samples || bench.tick >= bench.samples);
+
 /** The longest time between two steps, in ticks; from a single one, that to the end. Undefined where it is not known. */
 export function longestStep(steps: readonly BenchStep[], end: number | null | undefined): number | undefined {
   const ticks = steps.slice(1).flatMap(({ tick }) => tick ?? []);
