@@ -17,10 +17,13 @@ from pathlib import Path
 import numpy as np
 
 from core import registry
+from core.board import abreast as eight
 from core.board import fold, program
 from core.board.history import History
 from core.board.rows import Rows
 from core.board.wiring import wire
+from core.lanes import code
+from core.lanes.numbers import WIDTH
 from core.ports import RESERVED
 from scenarios.kernel_cache import COMPLETE, folder, prune
 from scenarios.key import code_version
@@ -53,6 +56,9 @@ def _loop() -> None:
     none, nothing = np.zeros(RESERVED), np.zeros((0, 0))
     table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
+    no_places, no_trace = np.zeros(0, np.int64), np.zeros((0, WIDTH, 0))
+    wide, folds = np.zeros((RESERVED, WIDTH)), np.zeros((2, 0, WIDTH), np.uint64)
+    eight.run(0, 0, 1.0, table, wide, wide, wide, no_places, no_places, no_trace, no_places, folds, 0)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
     history.columns([0], 0, 1, 1)
@@ -69,22 +75,25 @@ def tasks(*, first_bench_only: bool = False) -> list[Task]:
     return [(family, name) for family in HEAVY_FIRST for name in registry.blocks(family)]
 
 
-def compile_all(work: list[Task], told: Callable[[int, int], None]) -> None:
-    """Compile some kernels in processes of their own; tell how many are done, of how many."""
+def compile_all(work: list[Task], told: Callable[[int, int], None], *, abreast: bool = True) -> None:
+    """Compile some kernels in processes of their own, those of boards abreast too; tell how many are done."""
     method = "fork" if sys.platform == "linux" else "spawn"
     with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context(method)) as pool:
-        done = [pool.submit(_compile, task) for task in [LOOP, *work]]
+        done = [pool.submit(_compile, task, abreast) for task in [LOOP, *work]]
         for count, future in enumerate(as_completed(done), 1):
             future.result()
             told(count, len(done))
 
 
-def _compile(task: Task) -> None:
+def _compile(task: Task, abreast: bool) -> None:
     family, name = task
     if task == LOOP:
         _loop()
-    else:
-        program.address(registry.block(family, name))
+        return
+    block = registry.block(family, name)
+    program.address(block)
+    if abreast:
+        code.kept(block)
 
 
 def complete() -> Path | None:
@@ -109,7 +118,7 @@ def main() -> None:
             sys.stdout.write(f"\r{text}" if terminal else f"{text}\n")
             sys.stdout.flush()
 
-    compile_all(tasks(first_bench_only=first), told)
+    compile_all(tasks(first_bench_only=first), told, abreast=not first)
     if terminal:
         sys.stdout.write("\n")
     done = complete()

@@ -259,6 +259,7 @@ def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, pref
 def watched(board: Board) -> list[str]:
     """Return the outputs that the figures of a run are made of, those of twins with their prefix."""
     wanted = {*figure_signals(board), *evidence_signals(board)}
+    wanted |= {f"{name}.{port}" for name in board.spec.controllers for port in rate.READ if board.spec.axes}
     if isinstance(board, Ensemble):
         for name, twin in board.twins.items():
             wanted |= {f"{name}:{signal}" for signal in figure_signals(twin)}

@@ -1,6 +1,8 @@
 import { defineConfig } from "@playwright/test";
 import tests from "./playwright.config";
 
+process.env.FRAME_RATE_HZ = "60";
+
 /** How fast the page is: measured by hand on a quiet machine (`make page-speed`), never a test of a suite. */
 export default defineConfig({
   ...tests,

@@ -32,12 +32,12 @@ def address(block: type[Block]) -> int:
     """Return where the C function of the step of a block is: pointers to parameters, state, all signals, and places."""
     found = _addresses.get(block)
     if found is None:
-        found = _addresses[block] = loaded(_kept(block))
+        found = _addresses[block] = loaded(kept(block))
     return found
 
 
-def _kept(block: type[Block]) -> bytes:
-    """Return the machine code of a step, compiled if it is not kept."""
+def kept(block: type[Block]) -> bytes:
+    """Return the machine code of a step; it is compiled, and put on the shelf, if it is not there."""
     name = f"lanes-{block.__module__}-{_hash(block)}"
     code = get(name)
     if code is None:

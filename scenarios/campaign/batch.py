@@ -10,7 +10,7 @@ from typing import Any
 from core.board.abreast import Abreast
 from core.board.board import Board
 from core.board.changes import check
-from core.board.commands import Command, Set, Switch
+from core.board.commands import Command
 from core.board.instances import instances
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import Pending, Queue
@@ -47,9 +47,6 @@ def shape(scenario: Scenario) -> Any:
     if scenario.study is not None or scenario.twins or any(c.when for event in scenario.events for c in event):
         return None
     spec = scenario.spec
-    switched = any(isinstance(command, Switch | Set) for event in scenario.events for command in event)
-    if spec.axes and switched:  # its figures are those of the controller that drives at the end
-        return None
     blocks = tuple((entry.key, entry.block, entry.every, entry.axis) for entry in instances(spec))
     return blocks, tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
 

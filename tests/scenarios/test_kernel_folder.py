@@ -75,7 +75,7 @@ def test_a_file_another_process_has_deleted_is_no_error(tmp_path, monkeypatch, s
 )
 def test_a_log_gets_a_line_now_and_then_and_a_terminal_one_that_changes(tmp_path, monkeypatch, capsys, terminal, said):
     keep(tmp_path, "old", 31)
-    monkeypatch.setattr(kernels, "compile_all", lambda work, told: [told(count, 21) for count in range(1, 22)])
+    monkeypatch.setattr(kernels, "compile_all", lambda work, told, **_: [told(count, 21) for count in range(1, 22)])
     monkeypatch.setattr(kernels, "complete", lambda: tmp_path / "complete-this")
     monkeypatch.setattr("sys.stdout.isatty", lambda: terminal)
     kernels.main()

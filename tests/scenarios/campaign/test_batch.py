@@ -16,11 +16,10 @@ from scenarios.schema import Scenario
 TICKS = 800
 ALONE = (
     "ch1-shock ch3-indirect-mrac-b30 ch3-mrac-noise ch3-optical-loop ch3-pull-in-map ch3-stvsc-estimate "
-    "ch3-stvsc-pull-in ch3-vsc ch4-double-integrator-gains ch4-tracking-vsmrc ch5-light-two-devices ch6-drift "
-    "ch6-phase-sync ch6-sense-axis-sync gyro-comb-device gyro-forced-drive gyro-half-sample gyro-not-exciting "
-    "gyro-off-resonance"
+    "ch3-stvsc-pull-in ch3-vsc ch4-double-integrator-gains ch4-tracking-vsmrc ch5-light-two-devices gyro-comb-device "
+    "gyro-forced-drive gyro-half-sample gyro-not-exciting gyro-off-resonance"
 ).split()
-"""Scenarios with twins, commands that wait for conditions, switches on a plant with axes; and one that trips."""
+"""Scenarios with twins, commands that wait for conditions; and one that trips."""
 
 
 def said(found: Outcome) -> str:

@@ -26,6 +26,7 @@ export function useHints(): TickedHints | undefined {
   const events = useBench((s) => s.events);
   const steps = useSteps();
   const hasSteps = steps.length > 1;
+  const ended = useBench(({ bench }) => bench !== undefined && hasSteps && hasEnded(bench, steps));
   const [dismissed, setDismissed] = useState(() => localStorage.getItem(DISMISSED) !== null);
   const [before] = useState(storedDone);
   const hints = useMemo(() => bench && hintsOf(bench, hasSteps), [bench, hasSteps]);
@@ -35,7 +36,7 @@ export function useHints(): TickedHints | undefined {
     localStorage.setItem(DONE, [...new Set([...storedDone(), ...done.split(" ").filter(Boolean)])].join(" "));
   }, [done]);
   // what was found at each step stands in their place then
-  if (bench && hasSteps && hasEnded(bench, steps)) return undefined;
+  if (ended) return undefined;
   if (dismissed || !hints || hints.hints.every((hint) => before.includes(hint.id))) return undefined;
   return {
     ...hints,
