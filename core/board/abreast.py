@@ -16,7 +16,7 @@ from core.block import FloatArray, IntArray
 from core.board import changes, program
 from core.board.board import Board
 from core.board.commands import Command
-from core.board.fold import FACTOR_A, FACTOR_B, S29, S32, Words
+from core.board.fold import SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.log import Log, LogEntry
 from core.board.pattern import Pattern, Uneven, is_same_but_seed, is_same_structure, numbers
@@ -27,10 +27,13 @@ from core.board.wiring import Wiring
 from core.kernel import kernel
 from core.lanes import code
 from core.lanes.numbers import WIDTH
+from core.lanes.rows import folding, keeping, sorting
 from core.ports import RESERVED, TICK, TIME_MS
 
 ALIGNMENT = 8
 """Numbers of a cache line, at which rows of lanes begin."""
+CHUNK = 256
+"""Ticks whose signals are kept before they are sorted by board."""
 
 
 @kernel
@@ -43,10 +46,12 @@ def run(
     s: FloatArray,
     w: FloatArray,
     io: IntArray,
-    columns: IntArray,
-    trace: FloatArray,
-    folded: IntArray,
+    tail: IntArray,
     folds: Words,
+    folded: IntArray,
+    rows: FloatArray,
+    columns: IntArray,
+    sizes: IntArray,
     trip: int,
 ) -> int:
     """Run up to ``n`` ticks of all boards; return how many, fewer when one of them trips at the last of them.
@@ -55,17 +60,20 @@ def run(
     ----------
     p, s, w : ndarray, shape (numbers, WIDTH)
         Parameters, states and signals, a column for each board.
-    columns : ndarray, shape (kept,)
-        The signals to keep.
-    trace : ndarray, shape (kept, WIDTH, ticks)
-        Where they are kept, by tick.
-    folded : ndarray, shape (counted,)
-        The outputs whose bits count.
-    folds : ndarray of uint64, shape (2, outputs, WIDTH)
+    tail : ndarray
+        Addresses of what folds a tick and of what keeps it (``core.lanes.rows``).
+    folds, folded : ndarray
+        The folds, and the places of the outputs that count.
+    rows, columns : ndarray
+        Where signals are kept, shape (ticks, kept, WIDTH), and their places.
+    sizes : ndarray
+        How many outputs count, how many there are, how many signals are kept.
     """
-    bits = w.view(np.uint64)
     p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
     w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
+    row, row_bytes = np.int64(rows.ctypes.data), 8 * WIDTH * len(columns)
+    fold_address, folded_address = np.int64(folds.ctypes.data), np.int64(folded.ctypes.data)
+    column_address, size_address = np.int64(columns.ctypes.data), np.int64(sizes.ctypes.data)
     for i in range(n):
         tick = first_tick + i
         for k in range(WIDTH):
@@ -81,23 +89,22 @@ def run(
                     w_address,
                     io_address + 8 * table[b, IO_OFFSET],
                 )
-        for c in range(len(columns)):
-            for k in range(WIDTH):
-                trace[c, k, tick] = w[columns[c], k]
-        for f in range(len(folded)):
-            column = folded[f]
-            for k in range(WIDTH):
-                sample = bits[RESERVED + column, k]
-                a = (folds[0, column, k] ^ sample) * FACTOR_A
-                b_ = (folds[1, column, k] + sample) * FACTOR_B
-                folds[0, column, k] = a ^ (a >> S32)
-                folds[1, column, k] = b_ ^ (b_ >> S29)
+        call(int(tail[0]), w_address, fold_address, folded_address, size_address)
+        call(int(tail[1]), w_address, row, column_address, size_address + 16)
+        row += row_bytes
         tripped = False
         for k in range(WIDTH):
             tripped = tripped or w[trip, k] != 0.0
         if tripped:
             return i + 1
     return n
+
+
+@kernel
+def call_once(address: int, first: FloatArray, second: FloatArray, places: IntArray, sizes: IntArray) -> None:
+    """Call a function of four pointers with arrays."""
+    data = np.int64(first.ctypes.data), np.int64(second.ctypes.data), np.int64(places.ctypes.data)
+    call(address, data[0], data[1], data[2], np.int64(sizes.ctypes.data))
 
 
 class Lane(Board):
@@ -152,6 +159,11 @@ class Abreast:
         self._folds = np.repeat(pattern.board.folds[:, :, None], WIDTH, axis=2)
         self._columns = np.array([wiring.index[name] for name in columns], dtype=np.int64)
         self._trace = np.empty((len(columns), WIDTH, samples))
+        self._rows = np.empty((CHUNK, len(columns), WIDTH))
+        self._folded = pattern.folded + RESERVED
+        outputs = self._folds.shape[1]
+        self._sizes = np.array([len(self._folded), outputs, len(columns)], dtype=np.int64)
+        self._tail = np.array([folding((A, B), SHIFTS, RESERVED), keeping()], dtype=np.int64)
         self._names = list(columns)
         self.boards = [
             self._board(lane, spec, queue) for lane, (spec, queue) in enumerate(zip(specs, pending, strict=True))
@@ -225,13 +237,20 @@ class Abreast:
         return {name: self._trace[column, lane, : self.tick] for column, name in enumerate(self._names)}
 
     def _run(self, n: int) -> int:
-        board = self.boards[0]
-        return int(
-            run(
-                n, self.tick, board.dt_ms, self._table, self._p, self._s, self._w, self._io,
-                self._columns, self._trace, self._pattern.folded, self._folds, board.wiring.trip,
-            )
-        )  # fmt: skip
+        board, n = self.boards[0], min(n, CHUNK)
+        arrays = (self._table, self._p, self._s, self._w, self._io, self._tail, self._folds, self._folded)
+        kept = self._rows, self._columns, self._sizes
+        ran = int(run(n, self.tick, board.dt_ms, *arrays, *kept, board.wiring.trip))
+        self._sort(ran)
+        return ran
+
+    def _sort(self, ran: int) -> None:
+        """Sort the signals of some ticks by board."""
+        whole = ran // WIDTH * WIDTH
+        sizes = np.array([len(self._names), whole, self._trace.shape[2], self.tick], dtype=np.int64)
+        call_once(sorting(), self._rows, self._trace, sizes, sizes)
+        rest = self._rows[whole:ran].transpose(1, 2, 0)
+        self._trace[:, :, self.tick + whole : self.tick + ran] = rest
 
     def _silence(self, tripped: list[bool]) -> None:
         """Let the lane of a board that has tripped follow another, which has not."""

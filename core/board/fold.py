@@ -27,6 +27,7 @@ START = np.array([[0x9E3779B97F4A7C15], [0xC2B2AE3D27D4EB4F]], dtype=np.uint64)
 FACTOR_A, FACTOR_B = np.uint64(0xFF51AFD7ED558CCD), np.uint64(0xD6E8FEB86659FD93)
 S32, S29 = np.uint64(32), np.uint64(29)
 A, B, WORD = int(FACTOR_A), int(FACTOR_B), 2**64 - 1
+SHIFTS = int(S32), int(S29)
 
 
 def begin(columns: int) -> Words:

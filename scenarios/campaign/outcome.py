@@ -9,15 +9,17 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from core.block import FloatArray
+from core.block import FloatArray, IntArray
 from core.board.board import Board
 from core.errors import InputError
+from core.kernel import kernel
 from core.loop.score import Scores
 from scenarios.run import judge, run
 from scenarios.schema import Scenario
 
 EVIDENCE = np.linspace(-8.0, 8.0, 161)
 """Thresholds of the evidence of a fault, decimal logarithm of its odds."""
+ODDS = 10.0**EVIDENCE
 LEAST = 1e-300
 
 
@@ -95,15 +97,40 @@ def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatAr
     if healthy is None or columns[0] not in trace or board.tick == 0:
         return counted
     probability = np.array([trace[column] for column in columns])
-    bins = np.digitize(_log_odds(probability, healthy), EVIDENCE)
-    is_healthy = trace[f"{name}.truth"] == healthy
-    counted.healthy = np.bincount(bins[is_healthy], minlength=len(EVIDENCE) + 1).tolist()
-    counted.faulty = np.bincount(bins[~is_healthy], minlength=len(EVIDENCE) + 1).tolist()
+    counts = evidence(probability, healthy, np.ascontiguousarray(trace[f"{name}.truth"]), ODDS)
+    counted.healthy, counted.faulty = counts.tolist()
     return counted
 
 
-def _log_odds(probability: FloatArray, healthy: int) -> FloatArray:
-    """Return the decimal logarithm of the odds of any fault; 0 where there is no verdict."""
-    fault = np.delete(probability, healthy, axis=0).sum(axis=0)
-    odds: FloatArray = np.log10(np.maximum(fault, LEAST)) - np.log10(np.maximum(probability[healthy], LEAST))
-    return np.where(np.isnan(odds), 0.0, odds)
+@kernel
+def evidence(probability: FloatArray, healthy: int, truth: FloatArray, odds: FloatArray) -> IntArray:
+    """Count samples by the odds of any fault, those while the truth was healthy and the others.
+
+    Parameters
+    ----------
+    probability : ndarray, shape (hypotheses, samples)
+    healthy : int
+        The hypothesis of a healthy device.
+    truth : ndarray, shape (samples,)
+    odds : ndarray, shape (thresholds,)
+        Where one bin ends and the next begins. Odds that are not a number, as before any verdict, count as even.
+
+    Returns
+    -------
+    ndarray of int64, shape (2, thresholds + 1)
+    """
+    counts = np.zeros((2, len(odds) + 1), dtype=np.int64)
+    found = 0
+    for i in range(probability.shape[1]):
+        fault = 0.0
+        for k in range(probability.shape[0]):
+            if k != healthy:
+                fault += probability[k, i]
+        now = max(fault, LEAST) / max(probability[healthy, i], LEAST)
+        if not now > 0.0:
+            now = 1.0
+        # most samples fall where the one before fell
+        if (found > 0 and now < odds[found - 1]) or (found < len(odds) and now >= odds[found]):
+            found = np.searchsorted(odds, now, side="right")
+        counts[0 if truth[i] == healthy else 1, found] += 1
+    return counts

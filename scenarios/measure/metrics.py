@@ -14,6 +14,7 @@ from core.board.spec import Spec
 from core.kernel import kernel
 from core.loop.environment import Environment
 from core.loop.score import Scores
+from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing
 from scenarios.measure.lateral import lateral_metrics
 from scenarios.measure.rate import rate_metrics
 from scenarios.measure.sensing import sensing_metrics
@@ -71,19 +72,17 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     dt = board.dt_ms
     x, model = trace["plant.displacement"], trace["model.displacement"]
     u, r = trace["drive.voltage"], trace["reference.voltage"]
-    error = x - model
     start, tail = stretch.start(len(x), dt), stretch.tail(len(x))
-    swing = float(np.max(np.abs(model[tail])))
-    outside = np.flatnonzero(np.abs(error[start:]) > SETTLED * swing)
-    settling = (float(outside[-1]) + 1.0) * dt if len(outside) else 0.0
+    band = SETTLED * swing(model[tail])
+    error, peak, settled = errors(x[start:], model[start:], band)
     figures = {
-        "control.rms_error_um": _rms(error[start:]),
-        "control.tail_rms_error_um": _rms(error[tail]),
-        "control.peak_error_um": float(np.max(np.abs(error[start:]))),
-        "control.settling_ms": settling,
-        "control.effort_rms_v": _rms(u[tail]),
+        "control.rms_error_um": error,
+        "control.tail_rms_error_um": errors(x[tail], model[tail], band)[0],
+        "control.peak_error_um": peak,
+        "control.settling_ms": float(settled) * dt,
+        "control.effort_rms_v": rms(u[tail]),
     }
-    step = int(np.max(np.flatnonzero(np.diff(r)), initial=-1)) + 1
+    step = last_step(r)
     before = float(model[step - 1]) if step else 0.0
     rise = float(np.mean(model[tail])) - before
     if abs(rise) > 1e-9 and np.ptp(r[tail]) == 0.0:
@@ -108,16 +107,8 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
 
 def first_peak(x: FloatArray, model: FloatArray) -> float | None:
     """Return the excess of the first peak over the model's, %; nothing when the model does not turn twice."""
-    slope = np.sign(np.diff(model))
-    moving = np.flatnonzero(slope)
-    if not len(moving):
-        return None
-    way = slope[moving[0]]
-    back = moving[slope[moving] == -way]
-    again = moving[(slope[moving] == way) & (moving > back[0])] if len(back) else back
-    if not len(again) or model[back[0]] * way <= 0.0:
-        return None
-    return float(100.0 * (np.max(x[: again[0] + 1] * way) / (model[back[0]] * way) - 1.0))
+    peak, reached = first_peaks(x, model)
+    return 100.0 * (reached / peak - 1.0) if peak > 0.0 else None
 
 
 def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str, float]:
@@ -185,7 +176,3 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
         if name in scores:
             figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
     return figures | verdict_metrics(board, trace)
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values * values)))
