@@ -20,7 +20,9 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
       // the pictures of the documents show the gallery as it is after its figures have been made
       // canvases are drawn in software: each picture of the traces costs as much as a step of a test
       const server = await LabServer.create(
-        process.env.PICTURES ? { COMBBENCH_FIGURES: "true" } : { COMBBENCH_FRAME_RATE_HZ: process.env.FRAME_RATE_HZ ?? "8" },
+        process.env.PICTURES
+          ? { COMBBENCH_FIGURES: "true" }
+          : { COMBBENCH_FRAME_RATE_HZ: process.env.FRAME_RATE_HZ ?? "8" },
       );
       await use(server);
       await server.destroy();
