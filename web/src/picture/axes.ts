@@ -122,10 +122,16 @@ export function paintAxes(pen: Pen, box: Box, across: Axis, up: Axis, look: Look
     pen.save();
     pen.translate(field.left - widest - GAP - row / 2, (field.top + field.bottom) / 2);
     pen.rotate(-Math.PI / 2);
-    pen.fillText(y.title, 0, 0, field.bottom - field.top + (box.height - bottom));
+    const room = field.bottom - field.top + (box.height - bottom);
+    pen.fillText(titleIn(pen, y.title, room), 0, 0, room);
     pen.restore();
   }
   return plot;
+}
+
+/** A title, or its unit where the whole would be squeezed. */
+function titleIn(pen: Pen, title: string, room: number): string {
+  return pen.measureText(title).width > room ? (title.split(", ").at(-1) ?? title) : title;
 }
 
 /** How many numbers stand well above one another. */

@@ -55,7 +55,7 @@ export function Instability() {
     <section className={styles.card} aria-label="Instability map">
       <h2>Where does the rule run away?</h2>
       <p className={styles.advice}>
-        One gain adapted on k/(s² + b₁s + 1) under a sine. Red grows, green settles; each point is the growth of the
+        One gain adapted on k/(s² + b₁s + 1) under a sine. Orange grows, blue settles; each point is the growth of the
         worst solution by Floquet's theorem.
       </p>
       <div className={styles.examples}>
