@@ -200,6 +200,7 @@ def test_out_that_cannot_be_written_is_exit_2(call, tmp_path):
     assert result.exit_code == 2 and "--out" in result.stderr
 
 
+@pytest.mark.timeout(900)
 def test_gallery_runs_every_scenario(call):
     result = call("gallery", "--json")
     found = json.loads(result.stdout)

@@ -128,6 +128,13 @@ class Live:
         found: dict[str, Any] = self.http.get(f"/api/v1/benches/{bench_id}").json()
         return found
 
+    def until(self, bench_id: str, what: Callable[[dict[str, Any]], bool], seconds: float = 60.0) -> None:
+        """Wait until something holds of a bench, however slow the machine is."""
+        end = time.monotonic() + seconds
+        while not what(self.get(bench_id)):
+            assert time.monotonic() < end, self.get(bench_id)
+            time.sleep(0.05)
+
     def command(self, bench_id: str, kind: str = "", **fields: Any) -> httpx.Response:
         """Give a command that runs the bench, by its kind, or one to the board."""
         command = {**({"kind": kind} if kind else {}), **fields}
