@@ -35,7 +35,7 @@ export async function showOn(page: Page, { width, height }: Screen): Promise<voi
 
 /** Nothing overlaps or is cut in either scheme; what comes or goes may do so for a moment. */
 export async function expectClean(page: Page, where: string, within?: string): Promise<void> {
-  await expect.soft.poll(() => faultsInBothSchemes(page, within), { message: where, timeout: 10_000 }).toEqual([]);
+  await expect.soft.poll(() => faultsInBothSchemes(page, within), { message: where, timeout: 30_000 }).toEqual([]);
 }
 
 /** Whatever is written can be read in a scheme. */
