@@ -197,7 +197,7 @@ def run(
     taps : bool
         Keep the inner signals as well.
     figures_only : bool
-        Keep only the outputs that figures are made of, and leave out what nobody reads then.
+        Keep only the outputs that figures are made of, and do not run controllers that only look on.
     compiled : bool
         Run compiled blocks.
     on_tick : callable, optional

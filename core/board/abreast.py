@@ -1,8 +1,8 @@
 """Boards abreast: up to eight boards of one structure, a tick of all of them at a time.
 
-What is alike for them (blocks, wiring, intervals, choices) is there once; numbers of one board stand beside those of
-the next, and ``core.lanes`` has the steps compiled for all of them at once. The bits of each board are those it has
-alone. A board whose course becomes its own (it trips, or commands change what runs) cannot stay: it runs alone.
+The boards share blocks, wiring, intervals and choices. Each number of a board stands beside the same number of the
+next, and ``core.lanes`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
+that trips, or whose commands change which blocks run, cannot stay: it runs alone.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from core.board.instances import instances
 from core.board.log import Log, LogEntry
 from core.board.pattern import Pattern, Uneven, is_same_but_seed, is_same_structure, numbers
 from core.board.pending import Queue
-from core.board.program import EVERY, IO_OFFSET, P_OFFSET, S_OFFSET, call
+from core.board.program import EVERY, call, walk
 from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.kernel import kernel
@@ -79,16 +79,7 @@ def run(
         for k in range(WIDTH):
             w[TICK, k] = tick
             w[TIME_MS, k] = tick * dt_ms
-        for b in range(table.shape[0]):
-            every = table[b, EVERY]
-            if every == 1 or tick % every == 0:
-                call(
-                    int(table[b, 0]),
-                    p_address + 8 * WIDTH * table[b, P_OFFSET],
-                    s_address + 8 * WIDTH * table[b, S_OFFSET],
-                    w_address,
-                    io_address + 8 * table[b, IO_OFFSET],
-                )
+        walk(table, tick, WIDTH, p_address, s_address, w_address, io_address)
         call(int(tail[0]), w_address, fold_address, folded_address, size_address)
         call(int(tail[1]), w_address, row, column_address, size_address + 16)
         row += row_bytes
@@ -134,7 +125,7 @@ class Abreast:
     Parameters
     ----------
     pattern : Pattern
-        What they share.
+        Their blocks, wiring and intervals.
     specs : sequence of Spec
         The bench of each, at most ``WIDTH``.
     pending : sequence of Queue

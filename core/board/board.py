@@ -206,9 +206,7 @@ class Board:
         InputError
             When the command is not allowed; nothing has changed then.
         """
-        moment = command.at_sample
-        if command.at_ms is not None:
-            moment = round(command.at_ms / self.dt_ms)
+        moment = command.tick(self.dt_ms)
         if moment is not None and moment < self.tick:
             raise InputError(f"sample {moment} has passed, the board is at {self.tick}", "at_sample")
         condition = parse_condition(command.when, self.wiring.signals.names) if command.when is not None else None

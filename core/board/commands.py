@@ -36,6 +36,10 @@ class Timed(Table):
             raise ValueError("takes one of at_sample, at_ms and when; only at_sample and when go together")
         return self
 
+    def tick(self, dt_ms: float) -> int | None:
+        """Return the tick it waits for; None for one that waits for none."""
+        return round(self.at_ms / dt_ms) if self.at_ms is not None else self.at_sample
+
     def at(self, sample: int | None, when: str | None = None) -> Self:
         """Return the same command for another moment."""
         if (self.at_sample, self.at_ms, self.when) == (sample, None, when):

@@ -15,6 +15,9 @@ from core.board.program import P_OFFSET
 from core.board.spec import Spec
 from core.record import Layout
 
+PARTS = [part.name for part in fields(Spec) if part.name not in ("document", "frame")]
+"""Parts of a bench that no seed changes."""
+
 
 class Uneven(Exception):
     """Boards that cannot run abreast, or no longer."""
@@ -96,8 +99,7 @@ def _alike(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArr
 
 def is_same_but_seed(spec: Spec, other: Spec) -> bool:
     """Say whether two benches share all parts but the seed."""
-    parts = [part.name for part in fields(Spec) if part.name not in ("document", "frame")]
-    return spec.dt_ms == other.dt_ms and all(getattr(spec, name) is getattr(other, name) for name in parts)
+    return spec.dt_ms == other.dt_ms and all(getattr(spec, name) is getattr(other, name) for name in PARTS)
 
 
 def is_same_structure(board: Board, spec: Spec, order: list[Instance]) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right, insort
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import takewhile
 
 import numpy as np
@@ -58,6 +58,12 @@ class Queue:
     def as_asked(self) -> list[Pending]:
         """The entries in the order in which they have begun to wait, in which those of one tick take effect."""
         return _as_asked(self._entries)
+
+    def copy(self) -> Queue:
+        """Return a queue in which the same commands wait, for another board."""
+        queue = Queue()
+        queue._entries, queue._asked = [replace(entry) for entry in self._entries], self._asked
+        return queue
 
     def add(self, entry: Pending) -> None:
         """Let a command wait."""

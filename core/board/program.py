@@ -17,7 +17,7 @@ from numba.extending import intrinsic
 
 from core.block import Block, FloatArray, IntArray
 from core.board.fold import Words, fold, fold_uncompiled
-from core.kernel import compiled_step, kernel
+from core.kernel import compiled_step, inlined, kernel
 from core.ports import RESERVED, TICK, TIME_MS
 
 ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY = 0, 1, 2, 3, 4
@@ -55,6 +55,22 @@ call: Callable[[Any, Any, Any, Any, Any], None] = intrinsic(_generate_call)  # t
 """Call the C function at an address with four pointers given as integers."""
 
 
+@inlined
+def walk(table: IntArray, tick: int, width: int, p: Any, s: Any, w: Any, io: Any) -> None:
+    """Call the steps whose turn is at a tick, of boards whose numbers stand side by side; arrays are addresses."""
+    for b in range(table.shape[0]):
+        every = table[b, EVERY]
+        # a division costs more than most blocks, and most run at every tick
+        if every == 1 or tick % every == 0:
+            call(
+                int(table[b, ADDRESS]),
+                p + 8 * width * table[b, P_OFFSET],
+                s + 8 * width * table[b, S_OFFSET],
+                w,
+                io + 8 * table[b, IO_OFFSET],
+            )
+
+
 @kernel
 def run(
     n: int,
@@ -84,17 +100,7 @@ def run(
         tick = first_tick + i
         w[TICK] = tick
         w[TIME_MS] = tick * dt_ms
-        for b in range(table.shape[0]):
-            every = table[b, EVERY]
-            # a division costs more than most blocks, and most run at every tick
-            if every == 1 or tick % every == 0:
-                call(
-                    int(table[b, ADDRESS]),
-                    p_address + 8 * table[b, P_OFFSET],
-                    s_address + 8 * table[b, S_OFFSET],
-                    w_address,
-                    io_address + 8 * table[b, IO_OFFSET],
-                )
+        walk(table, tick, 1, p_address, s_address, w_address, io_address)
         for c in range(outputs.shape[1]):
             outputs[i, c] = w[RESERVED + c]
         for c in range(taps.shape[1]):

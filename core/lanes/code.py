@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
@@ -46,11 +47,6 @@ def kept(block: type[Block]) -> bytes:
     return code
 
 
-def runs_abreast(block: type[Block]) -> bool:
-    """Say whether a step runs for all boards at once; else it runs for one after another."""
-    return translated(block)[1]
-
-
 def translated(block: type[Block]) -> tuple[str, bool]:
     """Return the instructions of a step, and whether for all boards at once."""
     try:
@@ -77,15 +73,10 @@ def instructions(block: type[Block], *, lanes: bool) -> str:
 
 def _written(block: type[Block], kinds: Kinds, *, lanes: bool) -> tuple[ir.Module, bool]:
     """Return the instructions as far as the kinds of variables are known, and whether that was enough."""
-    module = ir.Module(NAME)
-    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [POINTER] * 3 + [PLACES]), NAME)
-    for argument in function.args:
-        argument.add_attribute("noalias")
-    builder = ir.IRBuilder(function.append_basic_block("entry"))
-    start = function.append_basic_block("start")
+    module, builder, (p, s, w, io) = begun([POINTER, POINTER, POINTER, PLACES])
+    start = builder.append_basic_block("start")
     translation = Translation(builder, kinds, lanes=lanes)
     ports = {port.name: (i, _seen(port)) for i, port in enumerate(block.Ports.declared)}
-    p, s, w, io = function.args
 
     def board(p: Any, s: Any, w: Any) -> None:
         records = RecordView(p, None, block.Packed.layout), RecordView(s, None, block.State.layout)
@@ -95,7 +86,8 @@ def _written(block: type[Block], kinds: Kinds, *, lanes: bool) -> tuple[ir.Modul
         if lanes:
             board(p, s, w)
         else:
-            _one_by_one(builder, lambda k: board(*(builder.gep(base, [k]) for base in (p, s, w))))
+            with counted(builder, ir.Constant(I64, WIDTH)) as k:  # one board after another
+                board(*(builder.gep(base, [k]) for base in (p, s, w)))
         builder.ret_void()
     builder.branch(start)
     return module, translation.is_complete
@@ -106,19 +98,29 @@ def _seen(port: Any) -> Any:
     return port.record.layout if port.record else port.vector
 
 
-def _one_by_one(builder: ir.IRBuilder, body: Callable[[Any], None]) -> None:
-    """Run the code of one board for each of them."""
+def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
+    """Return a module with a function of such arguments, which lie apart, a builder at its beginning, the arguments."""
+    module = ir.Module(NAME)
+    function = ir.Function(module, ir.FunctionType(ir.VoidType(), kinds), NAME)
+    for argument in function.args:
+        argument.add_attribute("noalias")
+    return module, ir.IRBuilder(function.append_basic_block("entry")), function.args
+
+
+@contextmanager
+def counted(builder: ir.IRBuilder, count: Any, step: int = 1) -> Iterator[Any]:
+    """Repeat what is written inside for 0, step, ... below a count."""
     with builder.goto_entry_block():
         counter = builder.alloca(I64)
     builder.store(ir.Constant(I64, 0), counter)
     head, inside, behind = (builder.append_basic_block() for _ in range(3))
     builder.branch(head)
     builder.position_at_end(head)
-    k = builder.load(counter)
-    builder.cbranch(builder.icmp_signed("<", k, ir.Constant(I64, WIDTH)), inside, behind)
+    at = builder.load(counter)
+    builder.cbranch(builder.icmp_signed("<", at, count), inside, behind)
     builder.position_at_end(inside)
-    body(k)
-    builder.store(builder.add(k, ir.Constant(I64, 1)), counter)
+    yield at
+    builder.store(builder.add(at, ir.Constant(I64, step)), counter)
     builder.branch(head)
     builder.position_at_end(behind)
 

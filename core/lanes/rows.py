@@ -1,22 +1,20 @@
-"""What the loop of boards abreast does with each tick, as vector code: fold outputs, keep signals, sort them by board.
+"""Vector code for the loop of boards abreast: it folds outputs, keeps signals, and sorts them by board.
 
 Each is a C function of four pointers, as steps are; the last is to whole numbers that say how many.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
 from llvmlite import ir
 
-from core.lanes.code import compiled, loaded
+from core.lanes.code import PLACES, POINTER, begun, compiled, counted, loaded
 from core.lanes.numbers import DOUBLE, I64, WIDTH
 
 LANES, BITS = ir.VectorType(DOUBLE, WIDTH), ir.VectorType(I64, WIDTH)
-POINTER = DOUBLE.as_pointer()
 
 
 def _whole(value: int) -> Any:
@@ -27,13 +25,8 @@ class _Writer:
     """Writes one function."""
 
     def __init__(self) -> None:
-        self.module = ir.Module("rows")
-        kind = ir.FunctionType(ir.VoidType(), [POINTER, POINTER, I64.as_pointer(), I64.as_pointer()])
-        function = ir.Function(self.module, kind, "step")
-        for argument in function.args:
-            argument.add_attribute("noalias")
-        self.first, self.second, self.places, self.sizes = function.args
-        self.builder = ir.IRBuilder(function.append_basic_block("entry"))
+        self.module, self.builder, arguments = begun([POINTER, POINTER, PLACES, PLACES])
+        self.first, self.second, self.places, self.sizes = arguments
 
     def size(self, number: int) -> Any:
         return self.whole(self.sizes, _whole(number))
@@ -53,24 +46,6 @@ class _Writer:
     def times(self, value: Any, factor: Any) -> Any:
         return self.builder.mul(value, factor if not isinstance(factor, int) else _whole(factor))
 
-    @contextmanager
-    def each(self, count: Any, step: int = 1) -> Iterator[Any]:
-        """Repeat what is written for 0, step, ... below a count."""
-        build = self.builder
-        with build.goto_entry_block():
-            counter = build.alloca(I64)
-        build.store(_whole(0), counter)
-        head, inside, behind = (build.append_basic_block() for _ in range(3))
-        build.branch(head)
-        build.position_at_end(head)
-        at = build.load(counter)
-        build.cbranch(build.icmp_signed("<", at, count), inside, behind)
-        build.position_at_end(inside)
-        yield at
-        build.store(build.add(at, _whole(step)), counter)
-        build.branch(head)
-        build.position_at_end(behind)
-
     def address(self) -> int:
         self.builder.ret_void()
         return loaded(compiled(str(self.module)))
@@ -85,7 +60,7 @@ def folding(factors: tuple[int, int], shifts: tuple[int, int], reserved: int) ->
     """
     w = _Writer()
     count, outputs = w.size(0), w.size(1)
-    with w.each(count) as number:
+    with counted(w.builder, count) as number:
         place = w.whole(w.places, number)
         sample = w.read(w.first, w.times(place, WIDTH), BITS)
         at = w.times(w.builder.sub(place, _whole(reserved)), WIDTH)
@@ -101,7 +76,7 @@ def folding(factors: tuple[int, int], shifts: tuple[int, int], reserved: int) ->
 def keeping() -> int:
     """Return where the function is that copies signals: all, where to, the places of those to keep, and how many."""
     w = _Writer()
-    with w.each(w.size(0)) as number:
+    with counted(w.builder, w.size(0)) as number:
         signal = w.read(w.first, w.times(w.whole(w.places, number), WIDTH))
         w.write(signal, w.second, w.times(number, WIDTH))
     return w.address()
@@ -116,7 +91,7 @@ def sorting() -> int:
     """
     w = _Writer()
     signals, ticks, length, first = (w.size(number) for number in range(4))
-    with w.each(signals) as signal, w.each(ticks, WIDTH) as tick:
+    with counted(w.builder, signals) as signal, counted(w.builder, ticks, WIDTH) as tick:
         rows = []
         for i in range(WIDTH):
             row = w.builder.add(w.times(w.builder.add(tick, _whole(i)), signals), signal)

@@ -61,8 +61,7 @@ class Translation(Loops):
 
     def _result(self, frame: Frame) -> Any:
         if isinstance(frame.result, int):
-            found = tuple(self.name(f"return {i}") for i in range(frame.result))
-            return found
+            return tuple(self.name(f"return {i}") for i in range(frame.result))
         if frame.result == "one":
             return self.name("return")
         return frame.result[0] if frame.result else None

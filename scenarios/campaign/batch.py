@@ -10,7 +10,6 @@ from typing import Any
 from core.board.abreast import Abreast
 from core.board.board import Board
 from core.board.changes import check
-from core.board.commands import Command
 from core.board.instances import instances
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import Pending, Queue
@@ -76,8 +75,10 @@ def _eight(
 ) -> dict[int, Outcome]:
     began = time.perf_counter()
     try:
+        scenarios = [runs[number][0] for number in chosen]
         specs = [runs[number][0].spec.with_seed(runs[number][1]) for number in chosen]
-        queues = [waiting(runs[number][0], pattern.board) for number in chosen]
+        waits = {number: waiting(scenario, pattern.board) for number, scenario in {id(s): s for s in scenarios}.items()}
+        queues = [waits[id(scenario)].copy() for scenario in scenarios]
         boards = Abreast(pattern, specs, queues, names, samples)
         came = boards.run(samples)
     except (InputError, Uneven):
@@ -108,11 +109,5 @@ def waiting(scenario: Scenario, board: Board) -> Queue:
                 check(board, command)
             except InputError as error:
                 raise error.under(f"events.{position}") from None
-            queue.add(Pending(command, "scenario", _tick(command, board.dt_ms)))
+            queue.add(Pending(command, "scenario", command.tick(board.dt_ms) or 0))
     return queue
-
-
-def _tick(command: Command, dt_ms: float) -> int:
-    if command.at_ms is not None:
-        return round(command.at_ms / dt_ms)
-    return command.at_sample or 0

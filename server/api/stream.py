@@ -46,6 +46,9 @@ CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
 ACK = re.compile(rb'\{"type": ?"ack", ?"frame": ?(\d{1,10})\}')
 """An acknowledgement as pages write it; any other spelling is parsed like other messages."""
 
+CLOSE_S = 1.0
+"""A client that has not taken the close after this long is cut off."""
+
 FLOOD_RATE, FLOOD_BURST = 500.0, 2000
 """Messages of any kind; sixty frames a second need sixty acknowledgements."""
 
@@ -97,8 +100,10 @@ async def _close(socket: WebSocket, client: Client) -> None:
     """Close with the reason; cut the line if the client does not take the close."""
     code, reason = client.closing or (1000, "")
     try:
-        async with asyncio.timeout(1.0):
+        async with asyncio.timeout(CLOSE_S):
             await socket.close(code, reason)
+        # The close may stand in a buffer that nobody empties; a line that ended meanwhile is not touched.
+        asyncio.get_running_loop().call_later(CLOSE_S, client.line.cut)
     except TimeoutError:
         client.line.cut()
     except (RuntimeError, WebSocketDisconnect):

@@ -87,8 +87,8 @@ def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: in
     figures_only = run_bytes(board, samples) > most_bytes
     kept: Result | None = None
     for number, seed in enumerate(seeds):
-        watch.at(number * samples)(0)
         told = watch.at(number * samples)
+        told(0)
         taps = has_room and number == 0
         result = run(scenario, seed, taps=taps, figures_only=figures_only or number > 0, on_tick=told)
         summaries.append(result.summary())

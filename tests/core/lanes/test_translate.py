@@ -1,4 +1,4 @@
-"""What is translated for boards side by side gives each board the bits of plain Python."""
+"""The translation of a step gives each board the bits of plain Python."""
 
 from __future__ import annotations
 

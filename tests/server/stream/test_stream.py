@@ -8,6 +8,7 @@ import socket
 import threading
 import time
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -230,6 +231,27 @@ def test_a_page_that_asks_and_never_reads_is_let_go(live: Any, monkeypatch: pyte
                 stream.send(type="x" * 1000)
                 assert len(client._outbox) <= client_module.MOST_WAITING + 1
         assert client.closing == (4408, "answers were asked for and not read")
+
+
+def test_a_close_that_nobody_reads_cuts_the_line(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line that takes the close into its buffer does not stay when the buffer is never emptied."""
+    monkeypatch.setattr(stream_module, "FLOOD_RATE", 1e9)
+    monkeypatch.setattr(client_module, "STALL_S", 1.0)
+    bench, before = live.bench(paused=True), len(live.server.server_state.connections)
+    with live.stream(bench["id"], **deaf(live)) as stream:
+        (room,) = live.service.hub._rooms.values()
+        (client,) = room.clients
+        client.line.transport.set_write_buffer_limits(high=10**9)
+        cut = Mock(wraps=client.line.cut)
+        monkeypatch.setattr(client.line, "cut", cut)
+        with contextlib.suppress(ConnectionClosed):
+            while client.line.waiting < 100_000 and client.closing is None:
+                stream.send(type="x" * 1000)
+        deadline = time.monotonic() + 60
+        while len(live.server.server_state.connections) > before and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert len(live.server.server_state.connections) == before and cut.called
+        assert client.closing == (4408, "nothing was taken for 5 s")
 
 
 def test_events_come_in_order_and_are_replayed_after_a_reconnect(live: Any) -> None:

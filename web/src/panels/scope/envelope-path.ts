@@ -31,7 +31,7 @@ const CLOSE = 1.3;
  *
  * Bars are rectangles and no path: eight scopes of six fast traces are drawn in a tenth of the time that a stroke takes
  * where no graphics card helps. A spike of one tick is a bar of its full height, dashes or not, so it cannot be missed.
- * The pen has the lines that join columns; the bars go to whoever is quickest at them.
+ * `pen` draws the lines that join columns, `bars` the bars, on the screen straight into pixels.
  */
 export function paintEnvelope(
   pen: Pen,
