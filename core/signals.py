@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import Literal
 
 from pydantic import BaseModel
@@ -57,6 +58,11 @@ class SignalTable(Sequence[Signal]):
     def taps(self) -> Sequence[Signal]:
         """Traced signals that follow the outputs."""
         return self._signals[self.outputs :]
+
+    @cached_property
+    def output_blocks(self) -> list[str]:
+        """The block of each output."""
+        return [signal.block for signal in self._signals[: self.outputs]]
 
     def index(self, name: str) -> int:  # type: ignore[override]
         """Return the trace column of ``name``.

@@ -12,7 +12,7 @@ from core.board.commands import LONGEST_MS, Command, parse_event
 from core.board.document import Document, has
 from core.board.ensemble import twin_specs
 from core.board.parse import parse
-from core.board.spec import fields
+from core.board.spec import Spec, fields
 from core.errors import InputError, from_validation, short, unknown_field
 from core.nesting import read_toml
 from core.table import Table
@@ -66,14 +66,16 @@ class Scenario:
         The commands of every event, in the order they take effect.
     """
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, like: Scenario | None = None) -> None:
         if not isinstance(document, dict):
             raise InputError("a scenario must be a table", "scenario")
         self.document = document = _with_open_ends(document)
         head = {key: value for key, value in document.items() if key in HEAD}
         self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
+        self._text = repr(head)
+        is_alike = like is not None and like._text == self._text
         try:
-            self.head = Head.model_validate(head)
+            self.head: Head = like.head if like is not None and is_alike else Head.model_validate(head)
         except ValidationError as error:
             raise from_validation(error, {"": (*HEAD, *fields()), "metrics": [*Stretch.model_fields]}) from None
         if self.head.samples is not None and self.head.duration_ms is not None:
@@ -81,13 +83,13 @@ class Scenario:
         unknown = [key for key in self.bench if key not in fields()]
         if unknown:
             raise unknown_field(unknown[0], (*HEAD, *fields()), unknown[0])
-        self.spec = parse(self.bench)
+        self.spec: Spec = parse(self.bench, like.spec if like is not None else None)
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
         self.twins = twin_specs(self.bench)
         self.study = parse_study(self.head.study) if self.head.study is not None else None
-        self.events: list[list[Command]] = []
-        for position, event in enumerate(self.head.events):
+        self.events: list[list[Command]] = like.events if like is not None and is_alike else []
+        for position, event in enumerate([] if is_alike else self.head.events):
             try:
                 self.events.append(_commands(event))
             except InputError as error:
@@ -98,15 +100,22 @@ class Scenario:
                     raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
 
     @classmethod
-    def load(cls, text: str | Document) -> Scenario:
+    def load(cls, text: str | Document, like: Scenario | None = None) -> Scenario:
         """Read a scenario from TOML or from a document.
+
+        Parameters
+        ----------
+        text : str or dict
+            The scenario.
+        like : Scenario, optional
+            One that may be alike, such as another point of a campaign: parts that both have are taken from there.
 
         Raises
         ------
         InputError
             Naming the field, or the line of malformed TOML.
         """
-        return cls(text if isinstance(text, dict) else read_toml(text, "scenario"))
+        return cls(text if isinstance(text, dict) else read_toml(text, "scenario"), like)
 
     @property
     def id(self) -> str:

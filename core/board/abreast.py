@@ -13,12 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from core.block import FloatArray, IntArray
-from core.board import changes, program
-from core.board.board import Board
-from core.board.commands import Command
+from core.board import program
 from core.board.fold import SHIFTS, A, B, Words
 from core.board.instances import instances
-from core.board.log import Log, LogEntry
+from core.board.lane import Lane
 from core.board.pattern import Pattern, Uneven, is_same_but_seed, is_same_structure, numbers
 from core.board.pending import Queue
 from core.board.program import EVERY, call, walk
@@ -98,27 +96,6 @@ def call_once(address: int, first: FloatArray, second: FloatArray, places: IntAr
     call(address, data[0], data[1], data[2], np.int64(sizes.ctypes.data))
 
 
-class Lane(Board):
-    """A board among others: its arrays are columns of theirs, and it keeps no log."""
-
-    def __init__(self, spec: Spec, wiring: Wiring, folds: Words, pending: Queue) -> None:
-        self.spec, self.wiring, self.folds, self.pending = spec, wiring, folds, pending
-        self.base = spec.document
-        self.compiled, self.tick, self.trip = True, 0, None
-        self.log, self.done, self.used = Log(), [], set()
-
-    def link(self) -> None:
-        """Leave it to all boards together."""
-
-    def _do(self, command: Command, actor: str) -> LogEntry | None:  # type: ignore[override]
-        changes.carry_out(self, command)
-        self.done.append((self.tick, command))
-        return None
-
-    def note(self, *_arguments: object, **_named: object) -> None:  # type: ignore[override]
-        """Keep nothing."""
-
-
 class Abreast:
     """Boards of one structure, run together.
 
@@ -155,10 +132,11 @@ class Abreast:
         outputs = self._folds.shape[1]
         self._sizes = np.array([len(self._folded), outputs, len(columns)], dtype=np.int64)
         self._tail = np.array([folding((A, B), SHIFTS, RESERVED), keeping()], dtype=np.int64)
-        self._names = list(columns)
-        self.boards = [
-            self._board(lane, spec, queue) for lane, (spec, queue) in enumerate(zip(specs, pending, strict=True))
-        ]
+        self._names, self._trip = list(columns), wiring.trip
+        self.boards: list[Lane] = []
+        self._leaders: list[Lane] = []
+        for lane, (spec, queue) in enumerate(zip(specs, pending, strict=True)):
+            self.boards.append(self._board(lane, spec, queue))
         for lane in range(len(self.boards), WIDTH):  # lanes nobody needs follow the first
             for array in (self._p, self._s, self._w):
                 array[:, lane] = array[:, 0]
@@ -170,32 +148,28 @@ class Abreast:
     def _board(self, lane: int, spec: Spec, queue: Queue) -> Lane:
         """Return the board of a lane, with what its bench has of its own."""
         pattern, before = self._pattern, self._pattern.board
-        order = before.wiring.instances
-        rows = pattern.seeded
-        if spec is not before.spec and not is_same_but_seed(spec, before.spec):
-            order = instances(spec)
-            if not is_same_structure(before, spec, order):
-                raise Uneven("another structure")
-            rows = pattern.used
-        wiring = replace(
-            before.wiring,
-            instances=[*order],
-            p=self._p[:, lane],
-            s=self._s[:, lane],
-            w=self._w[:, lane],
-            io=before.wiring.io.copy(),
-            table=before.wiring.table.copy(),
-            unread=[*before.wiring.unread],
-            absent=[*before.wiring.absent],
-            resting={*before.wiring.resting},
-        )
+        p, s, w = self._p[:, lane], self._s[:, lane], self._w[:, lane]
+        rows, leader = pattern.seeded, next((one for one in self._leaders if one.leads(spec, queue)), None)
+        if leader is not None:
+            wiring = replace(leader.wiring, p=p, s=s, w=w)
+            p[:], s[:], w[:] = leader.wiring.p, leader.wiring.s, leader.wiring.w
+        else:
+            wiring = _apart(before.wiring, p, s, w)
+            if spec is not before.spec and not is_same_but_seed(spec, before.spec):
+                wiring.instances, rows = instances(spec), pattern.used
+                if not is_same_structure(before, spec, wiring.instances):
+                    raise Uneven("another structure")
         for row in rows:
-            parameters, state = numbers(order[row], spec)
-            packed, own = wiring.packed(row), wiring.state_of(order[row].key)
+            instance = wiring.instances[row]
+            parameters, state = numbers(instance, spec)
+            packed, own = wiring.packed(row), wiring.state_of(instance.key)
             if len(parameters) != len(packed) or len(state) != len(own):
                 raise Uneven("other lengths")
             packed[:], own[:] = parameters, state
-        return Lane(spec, wiring, self._folds[:, :, lane], queue)
+        board = Lane(spec, wiring, self._folds[:, :, lane], queue, leader)
+        if leader is None:
+            self._leaders.append(board)
+        return board
 
     def run(self, samples: int) -> list[bool]:
         """Run all boards to the end; return of each whether it came there, and did not trip.
@@ -207,19 +181,21 @@ class Abreast:
         """
         tripped = [False] * len(self.boards)
         while self.tick < samples and not all(tripped):
-            moments = [board.pending.next_tick for board in self.boards]
+            moments = [board.pending.next_tick for board in self._leaders]
             if self.tick in moments:
-                for board in self.boards:
-                    board.apply_due()
+                for board in self._leaders:
+                    board.carry_out_due()
                 self._link()
-                moments = [board.pending.next_tick for board in self.boards]
+                moments = [board.pending.next_tick for board in self._leaders]
             end = min([samples, *(moment for moment in moments if moment is not None)])
             ran = self._run(end - self.tick)
             self.tick += ran
-            for lane, board in enumerate(self.boards):
+            for board in self.boards:
                 board.tick = self.tick
+            for board in self._leaders:
                 board.used |= {*board.spec.driving.values(), board.spec.measuring}
-                tripped[lane] = tripped[lane] or self._w[board.wiring.trip, lane] != 0.0
+            stopped = self._w[self._trip, : len(self.boards)] != 0.0
+            tripped = [before or now for before, now in zip(tripped, stopped.tolist(), strict=True)]
             self._silence(tripped)
         return [not gone for gone in tripped]
 
@@ -231,7 +207,7 @@ class Abreast:
         board, n = self.boards[0], min(n, CHUNK)
         arrays = (self._table, self._p, self._s, self._w, self._io, self._tail, self._folds, self._folded)
         kept = self._rows, self._columns, self._sizes
-        ran = int(run(n, self.tick, board.dt_ms, *arrays, *kept, board.wiring.trip))
+        ran = int(run(n, self.tick, board.dt_ms, *arrays, *kept, self._trip))
         self._sort(ran)
         return ran
 
@@ -254,12 +230,12 @@ class Abreast:
 
     def _link(self) -> None:
         """Work out which rows run now, the same for all boards."""
-        first = self.boards[0].wiring
-        for board in self.boards:
+        first = self._leaders[0].wiring
+        for board in self._leaders:
             wiring = board.wiring
             if not np.shares_memory(wiring.p, self._p):
                 raise Uneven("a block was exchanged")
-            running = wiring.rest(board.spec)
+            running = board.rest()
             if wiring is first:
                 rows = running
             elif running != rows or not np.array_equal(wiring.io, first.io):
@@ -272,6 +248,22 @@ class Abreast:
         self._io = first.io
         self._table = first.table[rows]
         self._table[:, program.ADDRESS] = [code.address(first.instances[row].block) for row in rows]
+
+
+def _apart(wiring: Wiring, p: FloatArray, s: FloatArray, w: FloatArray) -> Wiring:
+    """Return the wiring of a board for another one with numbers of its own, which may change it."""
+    return replace(
+        wiring,
+        instances=[*wiring.instances],
+        io=wiring.io.copy(),
+        table=wiring.table.copy(),
+        unread=[*wiring.unread],
+        absent=[*wiring.absent],
+        resting={*wiring.resting},
+        p=p,
+        s=s,
+        w=w,
+    )
 
 
 def _lanes(array: FloatArray) -> FloatArray:

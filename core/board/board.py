@@ -109,8 +109,7 @@ class Board:
         Controllers that have not driven yet and sensors that have not been in use do not count: they only look on.
         """
         aside = {*self.spec.controllers, *self.spec.sensors} - self.used
-        outputs = [signal for signal in self.wiring.signals if signal.kind == "output"]
-        return fold.digest(self.folds, ["" if signal.block in aside else signal.block for signal in outputs])
+        return fold.digest(self.folds, ["" if block in aside else block for block in self.wiring.signals.output_blocks])
 
     def scores(self) -> dict[str, score.Scores]:
         """Return the score of every diagnoser that chooses between hypotheses."""

@@ -13,12 +13,12 @@ only makes one short text of them.
 from __future__ import annotations
 
 import hashlib
-import struct
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.block import IntArray
 from core.kernel import kernel
 
 Words = NDArray[np.uint64]
@@ -71,17 +71,30 @@ def digest(folds: Words, blocks: Sequence[str]) -> str:
     blocks : sequence of str
         The block each column belongs to; empty for one that does not count.
     """
-    sha = hashlib.sha256()
-    for name in sorted({*blocks} - {""}):
-        own = [column for column, block in enumerate(blocks) if block == name]
-        sha.update(name.encode() + b"\0" + joined(folds[:, own]))
+    columns: dict[str, list[int]] = {}
+    for column, block in enumerate(blocks):
+        columns.setdefault(block, []).append(column)
+    columns.pop("", None)
+    sha, folds = hashlib.sha256(), np.ascontiguousarray(folds)
+    for name in sorted(columns):
+        sha.update(name.encode() + b"\0" + joined(folds, np.array(columns[name])).astype("<u8").tobytes())
     return sha.hexdigest()
 
 
-def joined(folds: Words) -> bytes:
-    """Fold the folds of the columns of a block into one, in their order; returns its 16 bytes."""
-    a, b = (int(word) for word in START[:, 0])
-    for word in folds.T.ravel().tolist():
-        a, b = (a ^ word) * A & WORD, (b + word) * B & WORD
-        a, b = a ^ a >> 32, b ^ b >> 29
-    return struct.pack("<QQ", a, b)
+@kernel
+def joined(folds: Words, columns: IntArray) -> Words:
+    """Fold the folds of the columns of a block into one, in their order.
+
+    Parameters
+    ----------
+    folds : ndarray of uint64, shape (2, columns)
+        Of every column.
+    columns : ndarray of int64
+        Those of the block.
+    """
+    words = START[:, 0].copy()
+    for column in columns:
+        for word in folds[:, column]:
+            a, b = (words[0] ^ word) * FACTOR_A, (words[1] + word) * FACTOR_B
+            words[0], words[1] = a ^ (a >> S32), b ^ (b >> S29)
+    return words

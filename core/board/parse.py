@@ -37,8 +37,15 @@ from core.plant.shuttle import ShuttleParams
 from core.signals import CLOCK
 
 
-def parse(document: Document) -> Spec:
+def parse(document: Document, like: Spec | None = None) -> Spec:
     """Check a document and return the bench it describes.
+
+    Parameters
+    ----------
+    document : dict
+        The tables of the bench.
+    like : Spec, optional
+        A bench without faults that may be alike: sections that both have are taken from there.
 
     Raises
     ------
@@ -46,8 +53,10 @@ def parse(document: Document) -> Spec:
         For the first thing that is not allowed, with the dotted path of its field.
     """
     doc = normal_form(document)
+    if like is not None:
+        doc = _sharing(doc, like.document)
     try:
-        return _parse(doc, None)
+        return _parse(doc, like)
     except InputError as error:
         raise as_written(error, document, written(document)) from None
 
@@ -68,6 +77,21 @@ def changed(spec: Spec, values: dict[str, Any]) -> Spec:
     if all(getattr(new, name) is getattr(spec, name) for name in OF_CONTEXT):
         vars(new)["_contexts"] = spec._contexts
     return new
+
+
+def _sharing(doc: Document, other: Document) -> Document:
+    """Return a document whose tables are those of another one where they say the same, to the sign of a zero."""
+
+    def shared(value: Any, known: Any) -> Any:
+        return known if repr(value) == repr(known) else value
+
+    def table(value: Any, known: Any) -> Any:
+        found = shared(value, known)
+        if found is known or not (isinstance(value, dict) and isinstance(known, dict)):
+            return found
+        return {key: shared(entry, known.get(key)) for key, entry in value.items()}
+
+    return {key: table(value, other.get(key)) for key, value in doc.items()}
 
 
 def _parse(doc: Document, before: Spec | None) -> Spec:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, cast
@@ -108,6 +109,24 @@ class Spec:
         """The nominal device."""
         return self.device.oscillator()
 
+    @cached_property
+    def surroundings(self) -> tuple[float, float]:
+        """Factors of stiffness and damping in the environment, before any fault."""
+        return Environment.scales(self.environment.params, self.context())
+
+    @cached_property
+    def quoted(self) -> dict[str, float]:
+        """Figures of the device in its environment, before any fault."""
+        return self.device.metrics(*self.surroundings, self.context().temperature_k)
+
+    def parts(self) -> Iterator[tuple[str, Section]]:
+        """Yield every section with its name."""
+        for name in ("environment", "plant", "reference", "model", "drive", "guard"):
+            yield name, getattr(self, name)
+        chosen = self.identifiers, self.diagnosers, self.readouts
+        for group in (self.sensors, self.generators, self.controllers, *chosen):
+            yield from group.items()
+
     def turns(self, section: Section) -> int:
         """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
         return math.lcm(section.every, self.sensors[self.measuring].every)
@@ -156,7 +175,8 @@ class Spec:
         spec = object.__new__(Spec)
         contexts = {place: replace(context, seed=seed) for place, context in self._contexts.items()}
         frame = self.frame.model_copy(update={"seed": seed})
-        vars(spec).update(vars(self), frame=frame, document={**self.document, "seed": seed}, _contexts=contexts)
+        document = {**self.document, "seed": seed}
+        vars(spec).update(vars(self), frame=frame, document=document, _contexts=contexts, quoted=self.quoted)
         return spec
 
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:

@@ -99,11 +99,12 @@ class Wiring:
         rows = [row for row in range(len(self.instances)) if row not in self.left_out]
         running = [row for row in rows if not (self.unread[row] or self.absent[row])]
         if len(running) + len(self.resting) != len(self.instances) or not self.resting.isdisjoint(running):
-            self._put_to_rest(spec, set(range(len(self.instances))) - {*running} - self.resting)
+            self.put_to_rest(spec, set(range(len(self.instances))) - {*running} - self.resting)
             self.resting = set(range(len(self.instances))) - {*running}
         return running
 
-    def _put_to_rest(self, spec: Spec, rows: set[int]) -> None:
+    def put_to_rest(self, spec: Spec, rows: set[int]) -> None:
+        """Make rows as new, and their signals 0."""
         for row in rows:
             instance = self.instances[row]
             self.state_of(instance.key)[:] = instance.block.initial(

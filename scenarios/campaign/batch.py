@@ -10,7 +10,6 @@ from typing import Any
 from core.board.abreast import Abreast
 from core.board.board import Board
 from core.board.changes import check
-from core.board.instances import instances
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import Pending, Queue
 from core.errors import InputError
@@ -46,7 +45,7 @@ def shape(scenario: Scenario) -> Any:
     if scenario.study is not None or scenario.twins or any(c.when for event in scenario.events for c in event):
         return None
     spec = scenario.spec
-    blocks = tuple((entry.key, entry.block, entry.every, entry.axis) for entry in instances(spec))
+    blocks = tuple((name, section.block, section.every) for name, section in spec.parts())
     return blocks, tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
 
 

@@ -58,9 +58,10 @@ def compute(tasks: list[Task], version: str) -> Found:
     if version != code_version():
         raise RuntimeError(f"the worker runs version {code_version()} of the code, the campaign is of {version}")
     read: dict[int, Scenario] = {}
+    scenario = None
     for _, document, _ in tasks:
         if id(document) not in read:
-            read[id(document)] = Scenario.load(document)
+            read[id(document)] = scenario = Scenario.load(document, like=scenario)
     found = outcomes([(read[id(document)], seed) for _, document, seed in tasks])
     return [(key, outcome.model_dump()) for (key, _, _), outcome in zip(tasks, found, strict=True)]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -58,7 +59,9 @@ def prepare(niceness: int = 0) -> None:
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_follow, args=(parent.join,), daemon=True).start()
-    import scenarios.run  # noqa: F401  (load the kernels before the first run)
+    import scenarios.campaign.batch  # noqa: F401  (load the kernels before the first run)
+
+    gc.freeze()  # what is loaded stays: no collection looks at it again
 
 
 def _follow(wait: Callable[[], None]) -> None:

@@ -14,7 +14,7 @@ from core.board.board import Board
 from core.errors import InputError
 from core.kernel import kernel
 from core.loop.score import Scores
-from scenarios.run import judge, run
+from scenarios.run import run
 from scenarios.schema import Scenario
 
 EVIDENCE = np.linspace(-8.0, 8.0, 161)
@@ -79,7 +79,7 @@ def summed(
         seed=board.spec.seed,
         digest=digest,
         ticks=board.tick,
-        ok=all(entry["ok"] for entry in judge(scenario, metrics)),
+        ok=all(entry.holds(metrics.get(entry.metric)) for entry in scenario.head.expect),
         trip=board.trip.reason if board.trip is not None else "",
         metrics={name: value for name, value in metrics.items() if math.isfinite(value)},
         diagnosis={name: _diagnosis(board, name, scores, trace) for name, scores in board.scores().items()},
@@ -120,13 +120,14 @@ def evidence(probability: FloatArray, healthy: int, truth: FloatArray, odds: Flo
     ndarray of int64, shape (2, thresholds + 1)
     """
     counts = np.zeros((2, len(odds) + 1), dtype=np.int64)
+    fault = np.zeros(probability.shape[1])
+    for k in range(probability.shape[0]):
+        if k != healthy:
+            fault += probability[k]
+    ratio = np.maximum(fault, LEAST) / np.maximum(probability[healthy], LEAST)
     found = 0
-    for i in range(probability.shape[1]):
-        fault = 0.0
-        for k in range(probability.shape[0]):
-            if k != healthy:
-                fault += probability[k, i]
-        now = max(fault, LEAST) / max(probability[healthy, i], LEAST)
+    for i in range(len(ratio)):
+        now = ratio[i]
         if not now > 0.0:
             now = 1.0
         # most samples fall where the one before fell

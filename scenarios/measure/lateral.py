@@ -32,18 +32,17 @@ def lateral_metrics(board: Board) -> dict[str, float]:
     if board.tick == 0:
         return {}
     kind = board.spec.plant.block.name
+    if kind not in ("slaved_lateral", "planar"):
+        scale = board.value("effects.elasticity_scale") * board.value("effects.rotation_scale")
+        volts = device_pull_in(board.spec.device, scale)
+        return {} if volts is None else {"device.pull_in_v": volts}
     p, state = board.wiring.parameters("plant"), board.wiring.state("plant")
     if kind == "slaved_lateral":
         scale = board.value("effects.stiffness_scale")
         force = slaved_force(p, float(p.stiffness_n_m) * scale)
         ratio = float(p.ratio)
         return _folded(fold(force, stators_of(p), lambda q: ratio * float(q[0]), 1)) | _touched(float(state.touched_ms))
-    if kind == "planar":
-        return _planar(p, state, board.spec.device.drawing.far_finger_um)
-    volts = device_pull_in(
-        board.spec.device, board.value("effects.elasticity_scale") * board.value("effects.rotation_scale")
-    )
-    return {} if volts is None else {"device.pull_in_v": volts}
+    return _planar(p, state, board.spec.device.drawing.far_finger_um)
 
 
 def device_pull_in(device: Device, stiffness_scale: float = 1.0) -> float | None:

@@ -12,7 +12,6 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.spec import Spec
 from core.kernel import kernel
-from core.loop.environment import Environment
 from core.loop.score import Scores
 from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing
 from scenarios.measure.lateral import lateral_metrics
@@ -52,12 +51,9 @@ def weighed(weights: FloatArray, signal: FloatArray) -> float:
 
 def device_metrics(spec: Spec) -> dict[str, float]:
     """Return the figures of the device in its environment, before any fault."""
-    params = spec.environment.params
-    stiffness, damping = Environment.scales(params, spec.context())
-    temperature = spec.context().temperature_k
-    quoted = spec.device.metrics(stiffness, damping, temperature)
+    stiffness, damping = spec.surroundings
     # the figures of a gyroscope have a family of names of their own
-    figures = {name if "." in name else f"device.{name}": value for name, value in quoted.items()}
+    figures = {name if "." in name else f"device.{name}": value for name, value in spec.quoted.items()}
     return {**figures, "environment.stiffness_scale": stiffness, "environment.damping_scale": damping}
 
 

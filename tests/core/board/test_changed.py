@@ -60,15 +60,24 @@ def test_a_changed_bench_is_the_one_its_document_describes(changes):
     for values in changes:
         now = outcome(changed, spec, values)
         anew = outcome(lambda *both: parse(with_values(*both)), spec.document, values)
-        if isinstance(now, tuple) or isinstance(anew, tuple):
-            assert now == anew
+        alike = outcome(lambda *both, like=spec: parse(with_values(*both), like), spec.document, values)
+        if isinstance(now, tuple) or isinstance(anew, tuple) or isinstance(alike, tuple):
+            assert now == anew == alike
             continue
         for part in fields(Spec):
-            assert getattr(now, part.name) == getattr(anew, part.name), part.name
+            assert getattr(now, part.name) == getattr(anew, part.name) == getattr(alike, part.name), part.name
         for every in (1, 2):
-            assert now.context(every) == anew.context(every)
+            assert now.context(every) == anew.context(every) == alike.context(every)
         spec = now
     assert parse(BENCH) == parse(document({}, BENCH)), "the document that was given has changed"
+
+
+@pytest.mark.parametrize(("value", "text"), [(True, "True"), (-0.0, "-0.0")])
+def test_a_number_is_not_taken_from_a_bench_that_says_it_in_other_bits(value, text):
+    path = "reference.amplitude_v"
+    like = parse(with_values(QUIET, {path: 1.0 if value else 0.0}))
+    found, anew = (outcome(parse, with_values(QUIET, {path: value}), *more) for more in ((like,), ()))
+    assert repr(found) == repr(anew) and text in repr(found)
 
 
 def test_another_device_leaves_out_the_controllers_and_sensors_that_do_not_suit_it():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import struct
 from typing import Any
 
 import numpy as np
@@ -78,7 +79,11 @@ def test_blocks_are_joined_by_name() -> None:
     assert fold.digest(both, [*"aabb"]) == fold.digest(np.hstack([b, a]), [*"bbaa"])
     assert fold.digest(both, [*"aabb"]) == fold.digest(both[:, [0, 2, 1, 3]], [*"abab"])
     assert fold.digest(both, [*"aabb"]) != fold.digest(both, [*"bbaa"])
-    alone = hashlib.sha256(b"a\0" + fold.joined(a)).hexdigest()
+    words = [int(word) for word in fold.START[:, 0]]
+    for word in (int(word) for column in a.T for word in column):
+        words = [(words[0] ^ word) * fold.A % 2**64, (words[1] + word) * fold.B % 2**64]
+        words = [words[0] ^ words[0] >> 32, words[1] ^ words[1] >> 29]
+    alone = hashlib.sha256(b"a\0" + struct.pack("<QQ", *words)).hexdigest()
     assert fold.digest(a, [*"aa"]) == fold.digest(both, ["a", "a", "", ""]) == alone
 
 
