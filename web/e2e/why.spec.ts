@@ -94,6 +94,7 @@ test("why opens beside the lanes in every layout, and goes to where the verdict 
   await page.getByRole("button", { name: "Pause" }).click();
   const why = whyOf(page);
   await why.getByRole("button", { name: "Latest" }).click();
+  await expect(why.getByText(/^Mass \+5\s% (wins|stays ahead)/)).toBeVisible();
   const last = Number(await why.getByRole("textbox", { name: "Sample" }).inputValue());
   const turn = why.getByRole("button", { name: "The sample where it turned" });
   await turn.click();

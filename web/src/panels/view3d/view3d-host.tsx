@@ -11,12 +11,14 @@ import { View3dFrame } from "./view3d-frame";
  * A frame that moves within the document loads again: here panels may come, go and move, and scene and camera stay.
  */
 export function View3dHost() {
-  const path = useBench((s) => s.bench?.view3d);
+  // the scene tells which fault acts, so nothing is kept of it while the fault is to be found
+  const path = useBench((s) => (s.blind ? undefined : s.bench?.view3d));
   const host = useRef<HTMLElement>(null);
   const [visible, setVisible] = useState(false);
   useEffect(() => {
     usePlaces.setState({ hosted: true });
     let laid = "";
+    let on: HTMLElement | null = null;
     let seen = false;
     const stop = stream.loop.add(() => {
       const places = usePlaces.getState().places.map((place) => place.getBoundingClientRect());
@@ -26,8 +28,10 @@ export function View3dHost() {
       seen = rect !== undefined;
       if (!rect || !host.current) return;
       const wanted = `${rect.left}px ${rect.top}px ${rect.width}px ${rect.height}px`;
-      if (wanted === laid) return;
+      // another bench has a frame of its own, which has not been laid anywhere yet
+      if (wanted === laid && host.current === on) return;
       laid = wanted;
+      on = host.current;
       const [left, top, width, height] = wanted.split(" ");
       Object.assign(host.current.style, { left, top, width, height });
     });
