@@ -127,7 +127,7 @@ def carry_out(
 def write(sweep: Sweep, results: Results, folder: Path) -> int:
     """Write report and tables, each under a temporary name first; return how many runs could not be carried out."""
     keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
-    outcomes = {key: Outcome.model_validate(outcome) for key, outcome in results.outcomes(keys)}
+    outcomes = {key: Outcome.model_validate_json(text) for key, text in results.outcomes(keys)}
     points = tally(sweep, outcomes)
     table = results_table(sweep, outcomes)
     write_json(folder / POINTS, [point.model_dump() for point in points])

@@ -30,7 +30,8 @@ PATIENCE = 5
 
 Waiting = tuple[str, Point, int]
 Task = tuple[str, dict[str, Any], int]
-Found = list[tuple[str, dict[str, Any]]]
+Found = list[tuple[str, str]]
+"""Outcomes as JSON, by the key of the run."""
 
 
 class Table(Protocol):
@@ -47,8 +48,8 @@ class Stopped(Exception):
     """The campaign could not go on; the finished runs stay in the table."""
 
 
-def compute(tasks: list[Task], version: str) -> Found:
-    """Compute a batch; in a worker.
+def compute(tasks: list[Task], version: str) -> tuple[Found, float]:
+    """Compute a batch; in a worker. Return the outcomes and the mean time of a run, s.
 
     Raises
     ------
@@ -63,7 +64,8 @@ def compute(tasks: list[Task], version: str) -> Found:
         if id(document) not in read:
             read[id(document)] = scenario = Scenario.load(document, like=scenario)
     found = outcomes([(read[id(document)], seed) for _, document, seed in tasks])
-    return [(key, outcome.model_dump()) for (key, _, _), outcome in zip(tasks, found, strict=True)]
+    texts = [(key, outcome.model_dump_json()) for (key, _, _), outcome in zip(tasks, found, strict=True)]
+    return texts, fmean(outcome.elapsed_s for outcome in found)
 
 
 class Campaign:
@@ -146,7 +148,7 @@ class Campaign:
     def _work(self, executor: Executor) -> None:
         """Keep the workers busy until no run is left, and put results into the table as they arrive."""
         waiting = deque(self._left.values())
-        pending: set[Future[Found]] = set()
+        pending: set[Future[tuple[Found, float]]] = set()
         lost: BaseException | None = None
         while (waiting and not self._is_cancelled) or pending:
             try:
@@ -158,7 +160,7 @@ class Campaign:
             done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)
             for future in done:
                 try:
-                    self._take(future.result())
+                    self._take(*future.result())
                 except LOST as error:
                     lost = error
             if lost is not None and not pending:
@@ -179,10 +181,10 @@ class Campaign:
         documents = {number: point.document for number, point in points.items()}
         return [(key, documents[id(point)], seed) for key, point, seed in chosen]
 
-    def _take(self, outcomes: Found) -> None:
+    def _take(self, outcomes: Found, cost_s: float) -> None:
         """Put results into the table and update the cost of a run."""
         self._table.put(outcomes)
-        self._cost = max(fmean(entry["elapsed_s"] for _, entry in outcomes), 1e-6)
+        self._cost = max(cost_s, 1e-6)
         for key, _ in outcomes:
             self._left.pop(key, None)
         self._on_progress(self.done, self.total)

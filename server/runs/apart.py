@@ -111,6 +111,6 @@ def _read(document: Document, database_url: str) -> tuple[Sweep, dict[str, Outco
     keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
     database = Database(database_url)
     try:
-        return sweep, {key: Outcome.model_validate(outcome) for key, outcome in Results(database).outcomes(keys)}
+        return sweep, {key: Outcome.model_validate_json(text) for key, text in Results(database).outcomes(keys)}
     finally:
         database.close()

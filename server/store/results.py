@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
-from sqlalchemy import Insert, select
+from sqlalchemy import JSON, BindParameter, Insert, Text, bindparam, cast, select
 from sqlalchemy.dialects import sqlite
 
 from server.store.database import Database
@@ -35,23 +34,27 @@ class Results:
             keys_there |= set(self._database.transact(lambda session, q=query: list(session.scalars(q))))  # type: ignore[misc]
         return keys_there
 
-    def put(self, outcomes: list[tuple[str, dict[str, Any]]]) -> None:
-        """Add outcomes in one transaction; existing outcomes stay as they are."""
-        rows = [{"key": key, "outcome": outcome} for key, outcome in outcomes]
+    def put(self, outcomes: list[tuple[str, str]]) -> None:
+        """Add outcomes, JSON texts, in one transaction; existing outcomes stay as they are."""
+        rows = [{"key": key, "text": outcome} for key, outcome in outcomes]
         if rows:
             self._database.transact(lambda session: session.execute(self._insert(), rows))
 
-    def outcomes(self, keys: Sequence[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Yield the outcomes in the table, a few hundred at a time."""
+    def outcomes(self, keys: Sequence[str]) -> Iterator[tuple[str, str]]:
+        """Yield the outcomes in the table as JSON texts, a few hundred at a time."""
         for start in range(0, len(keys), AT_ONCE):
-            query = select(ResultRow.key, ResultRow.outcome).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
+            query = select(ResultRow.key, cast(ResultRow.outcome, Text)).where(
+                ResultRow.key.in_(keys[start : start + AT_ONCE])
+            )
             rows = self._database.transact(lambda session, q=query: list(session.execute(q)))  # type: ignore[misc]
             yield from ((key, outcome) for key, outcome in rows)
 
     def _insert(self) -> Insert:
-        """Return the statement "insert unless it exists" in the dialect of the database."""
+        """Return the statement "insert unless it exists" in the dialect of the database; it takes the JSON as it is."""
+        key: BindParameter[str] = bindparam("key")
+        text = bindparam("text", type_=Text)
         if self._database.url.startswith("sqlite"):
-            return sqlite.insert(ResultRow).on_conflict_do_nothing()
+            return sqlite.insert(ResultRow).values(key=key, outcome=text).on_conflict_do_nothing()
         from sqlalchemy.dialects import postgresql  # a third of what loading SQLAlchemy takes
 
-        return postgresql.insert(ResultRow).on_conflict_do_nothing()
+        return postgresql.insert(ResultRow).values(key=key, outcome=cast(text, JSON)).on_conflict_do_nothing()

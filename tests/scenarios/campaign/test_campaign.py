@@ -31,10 +31,10 @@ class Memory:
     def have(self, keys: Sequence[str]) -> set[str]:
         return self.found.keys() & set(keys)
 
-    def put(self, found: list[tuple[str, dict[str, Any]]]) -> None:
+    def put(self, found: list[tuple[str, str]]) -> None:
         for key, entry in found:
             self.puts.append(key)
-            self.found.setdefault(key, Outcome.model_validate(entry))
+            self.found.setdefault(key, Outcome.model_validate_json(entry))
 
 
 def small(count: int = 6, samples: int = 1500) -> Sweep:

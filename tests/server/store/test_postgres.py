@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -26,12 +27,12 @@ def test_results_are_put_once(place: Any) -> None:
     database = Database(place)
     database.migrate()
     results = Results(database)
-    results.put([(f"{number:064}", {"seed": number}) for number in range(1200)])
-    results.put([("0" * 64, {"seed": 99}), ("f" * 64, {"seed": 1200})])
+    results.put([(f"{number:064}", json.dumps({"seed": number})) for number in range(1200)])
+    results.put([("0" * 64, '{"seed": 99}'), ("f" * 64, '{"seed": 1200}')])
     keys = [f"{number:064}" for number in range(1300)]
     assert results.have(keys) == set(keys[:1200])
     found = dict(results.outcomes(keys))
-    assert len(found) == 1200 and found["0" * 64] == {"seed": 0}
+    assert len(found) == 1200 and json.loads(found["0" * 64]) == {"seed": 0}
     database.close()
 
 
