@@ -119,6 +119,35 @@ def test_one_frequency_follows_and_does_not_tell_the_rate(hz):
     assert np.abs(result.signal("plant.y") - asked)[-20_000:].max() < 0.02
 
 
+@pytest.mark.parametrize("apart", [0.0, 0.2, 5.0, -9.0, 30.0, -50.0])
+def test_frequencies_that_hardly_differ_are_not_trusted(apart):
+    """While the estimates swing with a slow beat, 100 rad/s is read as thousands; it is trusted when that is over."""
+    hz = {"frequency_x_hz": 663.676, "frequency_y_hz": 663.676 + apart}
+    result = bench("adaptive_rate", "gyro-a", 1800, 100, (100.0, 100.0), **hz)
+    told, trusted = result.signal("adaptive_rate.rate") / RAD, result.signal("adaptive_rate.trusted") != 0.0
+    assert np.abs(told[20_000:60_000] - 100.0).max() > 20.0
+    np.testing.assert_allclose(told[trusted], 100.0, atol=15.0)
+    assert trusted[-1] == (abs(apart) > 20.0)
+    assert any("not persistently exciting" in text for text in result.warnings) == (abs(apart) < 10.0)
+
+
+@pytest.mark.parametrize("rate", [0.0, 100.0])
+def test_who_takes_over_has_to_learn_before_it_is_trusted(rate):
+    document = {
+        "duration_ms": 250,
+        "device": {"id": "gyro-a"},
+        "plant": {"model": "gyroscope", "thermal_noise": False},
+        "rate": {"kind": "constant", "deg_per_s": RAD * rate},
+        "controllers": {"adaptive_rate": SLOW},
+        "controller": {"kind": "open_loop_rate"},
+        "events": [{"at_ms": 60.0, "switch": "adaptive_rate"}],
+    }
+    result = run(Scenario.load(document))
+    told, trusted = result.signal("adaptive_rate.rate") / RAD, result.signal("adaptive_rate.trusted") != 0.0
+    assert not trusted[:7000].any() and trusted[-1]
+    np.testing.assert_allclose(told[trusted], rate, atol=15.0)
+
+
 @pytest.mark.parametrize("name", ["gyro-4-5", "gyro-2-2", "gyro-a"])
 def test_many_inputs(name):
     """5 and 10 rad/s within 2 %, 5 % in less than 40 ms."""
