@@ -140,7 +140,8 @@ test("a rate that the motion does not tell is not trusted; the faults of any dev
   openDocument,
 }) => {
   const alike = { frequency_x_hz: 663.676, frequency_y_hz: 663.676 };
-  await openDocument({ ...BENCH, device: { id: "gyro-a" }, controllers: { adaptive_rate: alike } });
+  const rate = { kind: "constant", deg_per_s: 5000 };
+  await openDocument({ ...BENCH, device: { id: "gyro-a" }, rate, controllers: { adaptive_rate: alike } });
   await page.getByRole("tab", { name: "Controllers" }).click();
   const controllers = page.locator("section[aria-label='Controllers']");
   const adaptive = page.getByRole("radio", { name: "Adaptive control with rate estimate" });
@@ -151,11 +152,13 @@ test("a rate that the motion does not tell is not trusted; the faults of any dev
   await expect(page.getByText(/^adaptive_rate: not persistently exciting/)).toBeVisible();
   // another frequency along y, from its card, and the rate is told
   await controllers.getByRole("button", { name: "Parameters" }).last().click();
-  await page.getByRole("textbox", { name: /^Frequency along y/i }).fill("813.282");
+  await page.getByRole("textbox", { name: "Frequency y, Hz" }).fill("813.282");
   await page.keyboard.press("Enter");
   await page.getByRole("tab", { name: "Controllers" }).click();
   await expect(row).not.toContainText("not trusted");
-  await controllers.getByRole("radio", { name: "Force to rebalance" }).click();
+  // a loop that goes after the resonance would lose it to ageing, and push too hard when that is healed
+  await controllers.getByRole("radio", { name: "Drive tracking" }).click();
+  await controllers.getByRole("radio", { name: "Open-loop read-out" }).click();
 
   await page.getByRole("tab", { name: "Faults" }).click();
   const faults = page.locator("section[aria-label='Faults']");
