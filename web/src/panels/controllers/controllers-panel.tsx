@@ -69,10 +69,12 @@ export function ControllersPanel() {
               {controllersOf(slot, controllers, blocks).map((law) => (
                 <div key={law.name} className={styles.row} data-active={law.name === active}>
                   <Radio size="sm" value={law.name} label={law.title} description={<Prose text={law.summary} />} />
-                  <output ref={live(law.name)} />
-                  {`${law.name}.${TRUSTED}` in told && (
-                    <output className={styles.doubt} ref={live(`${law.name}.${TRUSTED}`)} />
-                  )}
+                  <div className={styles.told}>
+                    <output ref={live(law.name)} />
+                    {`${law.name}.${TRUSTED}` in told && (
+                      <output className={styles.doubt} ref={live(`${law.name}.${TRUSTED}`)} />
+                    )}
+                  </div>
                 </div>
               ))}
             </Radio.Group>
