@@ -101,6 +101,22 @@ def test_rate_of_slow_references():
     assert found["gyro.trusted"] == 1.0
 
 
+@pytest.mark.parametrize(
+    ("gains", "stops"),
+    [
+        ({"cross_gain": 20.0, "rate_gain": 10.0}, False),
+        ({"cross_gain": 800.0, "rate_gain": 400.0}, True),
+        ({"stiffness_gain": 4e4}, True),
+        ({"velocity_gain": 200.0}, True),
+    ],
+)
+def test_gains_that_diverge_stop_the_bench(gains, stops):
+    result = bench("adaptive_rate", "gyro-a", 1000, 100, (100.0, 100.0), **SLOW, **gains)
+    assert (result.trip is not None) == stops
+    if not stops:
+        assert result.metrics["rate.error_pct"] == pytest.approx(0.0, abs=5.0)
+
+
 @pytest.mark.slow
 def test_rate_of_slow_references_at_1_mhz():
     found = bench("adaptive_rate", "gyro-a", 1000, 1000, (100.0, 200.0), **SLOW).metrics
