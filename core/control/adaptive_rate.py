@@ -42,7 +42,9 @@ class AdaptiveRate(Block):
     and the other at rest: that is ``drive_tracking`` with ``sense_axis_sync`` at rest.
 
     The gains are for the set A of the literature at 100 kHz, with lengths in um and times in ms: a velocity error is
-    damped in 1/20 ms, and the estimates follow ten times slower. Ten times the gains of damping and rate diverge there.
+    damped in 1/20 ms, and the estimates follow ten times slower. Ten times the gain of the velocity error diverges
+    there, and so do a hundred times that of the stiffness and four hundred times those of damping and rate; the bench
+    then stops with a trip.
     """
 
     title = "Adaptive control with rate estimate"

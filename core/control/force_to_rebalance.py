@@ -22,9 +22,10 @@ class ForceToRebalance(Block):
 
     .. math:: \hat\Omega=\frac{u_c}{2m_c\omega A},\quad\hat\Omega_q=\frac{u_s}{2m_c\omega A}
 
-    :math:`\psi` is the phase of :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, nominal. A held force is late by half a
-    sample, :math:`\omega h/2`, so without ``advance`` a part :math:`\Omega_q\sin(\omega h/2)` of the quadrature reads
-    as a rate; :math:`\theta'=\theta+\omega h/2` makes up for it. The loop is stable below the gain
+    :math:`\omega` is the frequency of the carrier: with y at rest x rings at :math:`\sqrt{k_{xx}/m_x}`, 3.7 % above
+    the mode of set A. :math:`\psi` is the phase of :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, nominal. A held force is
+    late by half a sample, :math:`\omega h/2`, so without ``advance`` a part :math:`\Omega_q\sin(\omega h/2)` of the
+    quadrature reads as a rate; :math:`\theta'=\theta+\omega h/2` makes up for it. The loop is stable below the gain
     :math:`g<|k_{yy}/m_y-\omega^2|\,d_{yy}/2m_y`, the damping of y against the split of the modes.
     """
 
@@ -104,10 +105,11 @@ class ForceToRebalance(Block):
         sine = x.sine * turn_cosine + x.cosine * turn_sine
         cosine = x.cosine * turn_cosine - x.sine * turn_sine
         x.y = s.with_velocity * cosine + s.in_step * sine
-        if x.amplitude > 1e-6:
-            per_amplitude = p.sense.dps / x.amplitude
-            s.rate += (1.0 - p.kept) * (per_amplitude * s.with_velocity - s.rate)
-            s.quadrature += (1.0 - p.kept) * (per_amplitude * s.in_step - s.quadrature)
+        speed = omega * x.amplitude
+        if speed > 1e-6:
+            per_force = p.sense.per_speed / speed
+            s.rate += (1.0 - p.kept) * (per_force * s.with_velocity - s.rate)
+            s.quadrature += (1.0 - p.kept) * (per_force * s.in_step - s.quadrature)
         x.rate = s.rate
         x.quadrature = s.quadrature
         x.rest_in_step = in_step

@@ -158,8 +158,9 @@ class SenseAxisSync(Block):
             if p.rest != 0.0:
                 # as it acts: held, it is late by half a sample
                 turn_cosine, turn_sine = cos(p.half_ms * omega), sin(p.half_ms * omega)
-                x.rate = per_amplitude * (s.force_cosine * turn_cosine - s.force_sine * turn_sine)
-                x.quadrature = per_amplitude * (s.force_sine * turn_cosine + s.force_cosine * turn_sine)
+                per_force = p.read_out.sense.per_speed / (omega * x.amplitude) if omega > 0.0 else 0.0
+                x.rate = per_force * (s.force_cosine * turn_cosine - s.force_sine * turn_sine)
+                x.quadrature = per_force * (s.force_sine * turn_cosine + s.force_cosine * turn_sine)
         phase = atan2(s.swing.with_velocity, s.swing.in_step) - atan2(s.model_with_velocity, s.model_in_step)
         x.phase_difference = DEG_PER_RAD * (
             phase - 2.0 * math.pi * (phase > math.pi) + 2.0 * math.pi * (phase < -math.pi)

@@ -64,12 +64,13 @@ class Sense(Record):
     r"""The nominal sense axis at the drive frequency.
 
     Its dynamic stiffness :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, uN/um, and what turns a force per amplitude into a
-    rate, :math:`1/2m_c\omega` in deg/s per uN/um.
+    rate: :math:`1/2m_c\omega` at that frequency, deg/s per uN/um, and :math:`1/2m_c` per speed, deg/s per uN ms/um.
     """
 
     spring: float
     damper: float
     dps: float
+    per_speed: float
 
 
 def two_axis(context: Context) -> TwoAxis:
@@ -83,6 +84,7 @@ def fill_sense(p: Sense, device: TwoAxis) -> None:
     sense = device.sense(omega)
     p.spring, p.damper = sense.real, sense.imag
     p.dps = rate_deg_s(1.0 / (2.0 * device.coriolis_mass * omega))
+    p.per_speed = rate_deg_s(1.0 / (2.0 * device.coriolis_mass))
 
 
 @inlined

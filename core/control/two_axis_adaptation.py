@@ -5,6 +5,10 @@ r"""The estimates that adaptive controllers of two axes share, and the law that 
 
 :math:`q_r` is what the law multiplies the estimates with: the motion asked for, or the motion. Everything is per unit
 of mass, with time in a unit that each controller names. The estimates begin with 0: nothing of the device is known.
+
+Two frequencies tell the rate from the other estimates by their beat. The slower it is, the longer the estimates swing
+with it, a rate far from the true one among them, and with one frequency there is none. The rate is therefore trusted
+when it has kept still for a whole beat.
 """
 
 from __future__ import annotations
@@ -20,9 +24,20 @@ from core.ports import output, tap
 from core.record import Record
 from core.units import RAD_MS_PER_DEG_S
 
+STILL = 0.05
+"""Most that a trusted rate changes within a beat, over itself, or near 0 over this share of its peak."""
+SHORTEST_MS = 10.0
+"""The least time to keep still for, however fast the beat."""
+SLOW_MS = 100.0
+"""A beat that takes longer tells too little."""
+NOT_EXCITING = (
+    "not persistently exciting: with one frequency along both axes, or two that hardly differ, nothing tells the rate "
+    "from stiffness and damping; it is not trusted"
+)
+
 
 class Asked(Record):
-    """Amplitudes, frequencies in turns per ms and in rad per unit of time, half a sample, the unit of time in ms."""
+    """Amplitudes, frequencies in turns per ms and in rad per unit of time, half a sample, the unit of time; a beat."""
 
     amplitude_x: float
     amplitude_y: float
@@ -32,6 +47,7 @@ class Asked(Record):
     omega_y: float
     ahead_ms: float
     unit_ms: float
+    beat_ms: float
 
 
 class Gains(Record):
@@ -44,7 +60,7 @@ class Gains(Record):
 
 
 class Estimates(Record):
-    """Stiffness, damping and rate, per unit of mass."""
+    """Stiffness, damping and rate, per unit of mass; begin of a beat, least and most rate in it, peak, trust."""
 
     kxx: float
     kxy: float
@@ -53,6 +69,11 @@ class Estimates(Record):
     dxy: float
     dyy: float
     omega: float
+    begun_ms: float
+    least: float
+    most: float
+    peak: float
+    trusted: float
 
 
 class PackedLaw(Record):
@@ -71,7 +92,7 @@ class EstimatePorts(MeasuredPorts):
     x: float = output("uN", "force along x this controller asks for")
     y: float = output("uN", "force along y this controller asks for")
     rate: float = output("deg/s", "estimated angular rate")
-    trusted: float = output("1", "1 once the motion asked for tells the rate from the other estimates, else 0")
+    trusted: float = output("1", "1 while the motion asked for tells the rate, and it keeps still, else 0")
     error_x: float = tap("um", "displacement along x minus the one asked for")
     error_y: float = tap("um", "displacement along y minus the one asked for")
     kxx: float = tap("N/m", "estimated stiffness along x")
@@ -80,6 +101,7 @@ class EstimatePorts(MeasuredPorts):
     dxx: float = tap("uN ms/um", "estimated damping along x")
     dxy: float = tap("uN ms/um", "estimated cross damping")
     dyy: float = tap("uN ms/um", "estimated damping along y")
+    unexciting: float = tap("1", "1 while it drives with frequencies that hardly beat", warning=NOT_EXCITING)
 
 
 def fill_law(p: PackedLaw, params: Any, context: Context, x_hz: float, y_hz: float, unit_ms: float) -> None:
@@ -90,6 +112,7 @@ def fill_law(p: PackedLaw, params: Any, context: Context, x_hz: float, y_hz: flo
     a.cycles_x, a.cycles_y = 1e-3 * x, 1e-3 * y
     a.omega_x, a.omega_y = 2.0 * math.pi * a.cycles_x * unit_ms, 2.0 * math.pi * a.cycles_y * unit_ms
     a.ahead_ms = 0.5 * context.dt_ms if params.advance else 0.0
+    a.beat_ms = max(1.0 / abs(a.cycles_x - a.cycles_y), SHORTEST_MS) if a.cycles_x != a.cycles_y else math.inf
     g, h = p.gains, context.dt_ms / unit_ms
     g.stiffness, g.damping, g.rate = params.stiffness_gain * h, params.cross_gain * h, params.rate_gain * h
     g.velocity = params.velocity_gain
@@ -132,12 +155,31 @@ def push(s: Estimates, q1: float, q2: float, v1: float, v2: float) -> tuple[floa
 
 
 @inlined
+def judge(p: Asked, s: Estimates, x: EstimatePorts) -> None:
+    """Say whether the rate is trusted: after every beat that it drives, by how much the rate has changed in it."""
+    s.peak = max(s.peak, abs(s.omega))
+    over = x.time_ms - s.begun_ms >= p.beat_ms
+    if over:
+        s.trusted = 1.0 if s.most - s.least <= STILL * max(abs(s.omega), STILL * s.peak) else 0.0
+    if x.engaged == 0.0:
+        s.trusted = 0.0
+    if over or x.engaged == 0.0:
+        s.begun_ms = x.time_ms
+        s.least = s.omega
+        s.most = s.omega
+    s.least = min(s.least, s.omega)
+    s.most = max(s.most, s.omega)
+    x.trusted = s.trusted
+    x.unexciting = 1.0 if p.beat_ms > SLOW_MS and x.engaged != 0.0 else 0.0
+
+
+@inlined
 def write(p: Asked, s: Estimates, x: EstimatePorts, mass: float) -> None:
-    """Write the estimates; they are trusted once two frequencies have beaten against each other."""
+    """Write the estimates."""
     per_square = mass / (p.unit_ms * p.unit_ms)
     per_unit = mass / p.unit_ms
+    judge(p, s, x)
     x.rate = s.omega / (p.unit_ms * RAD_MS_PER_DEG_S)
-    x.trusted = 1.0 if abs(p.cycles_x - p.cycles_y) * x.time_ms >= 1.0 else 0.0
     x.kxx = per_square * s.kxx
     x.kxy = per_square * s.kxy
     x.kyy = per_square * s.kyy

@@ -41,7 +41,10 @@ def advance_cost(board: Board, ticks: int = 100 * CHUNK) -> float:
         for _ in range(ticks // CHUNK):
             board.advance(CHUNK)
 
-    return cpu_ns(work, ticks)
+    cost = cpu_ns(work, ticks)
+    if board.trip is not None:  # one that stands still costs nothing
+        raise RuntimeError(f"the board to be measured has stopped: {board.trip.reason}")
+    return cost
 
 
 def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:

@@ -101,6 +101,22 @@ def test_rate_of_slow_references():
     assert found["gyro.trusted"] == 1.0
 
 
+@pytest.mark.parametrize(
+    ("gains", "stops"),
+    [
+        ({"cross_gain": 20.0, "rate_gain": 10.0}, False),
+        ({"cross_gain": 800.0, "rate_gain": 400.0}, True),
+        ({"stiffness_gain": 4e4}, True),
+        ({"velocity_gain": 200.0}, True),
+    ],
+)
+def test_gains_that_diverge_stop_the_bench(gains, stops):
+    result = bench("adaptive_rate", "gyro-a", 1000, 100, (100.0, 100.0), **SLOW, **gains)
+    assert (result.trip is not None) == stops
+    if not stops:
+        assert result.metrics["rate.error_pct"] == pytest.approx(0.0, abs=5.0)
+
+
 @pytest.mark.slow
 def test_rate_of_slow_references_at_1_mhz():
     found = bench("adaptive_rate", "gyro-a", 1000, 1000, (100.0, 200.0), **SLOW).metrics
@@ -117,6 +133,35 @@ def test_one_frequency_follows_and_does_not_tell_the_rate(hz):
     assert abs(result.metrics["rate.error_pct.1"]) > 20.0 and abs(result.metrics["rate.error_pct.2"]) > 20.0
     asked = 1.2 * np.sin(2e-3 * math.pi * hz * 0.01 * np.arange(100_000))
     assert np.abs(result.signal("plant.y") - asked)[-20_000:].max() < 0.02
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.2, 5.0, -9.0, 30.0, -50.0])
+def test_frequencies_that_hardly_differ_are_not_trusted(apart):
+    """While the estimates swing with a slow beat, 100 rad/s is read as thousands; it is trusted when that is over."""
+    hz = {"frequency_x_hz": 663.676, "frequency_y_hz": 663.676 + apart}
+    result = bench("adaptive_rate", "gyro-a", 1800, 100, (100.0, 100.0), **hz)
+    told, trusted = result.signal("adaptive_rate.rate") / RAD, result.signal("adaptive_rate.trusted") != 0.0
+    assert np.abs(told[20_000:60_000] - 100.0).max() > 20.0
+    np.testing.assert_allclose(told[trusted], 100.0, atol=15.0)
+    assert trusted[-1] == (abs(apart) > 20.0)
+    assert any("not persistently exciting" in text for text in result.warnings) == (abs(apart) < 10.0)
+
+
+@pytest.mark.parametrize("rate", [0.0, 100.0])
+def test_who_takes_over_has_to_learn_before_it_is_trusted(rate):
+    document = {
+        "duration_ms": 250,
+        "device": {"id": "gyro-a"},
+        "plant": {"model": "gyroscope", "thermal_noise": False},
+        "rate": {"kind": "constant", "deg_per_s": RAD * rate},
+        "controllers": {"adaptive_rate": SLOW},
+        "controller": {"kind": "open_loop_rate"},
+        "events": [{"at_ms": 60.0, "switch": "adaptive_rate"}],
+    }
+    result = run(Scenario.load(document))
+    told, trusted = result.signal("adaptive_rate.rate") / RAD, result.signal("adaptive_rate.trusted") != 0.0
+    assert not trusted[:7000].any() and trusted[-1]
+    np.testing.assert_allclose(told[trusted], rate, atol=15.0)
 
 
 @pytest.mark.parametrize("name", ["gyro-4-5", "gyro-2-2", "gyro-a"])

@@ -152,6 +152,29 @@ def test_half_a_sample_reads_as_a_rate(khz, quadrature, lead_deg):
     assert advanced["gyro.tilt_deg"] == pytest.approx(0.0, abs=1e-5)
 
 
+@pytest.mark.parametrize("controller", [{"kind": "force_to_rebalance"}, {"kind": "sense_axis_sync", "follow": "rest"}])
+@pytest.mark.parametrize("drive", ["drive_loop", "drive_tracking"])
+def test_a_force_is_a_rate_by_the_frequency_of_the_carrier(drive, controller):
+    """Cross stiffness as strong as that of set A: the mode is 3.7 % below the frequency of x with y at rest.
+
+    The drive loop finds the latter, drive tracking holds the former; both read 2m times the force per speed.
+    """
+    skew = Device(
+        mass_x_kg=1.8e-7,
+        stiffness_x_n_m=63.955,
+        stiffness_y_n_m=95.92,
+        stiffness_xy_n_m=12.779,
+        damping_x_ns_m=2.4e-5,
+        damping_y_ns_m=2.4e-5,
+        drive_amplitude_um=1.0,
+    )
+    found = measured(skew, 900, 200.0, rate=step(3000, 450), slots={"drive": drive}, controller=controller)
+    w = skew.w if drive == "drive_tracking" else math.sqrt(skew.kx / skew.mx)
+    more = (half := w * 0.5e-3 / 200.0) / math.sin(half)
+    assert found["rate.read_dps"] - found["rate.zero_dps"] == pytest.approx(3000 * more, rel=2e-3)
+    assert found["rate.quadrature_dps"] == pytest.approx(skew.kxy / (2 * skew.my * w) / DEG * more, rel=2e-3)
+
+
 def test_force_to_rebalance_settles_or_rings_on_the_split():
     """An integral of y, m g/|k_yy - m w^2| per ms, behind a low-pass of 50 Hz; 5 % is left after ln 20 of it."""
 

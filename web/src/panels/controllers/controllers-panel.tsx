@@ -17,6 +17,9 @@ import { overridden, slotTitle } from "./slots";
 
 /** What a controller puts out that is worth a number beside its name, the first that it has. */
 const TOLD = ["rate", "amplitude", "voltage"];
+/** Beside it, of those that judge their own estimate, whether to believe it. */
+const TRUSTED = "trusted";
+const trust = (key: string, value: number) => (key.endsWith(TRUSTED) ? (value ? "" : "not trusted") : undefined);
 
 /** Which controller drives in each slot, what all of them say now, and what comes from outside. */
 export function ControllersPanel() {
@@ -29,11 +32,12 @@ export function ControllersPanel() {
     return Object.fromEntries(
       (controllers ?? []).flatMap((name) => {
         const output = TOLD.map((port) => `${name}.${port}`).find((signal) => names.has(signal));
-        return output ? [[name, output]] : [];
+        const trusted = `${name}.${TRUSTED}`;
+        return [...(output ? [[name, output]] : []), ...(names.has(trusted) ? [[trusted, trusted]] : [])];
       }),
     );
   }, [controllers, signals]);
-  const live = useLiveValues(told);
+  const live = useLiveValues(told, trust);
   const list = useInstances();
   if (!slots || !controllers)
     return <EmptyState title="No bench yet">The controllers of the bench appear here.</EmptyState>;
@@ -65,7 +69,12 @@ export function ControllersPanel() {
               {controllersOf(slot, controllers, blocks).map((law) => (
                 <div key={law.name} className={styles.row} data-active={law.name === active}>
                   <Radio size="sm" value={law.name} label={law.title} description={<Prose text={law.summary} />} />
-                  <output ref={live(law.name)} />
+                  <div className={styles.told}>
+                    <output ref={live(law.name)} />
+                    {`${law.name}.${TRUSTED}` in told && (
+                      <output className={styles.doubt} ref={live(`${law.name}.${TRUSTED}`)} />
+                    )}
+                  </div>
                 </div>
               ))}
             </Radio.Group>
