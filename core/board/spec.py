@@ -135,9 +135,17 @@ class Spec:
         """Return what a block may know that runs every so many ticks, at one axis if it stands at one."""
         found = self._contexts.get((every, axis))
         if found is None:
-            found = replace(self.context(every), axis=axis) if axis else self._context(every)
+            if self._sown is not None:
+                found = replace(self._sown.context(every, axis), seed=self.seed)
+            else:
+                found = replace(self.context(every), axis=axis) if axis else self._context(every)
             self._contexts[every, axis] = found
         return found
+
+    @cached_property
+    def _sown(self) -> Spec | None:
+        """The bench whose seed has been changed to get this one."""
+        return None
 
     @cached_property
     def _contexts(self) -> dict[tuple[int, str], Context]:
@@ -173,10 +181,9 @@ class Spec:
     def with_seed(self, seed: int) -> Spec:
         """Return this bench with other noise; it goes on with all that was worked out of this one."""
         spec = object.__new__(Spec)
-        contexts = {place: replace(context, seed=seed) for place, context in self._contexts.items()}
         frame = self.frame.model_copy(update={"seed": seed})
         document = {**self.document, "seed": seed}
-        vars(spec).update(vars(self), frame=frame, document=document, _contexts=contexts, quoted=self.quoted)
+        vars(spec).update(vars(self), frame=frame, document=document, _contexts={}, _sown=self, quoted=self.quoted)
         return spec
 
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:

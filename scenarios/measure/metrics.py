@@ -28,8 +28,7 @@ SETTLED = 0.02
 
 def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tick: int = 0) -> complex:
     r"""Return the phasor of one tone by least squares, :math:`x\approx\mathrm{Im}\{Ce^{j\omega t}\}`."""
-    sine, cosine = (weighed(row, signal) for row in _projection(frequency_hz, dt_ms, first_tick, len(signal)))
-    return complex(sine, cosine)
+    return complex(*weighed(_projection(frequency_hz, dt_ms, first_tick, len(signal)), signal))
 
 
 @lru_cache(maxsize=32)
@@ -41,12 +40,13 @@ def _projection(frequency_hz: float, dt_ms: float, first_tick: int, samples: int
 
 
 @kernel
-def weighed(weights: FloatArray, signal: FloatArray) -> float:
-    """Return the sum of a signal under weights, in the order of its samples wherever they lie in memory."""
-    total = 0.0
-    for i in range(len(weights)):
-        total += weights[i] * signal[i]
-    return total
+def weighed(weights: FloatArray, signal: FloatArray) -> tuple[float, float]:
+    """Return the sums of a signal under two rows of weights, in the order of its samples wherever they lie."""
+    first, second = 0.0, 0.0
+    for i in range(weights.shape[1]):
+        first += weights[0, i] * signal[i]
+        second += weights[1, i] * signal[i]
+    return first, second
 
 
 def device_metrics(spec: Spec) -> dict[str, float]:
@@ -153,8 +153,14 @@ def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch:
 
 def step_lengths(truth: FloatArray) -> list[int]:
     """Return the number of samples of each stretch in which one hypothesis is true."""
-    edges = [0, *(np.flatnonzero(np.diff(truth)) + 1).tolist(), len(truth)]
-    return [end - start for start, end in itertools.pairwise(edges) if truth[start] >= 0.0]
+    ends = [*stretches(truth), len(truth)]
+    return [end - start for start, end in itertools.pairwise([0, *ends]) if truth[start] >= 0.0]
+
+
+@kernel
+def stretches(values: FloatArray) -> list[int]:
+    """Return the samples at which a signal takes another value."""
+    return [i for i in range(1, len(values)) if values[i] != values[i - 1]]
 
 
 def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
