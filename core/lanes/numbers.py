@@ -14,7 +14,7 @@ from llvmlite import ir
 WIDTH = 8
 """Boards side by side."""
 
-BOOL, INT, UINT, FLOAT = range(4)
+BOOL, INT, UINT, FLOAT = 0, 1, 2, 3
 """Kinds of numbers, each wider than the one before."""
 DOUBLE, I64, I1 = ir.DoubleType(), ir.IntType(64), ir.IntType(1)
 SCALARS = {BOOL: I1, INT: I64, UINT: I64, FLOAT: DOUBLE}
