@@ -81,7 +81,14 @@ export const theme = createTheme({
         c: "var(--text)",
       },
     },
-    Notification: { defaultProps: { closeButtonProps: { "aria-label": "Dismiss" } } },
+    Notification: {
+      defaultProps: { withBorder: true, closeButtonProps: { "aria-label": "Dismiss" } },
+      styles: {
+        root: { background: "var(--raised)" },
+        title: { fontWeight: 600 },
+        description: { color: "var(--text)" },
+      },
+    },
     // no letters below the smallest size of the page
     InputWrapper: {
       vars: () => ({ label: {}, error: {}, description: { "--input-description-size": "var(--size-0)" } }),
