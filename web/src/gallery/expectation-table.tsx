@@ -18,7 +18,8 @@ interface ExpectationTableProps {
 }
 
 /** Bounds as they are printed rather than typed. */
-const typeset = (text: string) => text.replaceAll(">=", "≥").replaceAll("<=", "≤").replaceAll("-", "−");
+const typeset = (text: string) =>
+  text.replaceAll(" ± ", "\u00a0±\u00a0").replaceAll(">=", "≥").replaceAll("<=", "≤").replaceAll("-", "−");
 
 /** What is said of a figure beside its numbers: why it stands alone, what was chosen for it, where it comes from. */
 function remarks(entry: Entry): string[] {
