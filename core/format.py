@@ -13,7 +13,7 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 from functools import cache
 from typing import NamedTuple
 
-MINUS, THIN, SPACE, NOTHING = "−", "\u2009", "\u00a0", "–"
+MINUS, THIN, SPACE, NOTHING = "−", "\u202f", "\u00a0", "–"
 IMMENSE = 1e15
 """From this size on, fixed decimals would show a row of digits that mean nothing."""
 LEAST_PLAIN, MOST_PLAIN = 1e-3, 1e6

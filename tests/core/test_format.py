@@ -77,6 +77,6 @@ def test_small_things() -> None:
     """Missing values, zeros of whole numbers, one and many."""
     assert [format_si(value, "V") for value in (math.nan, math.inf, -math.inf)] == ["–"] * 3
     assert [format_short(float(whole), "V", 3) for whole in range(1000)] == [f"{whole}\u00a0V" for whole in range(1000)]
-    assert [format_count(n, "sample") for n in (1, 12345)] == ["1\u00a0sample", "12\u2009345\u00a0samples"]
+    assert [format_count(n, "sample") for n in (1, 12345)] == ["1\u00a0sample", "12\u202f345\u00a0samples"]
     assert format_number(-0.0001, 2) == "0.00"
     assert format_on(unit_scale("um", 4.1), -0.003) == "−0.003\u00a0µm"

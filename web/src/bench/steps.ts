@@ -1,5 +1,6 @@
 import { useMemo } from "react";
 import type { Bench, Command, LogEntry } from "../api/types";
+import { useCatalog } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { flagWords } from "./flag-words";
@@ -34,7 +35,12 @@ export function useSteps(): BenchStep[] {
   const events = useBench((s) => s.events);
   const pending = useBench((s) => s.bench?.pending);
   const shown = useBench((s) => !s.blind && s.bench?.replay_of === null);
-  return useMemo(() => (shown && pending ? stepsOf(currentEvents(events), pending) : NONE), [events, pending, shown]);
+  // the words of a step are those of the catalogue
+  const known = useCatalog().blocks.length > 0;
+  return useMemo(
+    () => (known && shown && pending ? stepsOf(currentEvents(events), pending) : NONE),
+    [known, events, pending, shown],
+  );
 }
 
 /** Whether the last step was taken and the scenario is over. */

@@ -7,7 +7,7 @@ import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
-import { metricTitle, micro } from "../ui/metric-name";
+import { metricTitle, metricUnit, micro } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { ReportButton, ScriptButton } from "./file-buttons";
@@ -107,7 +107,7 @@ function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }
           key={axis + metric}
           title={`${bare(metric)} over ${bare(axis)}`}
           xLabel={metricTitle(axis.split(".").at(-1) ?? axis)}
-          yLabel={`${metricTitle(metric)}: mean ± std`}
+          yLabel={["mean ± std", metricUnit(metric)].filter(Boolean).join(", ")}
           lines={lines}
         />
       ))}

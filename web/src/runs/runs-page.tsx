@@ -48,7 +48,7 @@ export function RunsPage() {
   const detail = useRef<HTMLElement>(null);
   // Where the result stands below the list it comes into view when it is chosen.
   useEffect(() => {
-    if (chosen?.id) detail.current?.scrollIntoView({ block: "nearest" });
+    if (chosen?.id) detail.current?.scrollIntoView({ block: "start" });
   }, [chosen?.id]);
   const started = useCallback(
     (next: Parameters<typeof choose>[0]) => {
@@ -87,7 +87,7 @@ export function RunsPage() {
           )
         )}
       </section>
-      <section ref={detail} className={styles.detail} aria-label="Result">
+      <section ref={detail} className={styles.detail} data-chosen={chosen !== undefined} aria-label="Result">
         {chosen?.kind === "comparison" ? (
           <RunComparison key={chosen.id} ids={chosen.id} />
         ) : job?.kind === "run" ? (

@@ -129,10 +129,10 @@ it("labels an axis whose title says the unit", () =>
   expect(labelsOn(unitScale("ms", 0.4), [0, 0.2, 0.4])).toEqual(["0", "200", "400"]));
 
 it("shows device time to the microsecond", () => {
-  expect(formatClock(184.32)).toBe("0.184\u2009320");
-  expect(formatClock(12345678.901)).toBe("12\u2009345.678\u2009901");
+  expect(formatClock(184.32)).toBe("0.184\u202f320");
+  expect(formatClock(12345678.901)).toBe("12\u202f345.678\u202f901");
   expect(formatMoment(1234.56)).toBe("1234.560\u00a0ms");
-  expect(formatTick(1234567)).toBe("tick\u00a01\u2009234\u2009567");
+  expect(formatTick(1234567)).toBe("tick\u00a01\u202f234\u202f567");
 });
 
 it("counts one and many", () => {
@@ -141,7 +141,7 @@ it("counts one and many", () => {
     "1\u00a0sample",
     "2\u00a0samples",
     "4096\u00a0samples",
-    "12\u2009345\u00a0samples",
+    "12\u202f345\u00a0samples",
   ]);
 });
 

@@ -4,7 +4,7 @@ import { roundTo, type UnitScale, unitScale, unitText } from "./unit-scale";
 // logs; `format-cases.json` holds both to one text for one value.
 
 const MINUS = "−";
-const THIN = "\u2009";
+const THIN = "\u202f";
 const SPACE = "\u00a0";
 const NOTHING = "–";
 /** From here on a number with fixed decimals would be a row of digits that mean nothing. */
