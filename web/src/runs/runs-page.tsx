@@ -70,14 +70,14 @@ export function RunsPage() {
           <JobList jobs={value} chosen={chosen} onChoose={choose} onChanged={again} />
         ) : value && isFiltered ? (
           <EmptyState
-            title="No run is like that"
+            title="No run matches"
             action={
               <Button size="xs" variant="default" onClick={() => setFilter(ALL)}>
                 Show all
               </Button>
             }
           >
-            Take another state or scenario, or fewer words.
+            Choose another state or scenario, or search for fewer words.
           </EmptyState>
         ) : (
           !error && (
@@ -95,7 +95,7 @@ export function RunsPage() {
         ) : job?.kind === "campaign" ? (
           <CampaignDetail key={job.id} sweep={job.sweep} onChanged={again} />
         ) : (
-          <EmptyState title={chosen && value ? "That one is not in the list" : "No result chosen"}>
+          <EmptyState title={chosen && value ? "The list does not hold this run" : "No result chosen"}>
             Choose a run or a campaign from the list: figures, expectations, reports and downloads appear here.
           </EmptyState>
         )}

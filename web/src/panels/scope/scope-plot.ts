@@ -259,7 +259,7 @@ export class ScopePlot {
     ctx.textBaseline = "middle";
     const words = this.frame?.waiting
       ? "Waiting for the trigger"
-      : "No data here: the bench no longer has it, or not yet";
+      : "No data here: the bench has dropped it, or has not come to it yet";
     ctx.fillText(words, (left + right) / 2, (top + bottom) / 2);
   }
 }
