@@ -13,6 +13,7 @@ import pytest
 
 from core.format import (
     UNITS,
+    format_beside,
     format_count,
     format_figure,
     format_in,
@@ -21,6 +22,8 @@ from core.format import (
     format_percent,
     format_short,
     format_si,
+    format_spread,
+    plain_scale,
     tick_labels,
     unit_scale,
     unit_text,
@@ -46,6 +49,16 @@ def test_shares_and_figures_are_those_of_the_page() -> None:
     for metric, value, digits, text in CASES["figure"]:
         assert format_figure(metric, value, digits) == text
     assert format_percent(math.nan) == "–"
+
+
+def test_spreads_and_plain_units_are_those_of_the_page() -> None:
+    """A deviation decides the decimals of its mean; figures beside each other share a unit without powers of ten."""
+    for metric, mean, std, text in CASES["spread"]:
+        assert format_spread(metric, mean, std) == text
+    for value, figure, digits, text in CASES["beside"]:
+        assert format_beside(value, figure, digits) == text
+    for unit, values, factor, text in CASES["plain"]:
+        assert plain_scale(unit, values) == (pytest.approx(factor, rel=1e-12), text)
 
 
 def test_units_are_those_of_the_page() -> None:

@@ -95,7 +95,7 @@ test("runs are named, found, compared and removed", async ({ page, server }) => 
   for (const box of await jobs.getByRole("checkbox").all()) await box.check();
   await jobs.getByRole("button", { name: "Compare 2" }).click();
   await expect(page).toHaveURL(/[?&]compare=/);
-  const row = result.getByRole("row", { name: /^rms error, µm/ });
+  const row = result.getByRole("row", { name: /^rms error, nm/ });
   const { figures } = await server.ask<{ figures: { metric: string; differences: number[] }[] }>(
     "GET",
     `/runs/compare?ids=${second}&ids=${first}`,
