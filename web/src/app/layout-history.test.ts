@@ -32,7 +32,8 @@ const settle = () => vi.advanceTimersByTime(1000);
 function watched() {
   const { api, put, now } = dock();
   const history = new LayoutHistory();
-  history.watch(api);
+  const byHand = vi.fn();
+  history.watch(api, byHand);
   settle();
   const go = (way: "undo" | "redo") => {
     history.go(way, (_, layout) => put(layout));
@@ -42,7 +43,7 @@ function watched() {
     put(next);
     settle();
   };
-  return { history, change, put, go, now };
+  return { history, change, put, go, now, byHand };
 }
 
 it("goes back and forward through what was changed", () => {
@@ -76,4 +77,15 @@ it("takes a pull at an edge as one change, and forgets what was undone once ther
   expect(now().grid.root.size).toBe(10);
   change({ panels: { c: {} } });
   expect(history.lastAt("redo")).toBeUndefined();
+});
+
+it("tells what was moved by hand from a layout that was chosen, put there or made smaller", () => {
+  const { history, change, go, byHand } = watched();
+  history.expect();
+  change({ panels: { a: {} } });
+  change({ grid: { width: 80, height: 50, root: { size: 8 } } });
+  go("undo");
+  expect(byHand).not.toHaveBeenCalled();
+  change({ panels: { b: {} } });
+  expect(byHand).toHaveBeenCalledTimes(1);
 });
