@@ -93,9 +93,6 @@ export function keepByHand(): void {
 
 let fitting: ReturnType<typeof setTimeout> | undefined;
 
-/** The dock goes away: nothing is to be laid out in it. */
-export const stopFitting = (): void => clearTimeout(fitting);
-
 /** Lay the panels out anew when the window has become so broad or so narrow that another arrangement suits it. */
 export function fitSoon(): void {
   clearTimeout(fitting);

@@ -14,7 +14,7 @@ import { hasAxes } from "../api/fits";
 import { addPanel, addScope, closePanel, DOCK_GAP, dockNow } from "../bench/dock";
 import { useBench } from "../stream/bench-store";
 import { PanelVisible, usePageVisible } from "../ui/panel-visible";
-import { attachDock, fitSoon, keepByHand, layOutFor, stopFitting } from "./layouts";
+import { attachDock, fitSoon, keepByHand, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind, suits } from "./panels";
 
@@ -32,10 +32,7 @@ export function Workspace() {
   useEffect(() => {
     const observer = new ResizeObserver(fitSoon);
     if (place.current) observer.observe(place.current);
-    return () => {
-      observer.disconnect();
-      stopFitting();
-    };
+    return () => observer.disconnect();
   }, []);
   return (
     <main ref={place} className="workspace" onKeyDownCapture={closeByKey}>
