@@ -100,10 +100,7 @@ export function fitSoon(): void {
     const dock = dockNow();
     const { layout } = useView.getState();
     if (!dock?.width || dock.hasMaximizedGroup() || !isOutgrown(layout, dock)) return;
-    const inFront = dock.groups.flatMap(({ activePanel }) => activePanel?.id ?? []);
     arrange(layout);
-    // where two share a group now, the one that was laid out first
-    for (const id of inFront.reverse()) dock.getPanel(id)?.api.setActive();
     layoutHistory.take();
   }, SETTLES_MS);
 }
