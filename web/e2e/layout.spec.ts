@@ -22,28 +22,3 @@ test("panels keep their sizes, and the open tab is in view, when the page is ope
   }
   expect(await sizesOf(page)).toEqual(before);
 });
-
-test("panels are arranged anew when the window crosses a breakpoint, unless somebody has moved them", async ({
-  page,
-  openBench,
-}) => {
-  await openBench("research");
-  const beside = page.locator(".dv-groupview", { has: page.getByRole("tab", { name: "Bench", exact: true }) });
-  const behind = beside.getByRole("tab", { name: "3D" });
-  await expect(behind).toHaveCount(0);
-  await page.setViewportSize({ width: 820, height: 1180 });
-  await expect(behind).toHaveCount(1);
-  await page.setViewportSize({ width: 1440, height: 900 });
-  await expect(behind).toHaveCount(0);
-
-  await page.getByRole("tab", { name: "Voltage" }).focus();
-  await page.keyboard.press("Delete");
-  await expect
-    .poll(() => page.evaluate(() => Object.keys(localStorage).filter((key) => key.endsWith(".madefor"))))
-    .toEqual([]);
-  const panels = await page.getByRole("tab").count();
-  await page.setViewportSize({ width: 820, height: 1180 });
-  await page.waitForTimeout(600); // nothing is to happen, which no condition can tell
-  await expect(behind).toHaveCount(0);
-  expect(await page.getByRole("tab").count()).toBe(panels);
-});

@@ -32,8 +32,7 @@ const settle = () => vi.advanceTimersByTime(1000);
 function watched() {
   const { api, put, now } = dock();
   const history = new LayoutHistory();
-  const byHand = vi.fn();
-  history.watch(api, byHand);
+  history.watch(api);
   settle();
   const go = (way: "undo" | "redo") => {
     history.go(way, (_, layout) => put(layout));
@@ -43,7 +42,7 @@ function watched() {
     put(next);
     settle();
   };
-  return { history, change, put, go, now, byHand };
+  return { history, change, put, go, now };
 }
 
 it("goes back and forward through what was changed", () => {
@@ -77,15 +76,4 @@ it("takes a pull at an edge as one change, and forgets what was undone once ther
   expect(now().grid.root.size).toBe(10);
   change({ panels: { c: {} } });
   expect(history.lastAt("redo")).toBeUndefined();
-});
-
-it("tells what was moved by hand from a layout that was chosen, put there or made smaller", () => {
-  const { history, change, go, byHand } = watched();
-  history.expect();
-  change({ panels: { a: {} } });
-  change({ grid: { width: 80, height: 50, root: { size: 8 } } });
-  go("undo");
-  expect(byHand).not.toHaveBeenCalled();
-  change({ panels: { b: {} } });
-  expect(byHand).toHaveBeenCalledTimes(1);
 });

@@ -11,8 +11,7 @@ interface Kept {
 type Arrange = (name: string, layout: SerializedDockview) => void;
 
 const MOST = 50;
-/** Pause after which a layout that changes is taken to have settled. */
-export const SETTLES_MS = 250;
+const SETTLES_MS = 250;
 
 /** Parts of a stored layout that only say what is in front: looking at another tab changes nothing. */
 const IN_FRONT = new Set(["activeView", "activeGroup"]);
@@ -35,15 +34,11 @@ export class LayoutHistory {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** The next change is not the user's: a layout was put there. */
   private isOurs = true;
-  /** A layout has been chosen: the next change is that. */
-  private isChosen = false;
   private dock: DockviewApi | undefined;
-  private changed: () => void = () => undefined;
 
-  /** Watch a dock from here on; `changed` hears of what is moved by hand. */
-  watch(dock: DockviewApi, changed: () => void): void {
+  /** Watch a dock from here on. */
+  watch(dock: DockviewApi): void {
     this.dock = dock;
-    this.changed = changed;
     this.forget();
     dock.onDidLayoutChange(() => this.settleSoon());
   }
@@ -78,17 +73,6 @@ export class LayoutHistory {
     this.settleSoon();
   }
 
-  /** The same at once: what comes next is the user's. */
-  take(): void {
-    this.isOurs = true;
-    this.settle();
-  }
-
-  /** What comes next is a layout that was chosen: it can be taken back, but nothing was moved in it. */
-  expect(): void {
-    this.isChosen = true;
-  }
-
   private settleSoon(): void {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.settle(), SETTLES_MS);
@@ -102,9 +86,8 @@ export class LayoutHistory {
     if (this.now && isChange && !this.isOurs && !isResized(this.now.layout, next.layout)) {
       this.past = [...this.past, { ...this.now, at: next.at }].slice(-MOST);
       this.future = [];
-      if (!this.isChosen) this.changed();
     }
-    this.isOurs = this.isChosen = false;
+    this.isOurs = false;
     this.now = next;
   }
 }

@@ -6,8 +6,8 @@ import { inAddress } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { chooseLayout, type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
-import { BUILT_IN, THREE_COLUMNS_PX } from "./built-in-layouts";
-import { layoutHistory, SETTLES_MS } from "./layout-history";
+import { BUILT_IN } from "./built-in-layouts";
+import { layoutHistory } from "./layout-history";
 import { PANELS } from "./panels";
 import { BUILT_IN_AXES } from "./two-axis-layouts";
 
@@ -33,16 +33,6 @@ let coming: SharedLayout | undefined;
 const kind = () => (axes ? "axes." : "");
 const LIST = () => `combbench.layouts.${kind()}own`;
 const storageKey = (name: string) => `combbench.layout.4.${kind()}${isBuiltIn(name) ? "" : "own."}${name}`;
-
-/** For which breadth of the dock a built-in layout was laid out; nothing once somebody has changed it by hand. */
-const madeForKey = (name: string) => `${storageKey(name)}.madefor`;
-const breadthOf = (dock: DockviewApi) => ((dock.width || window.innerWidth) < THREE_COLUMNS_PX ? "narrow" : "wide");
-
-/** Whether a layout is as it was laid out, for another breadth than the dock has now. */
-function isOutgrown(name: string, dock: DockviewApi): boolean {
-  const made = localStorage.getItem(madeForKey(name));
-  return made !== null && made !== breadthOf(dock);
-}
 
 export const isBuiltIn = (name: string): name is LayoutName => name in BUILT_IN;
 
@@ -73,7 +63,7 @@ export function attachDock(api: DockviewApi): void {
   axes = hasAxes(useBench.getState().bench);
   const asked = inAddress("layout");
   arrange(known(asked) ?? known(useView.getState().layout) ?? "lecture");
-  layoutHistory.watch(api, keepByHand);
+  layoutHistory.watch(api);
   api.onDidLayoutChange(keepLayout);
   if (coming) showShared(coming);
   else if (asked && !known(asked) && LINK.test(asked)) fetchLayout(asked).catch(showError);
@@ -83,26 +73,6 @@ export function attachDock(api: DockviewApi): void {
 export function keepLayout(): void {
   const dock = dockNow();
   if (dock) localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(dock.toJSON()));
-}
-
-/** The same of what somebody has changed: it stays as it is in a window of any size. */
-export function keepByHand(): void {
-  localStorage.removeItem(madeForKey(useView.getState().layout));
-  keepLayout();
-}
-
-let fitting: ReturnType<typeof setTimeout> | undefined;
-
-/** Lay the panels out anew when the window has become so broad or so narrow that another arrangement suits it. */
-export function fitSoon(): void {
-  clearTimeout(fitting);
-  fitting = setTimeout(() => {
-    const dock = dockNow();
-    const { layout } = useView.getState();
-    if (!dock?.width || dock.hasMaximizedGroup() || !isOutgrown(layout, dock)) return;
-    arrange(layout);
-    layoutHistory.take();
-  }, SETTLES_MS);
 }
 
 /** Choose a layout as it was left. The address names it. */
@@ -184,7 +154,6 @@ async function fetchLayout(link: string): Promise<void> {
 
 /** Put the panels as they stood in a layout. */
 export function putLayout(name: string, dock: SerializedDockview): void {
-  localStorage.removeItem(madeForKey(name));
   localStorage.setItem(storageKey(name), JSON.stringify(dock));
   arrange(name);
   chooseLayout(name);
@@ -192,7 +161,6 @@ export function putLayout(name: string, dock: SerializedDockview): void {
 
 function show(shared: SharedLayout, name: string): void {
   axes = shared.axes;
-  localStorage.removeItem(madeForKey(name));
   localStorage.setItem(storageKey(name), JSON.stringify(shared.dock));
   arrange(name, shared.large);
   chooseLayout(name);
@@ -211,12 +179,10 @@ function arrange(
   useView.setState({ layout: name, large });
   if (!api) return;
   forgetClosed();
-  layoutHistory.expect();
-  const saved = isOutgrown(name, api) ? undefined : stored(name);
+  const saved = stored(name);
   if (saved && restoreLayout(saved)) return;
   localStorage.removeItem(storageKey(name));
   api.clear();
   const builtIn = (axes ? BUILT_IN_AXES : BUILT_IN)[isBuiltIn(name) ? name : "lab"];
   builtIn(api, api.width || window.innerWidth, api.height || window.innerHeight);
-  if (isBuiltIn(name)) localStorage.setItem(madeForKey(name), breadthOf(api));
 }

@@ -9,12 +9,12 @@ import {
   type IDockviewPanelHeaderProps,
   type IDockviewPanelProps,
 } from "dockview-react";
-import { type FunctionComponent, type KeyboardEvent, useEffect, useRef, useState } from "react";
+import { type FunctionComponent, type KeyboardEvent, useEffect, useState } from "react";
 import { hasAxes } from "../api/fits";
 import { addPanel, addScope, closePanel, DOCK_GAP, dockNow } from "../bench/dock";
 import { useBench } from "../stream/bench-store";
 import { PanelVisible, usePageVisible } from "../ui/panel-visible";
-import { attachDock, fitSoon, keepByHand, layOutFor } from "./layouts";
+import { attachDock, keepLayout, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind, suits } from "./panels";
 
@@ -28,14 +28,8 @@ export function Workspace() {
   useEffect(() => {
     if (axes !== undefined) layOutFor(axes);
   }, [axes]);
-  const place = useRef<HTMLElement>(null);
-  useEffect(() => {
-    const observer = new ResizeObserver(fitSoon);
-    if (place.current) observer.observe(place.current);
-    return () => observer.disconnect();
-  }, []);
   return (
-    <main ref={place} className="workspace" onKeyDownCapture={closeByKey}>
+    <main className="workspace" onKeyDownCapture={closeByKey}>
       <DockviewReact
         components={components}
         defaultTabComponent={Tab}
@@ -63,7 +57,7 @@ function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
           params={params}
           setParams={(next) => {
             api.updateParameters(next);
-            keepByHand();
+            keepLayout();
           }}
         />
       </PanelVisible>
