@@ -13,7 +13,7 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 from functools import cache
 from typing import NamedTuple
 
-MINUS, THIN, SPACE, NOTHING = "−", "\u2009", "\u00a0", "–"
+MINUS, THIN, SPACE, NOTHING = "−", "\u202f", "\u00a0", "–"
 IMMENSE = 1e15
 """From this size on, fixed decimals would show a row of digits that mean nothing."""
 LEAST_PLAIN, MOST_PLAIN = 1e-3, 1e6
@@ -56,6 +56,17 @@ def unit_scale(unit: str, magnitude: float, digits: int = 4) -> UnitScale:
     power = 3 * (_power(size) // 3)
     exponent = f"e{MINUS if power < 0 else ''}{abs(power)}" if power else ""
     return UnitScale(to_base / 10.0**power, name, _decimals_for(size / 10.0**power, digits), exponent)
+
+
+def plain_scale(unit: str, values: Sequence[float]) -> tuple[float, str]:
+    """Return a factor and the unit in which figures beside each other read without a power of ten.
+
+    It is their own unit where it does, else the same with a prefix.
+    """
+    sizes = [abs(value) for value in values if math.isfinite(value)]
+    if unit not in UNITS or all(map(_is_plain, sizes)):
+        return 1.0, unit_text(unit)
+    return unit_scale(unit, max(sizes))[:2]
 
 
 def format_number(value: float, decimals: int) -> str:
@@ -115,6 +126,26 @@ def format_figure(metric: str, value: float | None, digits: int = 4) -> str:
     return format_number(value, 0) if float(value).is_integer() else format_si(value, "", digits)
 
 
+def format_spread(metric: str, mean: float, std: float) -> str:
+    """Write a mean and its standard deviation, to the second digit of the deviation: "0.24700 ± 0.00028"."""
+    if std == 0.0:
+        return f"{format_figure(metric, mean)} ± 0"
+    size = max(abs(mean), std)
+    if not _is_plain(size):
+        return f"{format_si(mean, '')} ± {format_si(std, '', 2)}"
+    decimals = min(_decimals_for(std, 2), _decimals_for(size, 6))
+    return f"{format_number(mean, decimals)} ± {_least(std, decimals)}"
+
+
+def format_beside(value: float, figure: float, digits: int) -> str:
+    """Write a difference from a figure, or its deviation, with the decimals that the figure has."""
+    if value == 0.0 or (float(value).is_integer() and float(figure).is_integer()):
+        return format_number(value, 0)
+    if not _is_plain(abs(figure)):
+        return format_si(value, "", 3)
+    return _least(value, _decimals_for(abs(figure), digits))
+
+
 def format_count(count: float, noun: str) -> str:
     """Write a count with its noun, in the singular or the plural."""
     return _with_unit(format_number(count, 0), noun if abs(count) == 1 else f"{noun}s")
@@ -161,8 +192,19 @@ def _part(part: float, whole: float, unit: str, decimals: int) -> str:
     return f">{SPACE}{format_in(whole - least, unit, most)}"
 
 
+def _least(value: float, decimals: int) -> str:
+    """Write a number; one that is not zero and would read as zero gets a bound."""
+    if value != 0.0 and float(_fixed(value, decimals)) == 0.0:
+        return f"<{SPACE}{format_number(10.0**-decimals, decimals)}"
+    return format_number(value, decimals)
+
+
+def _is_plain(size: float) -> bool:
+    return size == 0.0 or LEAST_PLAIN <= size < MOST_PLAIN
+
+
 def _plain(size: float) -> tuple[float, str] | None:
-    return (1.0, "") if size == 0.0 or LEAST_PLAIN <= size < MOST_PLAIN else None
+    return (1.0, "") if _is_plain(size) else None
 
 
 def _prefix(size: float) -> tuple[float, str] | None:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import pyarrow as pa
 
-from core.format import format_count, format_figure, format_share, format_short
+from core.format import format_count, format_share, format_spread
 from scenarios.campaign.outcome import Outcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import DiagnosisTally, PointTally
 from scenarios.report.axis import Axis
 from scenarios.report.html import as_toml, page, say
-from scenarios.report.metric_name import metric_title
+from scenarios.report.metric_name import MetricScale, metric_scale
 from scenarios.report.svg import Chart, Series
 
 USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
@@ -25,14 +25,18 @@ def name_of(labels: dict[str, str | float]) -> str:
     """Name a point."""
     parts = []
     for path, value in labels.items():
-        name, _, unit = _axis(path).partition(", ")
-        parts.append(f"{name} {say(value)}" + (f"\u00a0{unit}" if unit else ""))
+        scale = _scale(path, [value])
+        parts.append(f"{scale.name} {_label(scale, value)}" + (f"\u00a0{scale.unit}" if scale.unit else ""))
     return ", ".join(parts) or "all runs"
 
 
-def _axis(path: str) -> str:
-    """Name a number that was varied, by the end of its path."""
-    return metric_title(path.rsplit(".", 1)[-1])
+def _scale(path: str, values: Iterable[str | float]) -> MetricScale:
+    """Return how a number that was varied is shown, named by the end of its path."""
+    return metric_scale(path.rsplit(".", 1)[-1], values)
+
+
+def _label(scale: MetricScale, value: str | float) -> str:
+    return value if isinstance(value, str) else say(scale.shown(value))
 
 
 def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
@@ -52,19 +56,24 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
     shown += [name for name in sorted(measured) if name.endswith(USUAL) and name not in shown]
     shown = list(dict.fromkeys(shown))
     axes = list(dict.fromkeys(name for point in points for name in point.labels))
-    means = [f"{metric_title(name)} (mean ± std)" for name in shown]
+    across = {axis: _scale(axis, (point.labels.get(axis, "") for point in points)) for axis in axes}
+    up = {name: metric_scale(name, (p.metrics[name].mean for p in points if name in p.metrics)) for name in shown}
     return page(
         "campaign.html",
         sweep.head.title or sweep.head.id,
         scenario=head.title or sweep.base.id,
         progress=f"{say(done)} of {say(len(sweep))} runs, {format_count(len(sweep.points), 'point')} with "
         f"{format_count(len(sweep.seeds), 'seed')} each ({sweep.seeds[0]} to {sweep.seeds[-1]}).",
-        head=[*map(_axis, axes), "runs", "expectations hold", "tripped", *means],
+        head=[
+            *(scale.title for scale in across.values()),
+            *("runs", "expectations hold", "tripped"),
+            *(f"{scale.title} (mean ± std)" for scale in up.values()),
+        ],
         points=[
             [
-                *(point.labels.get(axis, "") for axis in axes),
+                *(_label(scale, point.labels.get(axis, "")) for axis, scale in across.items()),
                 *(point.runs, point.ok, point.tripped),
-                *(_mean(point, name) for name in shown),
+                *(_mean(point, name, scale) for name, scale in up.items()),
             ]
             for point in points
         ],
@@ -77,9 +86,9 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
     )
 
 
-def _mean(point: PointTally, name: str) -> str:
+def _mean(point: PointTally, name: str, scale: MetricScale) -> str:
     spread = point.metrics.get(name)
-    return "" if spread is None else f"{format_figure(name, spread.mean)} ± {format_short(spread.std, '', 2)}"
+    return "" if spread is None else format_spread(name, scale.shown(spread.mean), scale.shown(spread.std))
 
 
 def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[str]) -> list[Chart]:
@@ -95,17 +104,20 @@ def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[s
         for point in sorted(points, key=lambda p: float(p.labels[axis])):
             rest = "" if is_alone else name_of({key: point.labels[key] for key in others})
             groups.setdefault(rest, []).append(point)
+        x = _scale(axis, (point.labels[axis] for point in points))
         for name in shown:
+            measured = {rest: [point for point in group if name in point.metrics] for rest, group in groups.items()}
+            y = metric_scale(name, (p.metrics[name].mean for group in measured.values() for p in group))
             lines = [
                 Series(
                     rest,
-                    [float(point.labels[axis]) for point in group if name in point.metrics],
-                    [point.metrics[name].mean for point in group if name in point.metrics],
-                    [point.metrics[name].std for point in group if name in point.metrics],
+                    [x.shown(float(point.labels[axis])) for point in group],
+                    [y.shown(point.metrics[name].mean) for point in group],
+                    [y.shown(point.metrics[name].std) for point in group],
                 )
-                for rest, group in groups.items()
+                for rest, group in measured.items()
             ]
-            charts.append(Chart(metric_title(name), Axis(_axis(axis)), Axis("mean ± std"), lines))
+            charts.append(Chart(y.title, Axis(x.title), Axis("mean ± std"), lines))
     return charts
 
 

@@ -7,17 +7,47 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from core.format import unit_text
+from core.format import plain_scale, round_to
 
 NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "metric_names.json").read_text("utf-8"))
 """Shared with the page: families that need not be said, words for parts of names, units by the ending of a name."""
 
 
+class MetricScale(NamedTuple):
+    """How figures of one metric are shown beside each other: its words, the unit, the factor to it."""
+
+    name: str
+    unit: str
+    factor: float
+
+    @property
+    def title(self) -> str:
+        """Words and unit: "rms error, µm"."""
+        return f"{self.name}, {self.unit}" if self.unit else self.name
+
+    def shown(self, value: float) -> float:
+        """Return a figure in that unit."""
+        return value if self.factor == 1.0 else round_to(value * self.factor, 12)
+
+
+def metric_scale(metric: str, values: Iterable[Any] = ()) -> MetricScale:
+    """Return the scale of some figures: in the unit the name ends in, with a prefix where they need one."""
+    name, unit = _parts(metric)
+    factor, text = plain_scale(unit, [value for value in values if isinstance(value, int | float)])
+    return MetricScale(name, text, factor)
+
+
 def metric_title(metric: str) -> str:
     """Return a metric in words with its unit: ``control.rms_error_um`` is "rms error, µm"."""
+    return metric_scale(metric).title
+
+
+def _parts(metric: str) -> tuple[str, str]:
+    """Return the words of a metric, and the unit its name ends in."""
     pieces = metric.split(".")
     whose = [pieces[1]] if pieces[0] == "twins" and len(pieces) > 2 else []
     pieces = pieces[2:] if whose else pieces
@@ -31,8 +61,7 @@ def metric_title(metric: str) -> str:
         words, found = _without_unit(piece)
         unit = found or unit
         said.append(words)
-    name = ": ".join([*whose, *said])
-    return f"{name}, {unit_text(unit)}" if unit else name
+    return ": ".join([*whose, *said]), unit
 
 
 def micro(text: str) -> str:

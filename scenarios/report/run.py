@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from core.format import format_count, format_figure, format_in, format_number, format_short, unit_text
+from core.format import format_beside, format_count, format_figure, format_in, format_number, format_short, unit_text
 from scenarios.report.axis import Axis
 from scenarios.report.figure import TIME, figure, marks
 from scenarios.report.html import as_toml, page
-from scenarios.report.metric_name import metric_title, micro
+from scenarios.report.metric_name import metric_scale, metric_title, micro
 from scenarios.report.palette import hypothesis, signal
 from scenarios.report.svg import Chart, Series, thin
 from scenarios.run import Result
@@ -55,10 +55,7 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
         expectations=[_expectation(entry) for entry in summary["expectations"]],
         charts=_charts(result),
         verdicts=_verdicts(result),
-        figures=[
-            [metric_title(name), format_figure(name, value, 6), *([spread.get(name, 0.0)] if spread else [])]
-            for name, value in summary["metrics"].items()
-        ],
+        figures=[_figure(name, value, spread) for name, value in summary["metrics"].items()],
         has_spread=bool(spread),
         events=[
             [format_number(entry.tick * result.board.dt_ms, 3), entry.tick, entry.actor, entry.text]
@@ -67,6 +64,15 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
         count=len(entries),
         document=as_toml(result.scenario.document),
     )
+
+
+def _figure(metric: str, value: float, spread: dict[str, float]) -> list[str]:
+    """Return a row of the figures: title, value, and with several seeds the deviation."""
+    scale = metric_scale(metric, [value])
+    row = [scale.title, format_figure(metric, scale.shown(value), 6)]
+    if spread:
+        row.append(format_beside(scale.shown(spread.get(metric, 0.0)), scale.shown(value), 6))
+    return row
 
 
 def _expectation(entry: dict[str, Any]) -> list[str]:

@@ -13,6 +13,7 @@ import pytest
 
 from core.format import (
     UNITS,
+    format_beside,
     format_count,
     format_figure,
     format_in,
@@ -21,6 +22,8 @@ from core.format import (
     format_percent,
     format_short,
     format_si,
+    format_spread,
+    plain_scale,
     tick_labels,
     unit_scale,
     unit_text,
@@ -46,6 +49,16 @@ def test_shares_and_figures_are_those_of_the_page() -> None:
     for metric, value, digits, text in CASES["figure"]:
         assert format_figure(metric, value, digits) == text
     assert format_percent(math.nan) == "–"
+
+
+def test_spreads_and_plain_units_are_those_of_the_page() -> None:
+    """A deviation decides the decimals of its mean; figures beside each other share a unit without powers of ten."""
+    for metric, mean, std, text in CASES["spread"]:
+        assert format_spread(metric, mean, std) == text
+    for value, figure, digits, text in CASES["beside"]:
+        assert format_beside(value, figure, digits) == text
+    for unit, values, factor, text in CASES["plain"]:
+        assert plain_scale(unit, values) == (pytest.approx(factor, rel=1e-12), text)
 
 
 def test_units_are_those_of_the_page() -> None:
@@ -77,6 +90,6 @@ def test_small_things() -> None:
     """Missing values, zeros of whole numbers, one and many."""
     assert [format_si(value, "V") for value in (math.nan, math.inf, -math.inf)] == ["–"] * 3
     assert [format_short(float(whole), "V", 3) for whole in range(1000)] == [f"{whole}\u00a0V" for whole in range(1000)]
-    assert [format_count(n, "sample") for n in (1, 12345)] == ["1\u00a0sample", "12\u2009345\u00a0samples"]
+    assert [format_count(n, "sample") for n in (1, 12345)] == ["1\u00a0sample", "12\u202f345\u00a0samples"]
     assert format_number(-0.0001, 2) == "0.00"
     assert format_on(unit_scale("um", 4.1), -0.003) == "−0.003\u00a0µm"

@@ -16,7 +16,7 @@ test("no panel of the designer lies over another or is cut, at any width", async
     const at = `${size.width}x${size.height}`;
     await page.setViewportSize(size);
     await page.evaluate(() => {
-      for (const part of document.querySelectorAll("main *")) part.scrollTop = 0;
+      for (const part of Array.from(document.querySelectorAll("main *"))) part.scrollTop = 0;
     });
     await expect(page.getByRole("img", { name: /^Bode diagram/ })).toBeVisible();
     // the page is laid out anew in its own time

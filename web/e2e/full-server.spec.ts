@@ -9,7 +9,7 @@ test("a full server says what to do; a bench it let go is there again when its p
   try {
     const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: "first-look", keep: true });
     await page.goto(server.url);
-    await expect(page.getByRole("heading", { name: "Every bench of this server is taken" })).toBeVisible();
+    await expect(page.getByRole("heading", { name: "This server has no free bench" })).toBeVisible();
     await expect(page.getByText("wait until somebody closes one")).toBeVisible();
     expect(await seriousViolations(page)).toEqual([]);
     await expectFits(page, "a full server");

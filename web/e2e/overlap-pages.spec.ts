@@ -1,6 +1,6 @@
 import type { Locator } from "@playwright/test";
 import { expect, test } from "./lab";
-import { expectClean, expectFits, isPhone, nameOf, SCREENS, showOn } from "./screens";
+import { expectClean, expectFits, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "./screens";
 
 /** Dialogs, by the key that opens them. */
 const DIALOGS = [
@@ -97,5 +97,18 @@ test("no dialog, menu or notice overlaps or is cut, on any screen", async ({ pag
     if (isPhone(screen)) break;
     await undo.click();
     await expect(tab).toBeVisible();
+  }
+});
+
+test("notices can be read in both schemes", async ({ page, openBench }) => {
+  await openBench("lab");
+  await page.keyboard.press("k");
+  await page.getByRole("tab", { name: "Voltage" }).focus();
+  await page.keyboard.press("Delete");
+  // letters that were not measured must not pass: the notices stay while the pointer rests on one
+  await page.getByText("Voltage closed.").hover();
+  for (const scheme of SCHEMES) {
+    await expectReadable(page, "notices", scheme, ".mantine-Notifications-root");
+    for (const said of ["Moment kept", "Voltage closed."]) await expect(page.getByText(said)).toBeVisible();
   }
 });

@@ -95,7 +95,7 @@ test("runs are named, found, compared and removed", async ({ page, server }) => 
   for (const box of await jobs.getByRole("checkbox").all()) await box.check();
   await jobs.getByRole("button", { name: "Compare 2" }).click();
   await expect(page).toHaveURL(/[?&]compare=/);
-  const row = result.getByRole("row", { name: /^rms error, µm/ });
+  const row = result.getByRole("row", { name: /^rms error, nm/ });
   const { figures } = await server.ask<{ figures: { metric: string; differences: number[] }[] }>(
     "GET",
     `/runs/compare?ids=${second}&ids=${first}`,
@@ -111,6 +111,6 @@ test("runs are named, found, compared and removed", async ({ page, server }) => 
   await expect(jobs.getByRole("listitem")).toHaveCount(2);
   page.once("dialog", (dialog) => dialog.accept());
   await jobs.getByRole("button", { name: "Remove 2" }).click();
-  await expect(jobs.getByText("No run is like that")).toBeVisible();
+  await expect(jobs.getByText("No run matches")).toBeVisible();
   await expect(server.ask("GET", `/runs/${first}`)).rejects.toThrow("not_found");
 });

@@ -40,7 +40,7 @@ def test_a_figure_has_the_axes_of_its_subject_with_units(name: str) -> None:
     assert set(CHEAP[name]) <= set(texts)
     lines = [one for one in picture.iter(f"{SVG}path") if one.attrib.get("class") == "line"]
     assert lines and all(len(texts) > 5 and "nan" not in one.attrib["d"] for one in lines)
-    numbers = [text for text in texts if re.fullmatch(r"−?[\d.\u2009]+", text)]
+    numbers = [text for text in texts if re.fullmatch(r"−?[\d.\u202f]+", text)]
     assert len(numbers) >= 4
 
 

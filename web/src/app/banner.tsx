@@ -50,7 +50,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
       <Line
         tone="warn"
         title={`Nothing heard since ${connection.staleSince.toLocaleTimeString()}`}
-        text="What you see is that old. The page reconnects by itself if the server went away."
+        text="The panels show what came before. The page reconnects by itself."
       />
     );
   if (trip)
@@ -58,7 +58,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
       <Line
         tone="alarm"
         title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
-        text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; what is shown are the last values before.`}
+        text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; the panels show the last values before.`}
       >
         <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
           Reset the trip

@@ -64,7 +64,10 @@ export async function openOwnBench(): Promise<void> {
   if (!id) throw new Error("The library holds no scenario to start from.");
   await startAgain(id);
   if (own)
-    notifications.show({ title: "A fresh bench", message: "Yours of before was closed, or let go too long ago." });
+    notifications.show({
+      title: "A fresh bench",
+      message: "The server has closed your earlier bench, or let it go too long ago.",
+    });
 }
 
 /** Show the bench again that the server has closed, if it was only let go; nobody watched it then. */

@@ -17,9 +17,9 @@ export function FullServer({ onJoin, onRetry }: FullServerProps) {
   const leaving = benches.flatMap((b) => b.let_go_in_s ?? []);
   return (
     <main className={styles.full}>
-      <h1>Every bench of this server is taken</h1>
+      <h1>This server has no free bench</h1>
       <p>
-        It has {benches.length === 1 ? "one bench" : `${benches.length} benches`}, as many as it may.{" "}
+        It has {benches.length === 1 ? "one bench" : `${benches.length} benches`}, which is its limit.{" "}
         {leaving.length > 0
           ? `Nobody watches ${leaving.length} of them; the next one is let go in ${formatCount(Math.ceil(Math.min(...leaving) / 60), "minute")}, unless somebody comes back to it.`
           : "All of them are watched or have something to finish; wait until somebody closes one, or ask whoever runs the server."}{" "}

@@ -40,7 +40,7 @@ export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
   return {
     intro: axes
       ? "A live gyroscope: a plate swings along x, and turning it pushes it along y. The controllers read the rate of turn from that."
-      : `A live comb resonator: a voltage shakes a plate on thin beams.${diagnosed ? " Diagnosis says what is wrong with it: the fuller a lane, the surer." : ""}`,
+      : `A live comb resonator: a voltage shakes a plate on thin beams.${diagnosed ? " Diagnosis says what is wrong with it: a full lane means that it is sure." : ""}`,
     hints: [
       ...(axes ? ofAxes(bench) : hasSteps ? [] : ofResonator(bench, diagnosed)),
       ...(hasSteps ? ofSteps(diagnosed) : []),

@@ -44,15 +44,14 @@ export function LinkBox({ query, what, onCopy }: LinkBoxProps) {
       </div>
       {LOCAL.test(window.location.hostname) && (
         <p className={styles.remark}>
-          Others cannot reach this address: it is that of this computer alone. Open the page by the address others use,
-          then share.
+          Other computers cannot reach this address. Open the page at the address that others use, then share.
         </p>
       )}
       <svg className={styles.qr} viewBox={`0 0 ${qr.size} ${qr.size}`} role="img" aria-label={`QR code of ${address}`}>
         <rect width={qr.size} height={qr.size} fill="#ffffff" />
         <path d={qr.path} fill="#000000" />
       </svg>
-      <p className={styles.remark}>Whoever opens it needs the access token of this server, once.</p>
+      <p className={styles.remark}>Whoever opens it must enter the access token of this server once.</p>
     </div>
   );
 }

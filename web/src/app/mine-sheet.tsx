@@ -120,7 +120,7 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
               variant="subtle"
               aria-label={`Delete ${link.title}`}
               onClick={() =>
-                window.confirm(`Delete ${link.title} for good? Its link leads nowhere then.`) &&
+                window.confirm(`Delete ${link.title} for good? Its link will no longer open.`) &&
                 api.removeLink(link.id).then(onChanged, showError)
               }
             >

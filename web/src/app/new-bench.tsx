@@ -8,6 +8,7 @@ import { showError } from "../bench/send";
 import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
 import { EmptyState } from "../ui/empty-state";
+import { micro } from "../ui/metric-name";
 import styles from "./dialogs.module.css";
 import { SideSheet } from "./side-sheet";
 
@@ -115,7 +116,7 @@ function Gallery() {
           <li key={s.id}>
             <div>
               <h3>{s.title}</h3>
-              <p>{s.summary || s.claim}</p>
+              <p>{micro(s.summary || s.claim)}</p>
               <small>
                 {s.id}
                 {s.source && ` · ${s.source}`}

@@ -35,7 +35,7 @@ export const PAGES: Record<PageName, PageKind> = {
   },
   gallery: {
     name: "Gallery",
-    title: "Gallery: every experiment, claimed and measured",
+    title: "Gallery: every experiment with its claim and its measurement",
     icon: <IconPhoto size={ICON} />,
     key: "e",
     component: GalleryPage,
@@ -56,7 +56,7 @@ export const PAGES: Record<PageName, PageKind> = {
   },
   theory: {
     name: "Theory",
-    title: "Theory: what can be said before anything is run",
+    title: "Theory: stability, excitation and all equations",
     icon: <IconMathFunction size={ICON} />,
     key: "t",
     component: Theory,

@@ -18,7 +18,7 @@ export function PanelBody({ kind, params, setParams }: PanelProps & { kind: Pane
         </EmptyState>
       ) : blind && kind.tells ? (
         <EmptyState title="Hidden while you look for the fault">
-          What stands here would tell it. It comes back once you commit an answer under Blind diagnosis.
+          This panel would show it. It comes back when you commit an answer under Blind diagnosis.
         </EmptyState>
       ) : replay && kind.changes ? (
         <EmptyState title="The past cannot be changed">

@@ -67,12 +67,12 @@ function MadeLink() {
   };
 
   if (error) return <EmptyState title={error.body.message}>{error.body.hint}</EmptyState>;
-  if (!made) return <EmptyState title="Making the link">What was done on this bench is being kept.</EmptyState>;
+  if (!made) return <EmptyState title="Making the link">The server stores what was done on this bench.</EmptyState>;
   return (
     <>
       <p className={styles.remark}>
-        It opens a bench of its own at {formatTick(made.tick)}: the same bits, the layout, the cursors and the note.
-        What you do here afterwards is not in it.
+        The link opens a new bench at {formatTick(made.tick)} with the same bits, your layout, cursors and note. It does
+        not include what you do here afterwards.
       </p>
       <LinkBox query={`link=${made.id}`} what="Link" onCopy={keepNote} />
       <Textarea

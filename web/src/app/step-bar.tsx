@@ -123,7 +123,7 @@ function Findings({ bench, steps, repeats }: { bench: Bench; steps: BenchStep[];
 function foundWords({ label, delay, findable }: TruthSwitch, dtMs: number): string {
   if (!findable) return "not among the hypotheses";
   if (delay === undefined) return `${hypothesisWords(label)} not found`;
-  return `found ${hypothesisWords(label)} after ${formatSi(delay * dtMs, "ms", 3)}`;
+  return `found ${hypothesisWords(label)} ${delay === 0 ? "at once" : `after ${formatSi(delay * dtMs, "ms", 3)}`}`;
 }
 
 /** When a tick comes, in wall time at the pace that is set. */

@@ -49,6 +49,9 @@ const dark: MantineColorsTuple = [
 /** A size of Mantine, or what a finger needs. */
 const atLeastTarget = (name: string, size: string | number = "sm") => `max(var(--${name}-${size}), var(--target))`;
 
+/** The label stands beside the middle of its box, which a finger needs larger than the letters. */
+const BESIDE = { body: { alignItems: "center" } };
+
 /** Mantine on our tokens. */
 export const theme = createTheme({
   fontFamily: "var(--font)",
@@ -81,7 +84,14 @@ export const theme = createTheme({
         c: "var(--text)",
       },
     },
-    Notification: { defaultProps: { closeButtonProps: { "aria-label": "Dismiss" } } },
+    Notification: {
+      defaultProps: { withBorder: true, closeButtonProps: { "aria-label": "Dismiss" } },
+      styles: {
+        root: { background: "var(--raised)" },
+        title: { fontWeight: 600 },
+        description: { color: "var(--text)" },
+      },
+    },
     // no letters below the smallest size of the page
     InputWrapper: {
       vars: () => ({ label: {}, error: {}, description: { "--input-description-size": "var(--size-0)" } }),
@@ -89,9 +99,11 @@ export const theme = createTheme({
     Pill: { styles: { root: { fontSize: "var(--size-0)" } } },
     Radio: Radio.extend({ vars: (_, { size }) => ({ root: { "--radio-size": atLeastTarget("radio-size", size) } }) }),
     Checkbox: Checkbox.extend({
+      styles: BESIDE,
       vars: (_, { size }) => ({ root: { "--checkbox-size": atLeastTarget("checkbox-size", size) } }),
     }),
     Switch: Switch.extend({
+      styles: BESIDE,
       vars: (_, { size }) => ({ root: { "--switch-height": atLeastTarget("switch-height", size) } }),
     }),
     Slider: { defaultProps: { thumbSize: "var(--thumb)" } },

@@ -23,8 +23,9 @@ const WORDS: Partial<Record<string, string>> = {
 
 function faultWords(name: string, severity: number): string {
   const card = cardOf("faults", name);
-  const parameter = card?.parameters.find((p) => p.name === "severity");
-  const scale = severityScale(parameter, card?.suggested ?? 0);
+  if (!card) return titleOf("faults", name); // its unit is not known yet
+  const parameter = card.parameters.find((p) => p.name === "severity");
+  const scale = severityScale(parameter, card.suggested ?? 0);
   return `${titleOf("faults", name)} ${severityText(severity, scale, parameter?.unit ?? "")}`;
 }
 

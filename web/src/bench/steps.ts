@@ -35,11 +35,11 @@ export function useSteps(): BenchStep[] {
   const events = useBench((s) => s.events);
   const pending = useBench((s) => s.bench?.pending);
   const shown = useBench((s) => !s.blind && s.bench?.replay_of === null);
-  const { blocks } = useCatalog();
-  // biome-ignore lint/correctness/useExhaustiveDependencies: the words are those of the catalogue, once it has come
+  // the words of a step are those of the catalogue
+  const known = useCatalog().blocks.length > 0;
   return useMemo(
-    () => (shown && pending ? stepsOf(currentEvents(events), pending) : NONE),
-    [events, pending, shown, blocks],
+    () => (known && shown && pending ? stepsOf(currentEvents(events), pending) : NONE),
+    [known, events, pending, shown],
   );
 }
 

@@ -66,7 +66,7 @@ export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
       <p className={styles.source}>
         Changes in %. The beams are {formatSi(width, "um", 3)} wide as etched
         {softer === undefined
-          ? ": 0.2 µm less leaves nothing of them."
+          ? "; they would vanish with 0.2 µm less."
           : `; 1 − (1 − 0.2/w)³ (1.4.2) says ${formatIn(100 * (1 - (1 - 0.2 / width) ** 3), "%", 1)} softer, the linear rule 3 · 0.2/w ${formatIn(60 / width, "%", 1)}.`}
       </p>
     </>

@@ -18,7 +18,8 @@ interface ExpectationTableProps {
 }
 
 /** Bounds as they are printed rather than typed. */
-const typeset = (text: string) => text.replaceAll(">=", "≥").replaceAll("<=", "≤").replaceAll("-", "−");
+const typeset = (text: string) =>
+  text.replaceAll(" ± ", "\u00a0±\u00a0").replaceAll(">=", "≥").replaceAll("<=", "≤").replaceAll("-", "−");
 
 /** What is said of a figure beside its numbers: why it stands alone, what was chosen for it, where it comes from. */
 function remarks(entry: Entry): string[] {
@@ -26,14 +27,14 @@ function remarks(entry: Entry): string[] {
   return [
     ...(entry.note ? [entry.note] : []),
     ...(fitted.length > 0 ? [`chosen so that it agrees: ${fitted.join(", ")}`] : []),
-    ...(entry.reason ? [`beside the open loop it says nothing: ${entry.reason}`] : []),
+    ...(entry.reason ? [`not compared with the open loop: ${entry.reason}`] : []),
   ];
 }
 
 /** Figure by figure what is expected, what was measured, and what the open loop gives; the first few until all are asked for. */
 export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
   const [all, setAll] = useState(false);
-  if (entries.length === 0) return <p className={styles.nothing}>Nothing is claimed: a bench to play with.</p>;
+  if (entries.length === 0) return <p className={styles.nothing}>This experiment makes no claim.</p>;
   const rows = all ? entries : entries.slice(0, SHOWN);
   const hasPid = entries.some((entry) => typeof entry.pid === "number");
   return (

@@ -103,14 +103,14 @@ export function GalleryPage() {
         </ul>
       ) : value ? (
         <EmptyState
-          title="No experiment is like that"
+          title="No experiment matches"
           action={
             <Button size="xs" variant="default" onClick={() => setFilter(EVERYTHING)}>
               Show all
             </Button>
           }
         >
-          Take another chapter or verdict, or fewer words.
+          Choose another chapter or verdict, or search for fewer words.
         </EmptyState>
       ) : (
         !error && <EmptyState title="Opening the gallery">Claims and measurements come from the server.</EmptyState>

@@ -1,6 +1,6 @@
 import type { GalleryCard } from "../api/types";
 import { formatFigure } from "../ui/format";
-import { metricTitle, metricUnit } from "../ui/metric-name";
+import { metricScale } from "../ui/metric-name";
 
 export interface Headline {
   metric: string;
@@ -16,12 +16,12 @@ export function headlines(card: GalleryCard): Headline[] {
   return card.expectations
     .filter((entry) => typeof entry.published_value === "number" && typeof entry.measured === "number")
     .slice(0, MOST)
-    .map((entry) => {
-      const unit = metricUnit(entry.metric);
-      const [ours, printed] = [entry.measured, entry.published_value].map((value) => {
-        const figure = formatFigure(entry.metric, value);
+    .map(({ metric, measured, published_value }) => {
+      const { name, unit, shown } = metricScale(metric, [measured, published_value]);
+      const [ours, printed] = [measured, published_value].map((value) => {
+        const figure = formatFigure(metric, value && shown(value));
         return unit ? `${figure}\u00a0${unit}` : figure;
       });
-      return { metric: entry.metric, figure: metricTitle(entry.metric).replace(/, [^,]*$/, ""), ours, printed };
+      return { metric, figure: name, ours, printed };
     });
 }

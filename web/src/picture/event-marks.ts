@@ -31,6 +31,8 @@ export const eventAxis = (
 const INK = CANVAS.light;
 const LINE = 18;
 const MOST = 12;
+/** What follows this closely, in pixels, has no room for its own words: the first event speaks. */
+const NEAR = 8;
 
 export const timeTitle = ({ span, dtMs, isTriggered }: EventAxis) =>
   `${isTriggered ? "time from the trigger" : "time of the device"}, ${timeUnit((span.end - span.start) * dtMs).unit}`;
@@ -76,7 +78,7 @@ export function markEvents(
       if (!say) labels[labels.length - 1] = { ...last, ...about(last.at, `${last.event.seq}–${event.seq}`) };
       return;
     }
-    const next = events.slice(i + 1).find(({ tick }) => tick > event.tick);
+    const next = events.slice(i + 1).find(({ tick }) => x(tick) > at + NEAR);
     const words = say?.(event);
     const hasRoom = words && width(words) < (next ? x(next.tick) : right) - at - 6;
     const placed = hasRoom ? { left: at - 1, right: at + width(words) + 6, text: words } : about(at, String(event.seq));

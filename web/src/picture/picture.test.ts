@@ -1,7 +1,7 @@
 // @vitest-environment jsdom
 import { expect, it, vi } from "vitest";
 import type { Marks } from "../bench/marks";
-import type { EventAxis } from "./event-marks";
+import { type EventAxis, markEvents } from "./event-marks";
 import { PICTURE_WIDTH, type Picture, pictureSvg } from "./picture";
 
 vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
@@ -20,6 +20,7 @@ const axis = (...events: ReturnType<typeof event>[]): EventAxis => ({
   marks: { events, faults: [{ name: "added_mass", severity: 0.05, start: -50, end: 250 }] } as unknown as Marks,
   field: ({ width, height }) => ({ left: 0, right: width, top: 0, bottom: height }),
 });
+const LOOK = { scheme: "light", fontSize: 12 } as const;
 const PLAIN: Picture = { stem: "p", title: "A < B", height: 100, paint: () => undefined };
 const drawn = (picture: Partial<Picture>) =>
   new DOMParser().parseFromString(pictureSvg({ ...PLAIN, ...picture }), "image/svg+xml");
@@ -49,6 +50,17 @@ it("numbers the events of the span on the plot, tells them below, and bands the 
   const width = PICTURE_WIDTH - 32;
   expect(document.querySelector("g path")?.getAttribute("d")).toBe(`M${width / 2 + 0.5} 0L${width / 2 + 0.5} 100`);
   expect(document.querySelector("g rect")?.getAttribute("width")).toBe(String(width / 4));
+});
+
+it("says an event in words, also when another follows at the same place", () => {
+  const axisOf = axis(event(1, 300), event(2, 301), event(3, 500), event(4, 520));
+  const found = texts(
+    drawn({
+      paint: (pen, { width, height }) =>
+        markEvents(pen, axisOf, axisOf.field({ width, height }, LOOK), LOOK, ({ text }) => text),
+    }),
+  );
+  expect(found).toEqual(["A < B", "fault 1", "3", "fault 4"]);
 });
 
 it("joins the numbers of events that lie close, and does not list without end", () => {

@@ -7,13 +7,13 @@ import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
-import { metricTitle, micro } from "../ui/metric-name";
+import { metricScale, metricTitle, micro } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { sweepName } from "./jobs";
 import { NameField } from "./name-field";
-import { metricsOf, numericAxes, trend, usualMetrics } from "./points";
+import { labelScale, metricsOf, numericAxes, trend, usualMetrics } from "./points";
 import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
 
@@ -102,18 +102,30 @@ function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }
   if (charts.length === 0) return null;
   return (
     <div className={styles.charts}>
-      {charts.map(({ axis, metric, lines }) => (
-        <LineChart
-          key={axis + metric}
-          title={`${bare(metric)} over ${bare(axis)}`}
-          xLabel={metricTitle(axis.split(".").at(-1) ?? axis)}
-          yLabel={`${metricTitle(metric)}: mean ± std`}
-          lines={lines}
-        />
-      ))}
+      {charts.map(({ axis, metric, lines }) => {
+        const across = labelScale(
+          axis,
+          lines.flatMap(({ x }) => x),
+        );
+        const up = metricScale(
+          metric,
+          lines.flatMap(({ y }) => y),
+        );
+        return (
+          <LineChart
+            key={axis + metric}
+            title={`${up.name} over ${metricScale(axis, []).name}`}
+            xLabel={across.title}
+            yLabel={["mean ± std", up.unit].filter(Boolean).join(", ")}
+            lines={lines.map((line) => ({
+              ...line,
+              x: line.x.map(across.shown),
+              y: line.y.map(up.shown),
+              spread: line.spread?.map(up.shown),
+            }))}
+          />
+        );
+      })}
     </div>
   );
 }
-
-/** A quantity without its unit. */
-const bare = (metric: string) => metricTitle(metric).replace(/, .*$/, "");

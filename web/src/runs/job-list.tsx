@@ -68,7 +68,7 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
           variant="default"
           leftSection={<IconTrash size={15} />}
           disabled={removable.length === 0}
-          title="What has ended, with its files; what is under way stays"
+          title="Removes runs that have ended, with their files; runs under way stay"
           onClick={remove}
         >
           {marks.length > 0 ? `Remove ${removable.length}` : "Remove all finished"}
@@ -111,7 +111,11 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
                 variant="subtle"
                 color="alarm"
                 aria-label={`Cancel ${job.title}`}
-                title={job.kind === "run" ? "Cancel" : "Stop here; what is done stays, and starting it again goes on"}
+                title={
+                  job.kind === "run"
+                    ? "Cancel"
+                    : "Stop; finished runs are kept, and the campaign can go on from them later"
+                }
                 onClick={() => cancel(job)}
               >
                 <IconPlayerStopFilled size={15} />

@@ -1,8 +1,8 @@
 import { useState } from "react";
 import type { PointTally } from "../api/types";
-import { formatCount, formatFigure, formatNumber, formatSi } from "../ui/format";
-import { metricTitle } from "../ui/metric-name";
-import { labelText } from "./points";
+import { formatCount, formatNumber, formatSpread } from "../ui/format";
+import { metricScale } from "../ui/metric-name";
+import { labelScale, labelText } from "./points";
 import styles from "./runs.module.css";
 
 interface Column {
@@ -19,28 +19,29 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
   const [order, setOrder] = useState<{ id: string; down: boolean } | undefined>(undefined);
   const axes = [...new Set(points.flatMap((point) => Object.keys(point.labels)))];
   const columns: Column[] = [
-    ...axes.map(
-      (axis): Column => ({
-        id: axis,
-        title: metricTitle(axis.split(".").at(-1) ?? axis),
-        of: (p) => p.labels[axis],
-        say: (p) => labelText(p.labels[axis] ?? ""),
-      }),
-    ),
+    ...axes.map((axis): Column => {
+      const { title, shown } = labelScale(
+        axis,
+        points.map((p) => p.labels[axis]),
+      );
+      return { id: axis, title, of: (p) => p.labels[axis], say: (p) => labelText(p.labels[axis] ?? "", shown) };
+    }),
     { id: "runs", title: "runs", of: (p) => p.runs, say: (p) => formatNumber(p.runs ?? 0, 0) },
     { id: "ok", title: "as expected", of: (p) => p.ok, say: (p) => formatNumber(p.ok ?? 0, 0) },
     { id: "tripped", title: "tripped", of: (p) => p.tripped, say: (p) => formatNumber(p.tripped ?? 0, 0) },
-    ...metrics.map(
-      (metric): Column => ({
+    ...metrics.map((metric): Column => {
+      const mean = (p: PointTally) => p.metrics?.[metric]?.mean;
+      const { title, shown } = metricScale(metric, points.map(mean));
+      return {
         id: metric,
-        title: metricTitle(metric),
-        of: (p) => p.metrics?.[metric]?.mean,
+        title,
+        of: mean,
         say: (p) => {
           const found = p.metrics?.[metric];
-          return found ? `${formatFigure(metric, found.mean)} ± ${formatSi(found.std, "", 2)}` : "–";
+          return found ? formatSpread(metric, shown(found.mean), shown(found.std)) : "–";
         },
-      }),
-    ),
+      };
+    }),
   ];
   const by = columns.find((column) => column.id === order?.id);
   const rows = by ? [...points].sort((a, b) => compare(by.of(a), by.of(b)) * (order?.down ? -1 : 1)) : points;

@@ -1,20 +1,28 @@
 import type { DiagnosisTally, PointTally } from "../api/types";
 import type { ChartLine } from "../picture/paint-lines";
 import { formatShort } from "../ui/format";
-import { metricTitle } from "../ui/metric-name";
+import { type MetricScale, metricScale } from "../ui/metric-name";
 
 /** Figures shown before anybody chooses. */
 const USUAL = [/\.correct_fraction$/, /\.mean_delay_samples$/, /\.false_switches$/, /^control\.rms_error_um$/];
 
+/** How the values of an axis are shown, by the end of its path. */
+export const labelScale = (path: string, values: readonly (string | number | undefined)[]): MetricScale =>
+  metricScale(
+    path.split(".").at(-1) ?? path,
+    values.filter((value) => typeof value === "number"),
+  );
+
 /** A value a point differs by; a number cut to what can be told apart. */
-export const labelText = (value: string | number) => (typeof value === "number" ? formatShort(value, "") : value);
+export const labelText = (value: string | number, shown = (number: number) => number) =>
+  typeof value === "number" ? formatShort(shown(value), "") : value;
 
 /** What a point is called: the values it differs by. */
 export function pointName(labels: PointTally["labels"]): string {
   const parts = Object.entries(labels).map(([path, value]) => {
     if (path === "variant") return labelText(value);
-    const [name, unit] = metricTitle(path.split(".").at(-1) ?? path).split(", ");
-    return `${name} ${labelText(value)}${unit ? `\u00a0${unit}` : ""}`;
+    const { name, unit, shown } = labelScale(path, [value]);
+    return `${name} ${labelText(value, shown)}${unit ? `\u00a0${unit}` : ""}`;
   });
   return parts.join(", ") || "all runs";
 }

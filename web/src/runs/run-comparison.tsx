@@ -5,13 +5,14 @@ import { useAnswer } from "../api/queries";
 import type { RunComparison as Comparison } from "../api/types";
 import { LineChart } from "../picture/line-chart";
 import { EmptyState } from "../ui/empty-state";
-import { formatCount, formatFigure, formatSi } from "../ui/format";
-import { metricTitle } from "../ui/metric-name";
+import { formatBeside, formatCount, formatFigure } from "../ui/format";
+import { metricScale } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { unitText } from "../ui/unit-scale";
 import { runName, seedText } from "./jobs";
 import styles from "./runs.module.css";
 
+const DIGITS = 6;
 const USUAL = ["plant.displacement", "plant.x"];
 /** Finished runs side by side: their figures with the difference from the first, a signal of all over each other. */
 export function RunComparison({ ids }: { ids: string }) {
@@ -55,21 +56,25 @@ export function RunComparison({ ids }: { ids: string }) {
             </tr>
           </thead>
           <tbody>
-            {rows.map(({ metric, values, differences }) => (
-              <tr key={metric}>
-                <th scope="row" title={metric}>
-                  {metricTitle(metric)}
-                </th>
-                {values.map((one, i) => (
-                  <td key={value.runs[i].id}>{formatFigure(metric, one, 6)}</td>
-                ))}
-                {differences.slice(1).map((one, i) => (
-                  <td key={value.runs[i + 1].id} data-differs={one !== null && one !== 0}>
-                    {differenceText(one)}
-                  </td>
-                ))}
-              </tr>
-            ))}
+            {rows.map(({ metric, values, differences }) => {
+              const { title, shown } = metricScale(metric, values);
+              const largest = Math.max(...values.map((one) => Math.abs(shown(one ?? 0))));
+              return (
+                <tr key={metric}>
+                  <th scope="row" title={metric}>
+                    {title}
+                  </th>
+                  {values.map((one, i) => (
+                    <td key={value.runs[i].id}>{formatFigure(metric, one && shown(one), DIGITS)}</td>
+                  ))}
+                  {differences.slice(1).map((one, i) => (
+                    <td key={value.runs[i + 1].id} data-differs={one !== null && one !== 0}>
+                      {differenceText(one && shown(one), largest)}
+                    </td>
+                  ))}
+                </tr>
+              );
+            })}
           </tbody>
         </table>
       </section>
@@ -124,9 +129,9 @@ function namesOf({ runs }: Comparison): string[] {
   );
 }
 
-function differenceText(difference: number | null): string {
+function differenceText(difference: number | null, figure: number): string {
   if (difference === null) return "–";
   if (difference === 0) return "same";
-  const text = Number.isInteger(difference) ? formatFigure("", difference) : formatSi(difference, "", 3);
-  return difference > 0 ? `+${text}` : text;
+  const text = formatBeside(difference, figure, DIGITS);
+  return difference > 0 && !text.startsWith("<") ? `+${text}` : text;
 }

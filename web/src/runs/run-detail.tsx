@@ -8,12 +8,14 @@ import { setPage } from "../bench/view-store";
 import { ExpectationTable } from "../gallery/expectation-table";
 import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
-import { formatCount, formatFigure, formatPercent, formatShort, formatSi } from "../ui/format";
-import { metricTitle, micro } from "../ui/metric-name";
+import { formatBeside, formatCount, formatFigure, formatPercent, formatShort, formatSi } from "../ui/format";
+import { metricScale, micro } from "../ui/metric-name";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { runName } from "./jobs";
 import { NameField } from "./name-field";
 import styles from "./runs.module.css";
+
+const DIGITS = 6;
 
 /** What the summary of a run holds, as `combbench run --json` prints it. */
 interface Summary {
@@ -114,15 +116,19 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
           </tr>
         </thead>
         <tbody>
-          {Object.entries(summary.metrics).map(([name, value]) => (
-            <tr key={name}>
-              <th scope="row" title={name}>
-                {metricTitle(name)}
-              </th>
-              <td>{formatFigure(name, value, 6)}</td>
-              {summary.metrics_std && <td>{formatSi(summary.metrics_std[name] ?? 0, "", 3)}</td>}
-            </tr>
-          ))}
+          {Object.entries(summary.metrics).map(([name, value]) => {
+            const { title, shown } = metricScale(name, [value]);
+            const std = summary.metrics_std?.[name] ?? 0;
+            return (
+              <tr key={name}>
+                <th scope="row" title={name}>
+                  {title}
+                </th>
+                <td>{formatFigure(name, shown(value), DIGITS)}</td>
+                {summary.metrics_std && <td>{formatBeside(shown(std), shown(value), DIGITS)}</td>}
+              </tr>
+            );
+          })}
         </tbody>
       </table>
       {summary.digest && (

@@ -48,7 +48,7 @@ export function RunsPage() {
   const detail = useRef<HTMLElement>(null);
   // Where the result stands below the list it comes into view when it is chosen.
   useEffect(() => {
-    if (chosen?.id) detail.current?.scrollIntoView({ block: "nearest" });
+    if (chosen?.id) detail.current?.scrollIntoView({ block: "start" });
   }, [chosen?.id]);
   const started = useCallback(
     (next: Parameters<typeof choose>[0]) => {
@@ -70,14 +70,14 @@ export function RunsPage() {
           <JobList jobs={value} chosen={chosen} onChoose={choose} onChanged={again} />
         ) : value && isFiltered ? (
           <EmptyState
-            title="No run is like that"
+            title="No run matches"
             action={
               <Button size="xs" variant="default" onClick={() => setFilter(ALL)}>
                 Show all
               </Button>
             }
           >
-            Take another state or scenario, or fewer words.
+            Choose another state or scenario, or search for fewer words.
           </EmptyState>
         ) : (
           !error && (
@@ -87,7 +87,7 @@ export function RunsPage() {
           )
         )}
       </section>
-      <section ref={detail} className={styles.detail} aria-label="Result">
+      <section ref={detail} className={styles.detail} data-chosen={chosen !== undefined} aria-label="Result">
         {chosen?.kind === "comparison" ? (
           <RunComparison key={chosen.id} ids={chosen.id} />
         ) : job?.kind === "run" ? (
@@ -95,7 +95,7 @@ export function RunsPage() {
         ) : job?.kind === "campaign" ? (
           <CampaignDetail key={job.id} sweep={job.sweep} onChanged={again} />
         ) : (
-          <EmptyState title={chosen && value ? "That one is not in the list" : "No result chosen"}>
+          <EmptyState title={chosen && value ? "The list does not hold this run" : "No result chosen"}>
             Choose a run or a campaign from the list: figures, expectations, reports and downloads appear here.
           </EmptyState>
         )}

@@ -73,7 +73,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         label="Scenario"
         searchable
         allowDeselect={false}
-        nothingFoundMessage="No scenario is called so"
+        nothingFoundMessage="There is no scenario of this name"
         value={draft.scenario}
         data={library.map((s) => ({ value: s.id, label: s.title ? `${s.id}: ${micro(s.title)}` : s.id }))}
         onChange={(scenario) => scenario && set({ scenario })}
@@ -163,7 +163,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
       </Button>
       <p className={styles.note}>
         {!isRun && `${formatCount(points, "point")} with ${formatCount(draft.seeds, "seed")} each. `}
-        Runs are headless, at lower priority than the live benches; what has been run before is not run again.
+        Runs work in the background, after the live benches. Runs whose results are stored are not repeated.
       </p>
     </form>
   );

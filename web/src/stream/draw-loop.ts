@@ -17,7 +17,15 @@ export class DrawLoop {
 
   private readonly frame = (): void => {
     this.lastFrame = performance.now();
-    for (const painter of this.painters) painter();
+    for (const painter of this.painters) {
+      try {
+        painter();
+      } catch (error) {
+        // the others go on without it
+        this.painters.delete(painter);
+        reportError(error);
+      }
+    }
     this.request = this.painters.size ? requestAnimationFrame(this.frame) : 0;
   };
 }

@@ -25,8 +25,8 @@ export function EquationIndex() {
           <h2>Equations</h2>
           <p role="status">
             {errataOnly
-              ? `${formatCount(listed.length, "equation")} printed otherwise`
-              : `${formatCount(listed.length, "equation")}, ${errata} of them printed otherwise`}
+              ? `${formatCount(listed.length, "equation")} with errata`
+              : `${formatCount(listed.length, "equation")}, ${errata} of them with errata`}
           </p>
         </div>
         <TextInput

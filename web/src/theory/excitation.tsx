@@ -119,7 +119,7 @@ export function Excitation() {
           <p className={styles.verdict} data-good={answer.exciting}>
             {answer.exciting
               ? "Persistently exciting"
-              : "Not persistently exciting: some change of the parameters leaves no trace"}
+              : "Not persistently exciting: the output does not show some change of the parameters"}
           </p>
           <table className={styles.eigen}>
             <caption>Eigenvalues of the mean of φφᵀ</caption>

@@ -6,7 +6,7 @@ import type { InstabilityMap, MapSource } from "../api/types";
 import { Painted } from "../picture/painted";
 import type { Box, Look, Pen } from "../picture/pen";
 import { PictureMenu } from "../picture/picture-menu";
-import { formatCount, formatNumber, formatPercent, formatSi } from "../ui/format";
+import { formatCount, formatNumber, formatPercent, formatShort, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
 import { cellAt, mapPicture, paintMap, STILL } from "./paint-map";
@@ -53,10 +53,10 @@ export function Instability() {
   const chosen = RULES.find((r) => r.value === rule) ?? RULES[0];
   return (
     <section className={styles.card} aria-label="Instability map">
-      <h2>Where does the rule run away?</h2>
+      <h2>Where is the rule unstable?</h2>
       <p className={styles.advice}>
-        One gain adapted on k/(s² + b₁s + 1) under a sine. Orange grows, blue settles; each point is the growth of the
-        worst solution by Floquet's theorem.
+        One gain adapted on k/(s² + b₁s + 1) under a sine. In orange the error grows, in blue it decays. Each point
+        shows how fast the worst solution grows, by Floquet's theorem.
       </p>
       <div className={styles.examples}>
         <NativeSelect
@@ -95,8 +95,8 @@ export function Instability() {
           <p className={styles.advice}>
             {unstableShare(answer)} of the map is unstable.{" "}
             {answer.critical_gain_constant === null
-              ? "Under a constant no gain on the map is."
-              : `Under a constant it is beyond ${formatSi(answer.critical_gain_constant, "")}.`}
+              ? "Under a constant input the rule is stable at every gain of the map."
+              : `Under a constant input the rule is unstable at gains above ${formatShort(answer.critical_gain_constant, "")}.`}
           </p>
         </div>
       ) : (

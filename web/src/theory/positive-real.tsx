@@ -36,8 +36,7 @@ export function PositiveReal() {
     <section className={styles.card} aria-label="Positive real">
       <h2>Is it positive real?</h2>
       <p className={styles.advice}>
-        A transfer function in s. Lyapunov's rule needs it strictly positive real; then it cannot be fooled by the sign
-        of the error.
+        A transfer function in s. Lyapunov's rule is proved stable only where it is strictly positive real.
       </p>
       <TextInput
         size="sm"

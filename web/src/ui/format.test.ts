@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import {
+  formatBeside,
   formatChange,
   formatClock,
   formatCount,
@@ -12,13 +13,14 @@ import {
   formatPercent,
   formatShort,
   formatSi,
+  formatSpread,
   formatTick,
   inTex,
   labelsOn,
   tickLabels,
 } from "./format";
 import cases from "./format-cases.json";
-import { UNITS, unitScale, unitText } from "./unit-scale";
+import { plainScale, UNITS, unitScale, unitText } from "./unit-scale";
 
 const FORMATS = { si: formatSi, short: formatShort, in: formatIn };
 
@@ -44,6 +46,22 @@ it.each(cases.percent as [number, number, string][])("writes the share %s in %s 
 it.each(cases.figure as [string, number | null, number, string][])("writes %s of %s in %s digits as %s", (...one) => {
   const [metric, value, digits, text] = one;
   expect(formatFigure(metric, value, digits)).toBe(text);
+});
+
+it.each(cases.spread as [string, number, number, string][])("writes the spread of %s, %s and %s, as %s", (...one) => {
+  const [metric, mean, std, text] = one;
+  expect(formatSpread(metric, mean, std)).toBe(text);
+});
+
+it.each(cases.beside as [number, number, number, string][])("writes %s beside %s in %s digits as %s", (...one) => {
+  const [value, figure, digits, text] = one;
+  expect(formatBeside(value, figure, digits)).toBe(text);
+});
+
+it.each(cases.plain as [string, number[], number, string][])("shows %s of %s by the factor %s in %s", (...one) => {
+  const [unit, sizes, factor, text] = one;
+  const scale = plainScale(unit, sizes);
+  expect([scale.factor / factor, scale.unit]).toEqual([expect.closeTo(1, 12), text]);
 });
 
 it.each(Object.entries(cases.text))("writes the unit %s as %s", (unit, text) => expect(unitText(unit)).toBe(text));
@@ -129,10 +147,10 @@ it("labels an axis whose title says the unit", () =>
   expect(labelsOn(unitScale("ms", 0.4), [0, 0.2, 0.4])).toEqual(["0", "200", "400"]));
 
 it("shows device time to the microsecond", () => {
-  expect(formatClock(184.32)).toBe("0.184\u2009320");
-  expect(formatClock(12345678.901)).toBe("12\u2009345.678\u2009901");
+  expect(formatClock(184.32)).toBe("0.184\u202f320");
+  expect(formatClock(12345678.901)).toBe("12\u202f345.678\u202f901");
   expect(formatMoment(1234.56)).toBe("1234.560\u00a0ms");
-  expect(formatTick(1234567)).toBe("tick\u00a01\u2009234\u2009567");
+  expect(formatTick(1234567)).toBe("tick\u00a01\u202f234\u202f567");
 });
 
 it("counts one and many", () => {
@@ -141,7 +159,7 @@ it("counts one and many", () => {
     "1\u00a0sample",
     "2\u00a0samples",
     "4096\u00a0samples",
-    "12\u2009345\u00a0samples",
+    "12\u202f345\u00a0samples",
   ]);
 });
 

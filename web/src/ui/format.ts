@@ -1,10 +1,10 @@
-import { roundTo, type UnitScale, unitScale, unitText } from "./unit-scale";
+import { decimalsFor, isPlain, roundTo, type UnitScale, unitScale, unitText } from "./unit-scale";
 
 // Every number the page writes for people is written here. `core/format.py` does the same for reports, pictures and
 // logs; `format-cases.json` holds both to one text for one value.
 
 const MINUS = "−";
-const THIN = "\u2009";
+const THIN = "\u202f";
 const SPACE = "\u00a0";
 const NOTHING = "–";
 /** From here on a number with fixed decimals would be a row of digits that mean nothing. */
@@ -61,6 +61,28 @@ export function formatFigure(metric: string, value: number | null | undefined, d
   if (value === null || value === undefined) return NOTHING;
   if (metric.endsWith("_fraction")) return formatShare(value, digits);
   return Number.isInteger(value) ? formatNumber(value, 0) : formatSi(value, "", digits);
+}
+
+/** A mean and its standard deviation, to the second digit of the deviation: "0.24700 ± 0.00028". */
+export function formatSpread(metric: string, mean: number, std: number): string {
+  if (std === 0) return `${formatFigure(metric, mean)} ± 0`;
+  const size = Math.max(Math.abs(mean), std);
+  if (!isPlain(size)) return `${formatSi(mean, "")} ± ${formatSi(std, "", 2)}`;
+  const decimals = Math.min(decimalsFor(std, 2), decimalsFor(size, 6));
+  return `${formatNumber(mean, decimals)} ± ${formatLeast(std, decimals)}`;
+}
+
+/** A difference from a figure, or its deviation, with the decimals that the figure has. */
+export function formatBeside(value: number, figure: number, digits: number): string {
+  if (value === 0 || (Number.isInteger(value) && Number.isInteger(figure))) return formatNumber(value, 0);
+  if (!isPlain(Math.abs(figure))) return formatSi(value, "", 3);
+  return formatLeast(value, decimalsFor(Math.abs(figure), digits));
+}
+
+/** A number that is not zero and would read as zero gets a bound. */
+function formatLeast(value: number, decimals: number): string {
+  const isLess = value !== 0 && Number(value.toFixed(decimals)) === 0;
+  return isLess ? `<${SPACE}${formatNumber(10 ** -decimals, decimals)}` : formatNumber(value, decimals);
 }
 
 /** A part of a whole; one that would read as none or all of it gets up to two more decimals, then a bound. */

@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import cases from "./metric-cases.json";
-import { metricName, metricTitle, metricUnit, micro } from "./metric-name";
+import { metricName, metricScale, metricTitle, micro } from "./metric-name";
 
 it("says a metric in words and keeps whose it is", () => {
   expect(metricName("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
@@ -12,9 +12,12 @@ it("says a metric in words and keeps whose it is", () => {
 it.each(Object.entries(cases))("titles %s as reports do: %s", (metric, title) =>
   expect(metricTitle(metric)).toBe(title));
 
-it("tells the unit of a metric alone", () => {
-  expect(metricUnit("control.first_peak_pct")).toBe("%");
-  expect(metricUnit("control.effort_ratio")).toBe("");
+it("shows figures in a unit that needs no power of ten, and leaves those that read well", () => {
+  const mass = metricScale("device.mass_kg", [220.9e-12]);
+  expect([mass.title, mass.shown(220.9e-12)]).toEqual(["mass, ng", 220.9]);
+  const error = metricScale("control.rms_error_um", [0.02, null, 0.5, undefined]);
+  expect([error.name, error.unit, error.shown(0.02)]).toEqual(["rms error", "µm", 0.02]);
+  expect(metricScale("control.effort_ratio", [1e-9]).title).toBe("effort ratio");
 });
 
 it("prints the units of a text", () => {

@@ -1,5 +1,5 @@
 import names from "../../../scenarios/report/metric_names.json";
-import { unitText } from "./unit-scale";
+import { plainScale, roundTo } from "./unit-scale";
 
 // The rules of reports (`scenarios/report/metric_name.py`); `metric-cases.json` holds both to the same names.
 
@@ -17,8 +17,33 @@ export function metricName(metric: string): string {
     .replaceAll(/\bpct\b/g, "%");
 }
 
+/** How figures of one metric are shown beside each other. */
+export interface MetricScale {
+  /** The metric in words. */
+  name: string;
+  /** Of what is shown. */
+  unit: string;
+  /** Both: "rms error, µm". */
+  title: string;
+  /** A figure in that unit. */
+  shown(value: number): number;
+}
+
+/** The scale of some figures: in the unit that the name of their metric ends in, with a prefix where they need one. */
+export function metricScale(metric: string, values: readonly (number | null | undefined)[]): MetricScale {
+  const { name, unit: own } = partsOf(metric);
+  const { factor, unit } = plainScale(
+    own,
+    values.filter((value) => typeof value === "number"),
+  );
+  const shown = (value: number) => (factor === 1 ? value : roundTo(value * factor, 12));
+  return { name, unit, title: unit ? `${name}, ${unit}` : name, shown };
+}
+
 /** A metric in words with the unit its name ends in: "control.rms_error_um" reads "rms error, µm". */
-export function metricTitle(metric: string): string {
+export const metricTitle = (metric: string): string => metricScale(metric, []).title;
+
+function partsOf(metric: string): { name: string; unit: string } {
   let pieces = metric.split(".");
   const said: string[] = [];
   if (pieces[0] === "twins" && pieces.length > 2) {
@@ -37,12 +62,8 @@ export function metricTitle(metric: string): string {
       said.push(found.words);
     }
   }
-  const name = said.join(": ");
-  return unit ? `${name}, ${unitText(unit)}` : name;
+  return { name: said.join(": "), unit };
 }
-
-/** The unit that the name of a metric ends in; empty if it has none. */
-export const metricUnit = (metric: string): string => metricTitle(metric).split(", ")[1] ?? "";
 
 /** A text of the library with its units as they are printed: "20 us" reads "20 µs". */
 export const micro = (text: string): string => text.replace(/(\d)\s?u([msNVg])\b/g, "$1\u00a0µ$2");

@@ -14,5 +14,5 @@ it("steps by 1, 2 or 5 on round values", () => {
 it("labels with the decimals the steps need", () => {
   expect(timeLabels([1, 1.5, 2], 2)).toEqual(["1.0", "1.5", "2.0"]);
   expect(timeLabels([184000, 185000], 4000)).toEqual(["184", "185"]);
-  expect(timeLabels([10.02, 10.03], 0.04)).toEqual(["10\u2009020", "10\u2009030"]);
+  expect(timeLabels([10.02, 10.03], 0.04)).toEqual(["10\u202f020", "10\u202f030"]);
 });

@@ -85,7 +85,17 @@ export function unitScale(unit: string, magnitude: number, digits = 4): UnitScal
   };
 }
 
-const isPlain = (size: number) => size === 0 || (size >= LEAST_PLAIN && size < MOST_PLAIN);
+/**
+ * The unit in which figures that stand beside each other read without a power of ten, and the factor to it: their own
+ * where it does, else the same with a prefix.
+ */
+export function plainScale(unit: string, values: readonly number[]): Pick<UnitScale, "factor" | "unit"> {
+  const sizes = values.filter(Number.isFinite).map(Math.abs);
+  if (!(unit in UNITS) || sizes.every(isPlain)) return { factor: 1, unit: unitText(unit) };
+  return unitScale(unit, Math.max(...sizes));
+}
+
+export const isPlain = (size: number) => size === 0 || (size >= LEAST_PLAIN && size < MOST_PLAIN);
 
 /** The prefix on which a size reads as 1 to 999, if there is one; zero keeps the unit it came in. */
 function prefixOf(size: number, toBase: number): [number | undefined, string] {
@@ -94,7 +104,8 @@ function prefixOf(size: number, toBase: number): [number | undefined, string] {
   return found && wanted < 1e3 * PREFIXES[0][0] ? found : [undefined, ""];
 }
 
-function decimalsFor(shown: number, digits: number): number {
+/** Decimals that show a size in so many significant digits. */
+export function decimalsFor(shown: number, digits: number): number {
   if (!(shown > 0)) return digits - 1;
   return Math.max(0, digits - 1 - powerOf(roundTo(shown, digits)));
 }

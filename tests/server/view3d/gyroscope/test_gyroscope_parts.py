@@ -118,7 +118,7 @@ def test_the_arc_goes_the_way_the_frame_turns(share: float, angle: float) -> Non
 
 
 def test_what_is_not_as_in_nature_is_said() -> None:
-    said = "schematic, not to scale, motion x × 5, y × 100\u2009000, half ring 200 deg/s, strobe"
+    said = "schematic, not to scale, motion x × 5, y × 100\u202f000, half ring 200 deg/s, strobe"
     assert caption((5.0, 1e5), 200.0, True).replace("\u00a0", " ") == said
     assert "strobe" not in caption((5.0, 1e5), 200.0, False)
 

@@ -42,7 +42,7 @@ PAIR: dict[str, Any] = {
 
 def factors(caption: str) -> tuple[float, float]:
     """Read the factors from a caption."""
-    found = re.search(r"x × (\S+), y × (\S+),", caption.replace("\u2009", ""))
+    found = re.search(r"x × (\S+), y × (\S+),", caption.replace("\u202f", ""))
     assert found is not None, caption
     return float(found[1]), float(found[2])
 

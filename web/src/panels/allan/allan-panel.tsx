@@ -74,7 +74,7 @@ function Readout({ bench, name }: { bench: string; name: string }) {
           <Button
             size="compact-xs"
             variant="light"
-            title="Noise is told by long records; this bench can run faster than it does"
+            title="The noise needs a long record; the bench can run faster to gather it"
             onClick={() => void send({ kind: "time_scale", value: null }, "As fast as possible")}
           >
             Gather as fast as possible

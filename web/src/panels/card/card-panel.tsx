@@ -68,7 +68,11 @@ export function CardPanel() {
       ) : (
         <EmptyState
           title={
-            failed ? "The catalogue did not come" : blocks.length ? "Not in the catalogue" : "Loading the catalogue"
+            failed
+              ? "The server did not send the catalogue"
+              : blocks.length
+                ? "Not in the catalogue"
+                : "Loading the catalogue"
           }
           action={
             failed && (

@@ -3,6 +3,7 @@ import { IconWaveSine } from "@tabler/icons-react";
 import { useMemo } from "react";
 import type { Signal } from "../../api/types";
 import { addScope } from "../../bench/dock";
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { formatNumber, formatPercent } from "../../ui/format";
 import { useLiveValues } from "../schematic/use-live-values";
@@ -18,9 +19,10 @@ export function LiveValues({ instance }: { instance: Instance }) {
   const shown = useMemo(() => Object.fromEntries(own.map((s) => [s.name, s.name])), [own]);
   const names = useBench((s) => s.bench?.diagnosers[instance.id.split(".").at(-1) ?? ""]?.names);
   const scored = useMemo(() => new Set(own.filter((s) => s.block.endsWith(".score")).map((s) => s.name)), [own]);
-  const live = useLiveValues(shown, (name, value) =>
-    scored.has(name) ? scoreWords(name, value, names ?? []) : undefined,
-  );
+  const live = useLiveValues(shown, (name, value) => {
+    if (scored.has(name)) return scoreWords(name, value, names ?? []);
+    return PROBABILITY.test(name) ? formatPercent(value) : undefined;
+  });
   if (own.length === 0) return null;
   return (
     <section className={styles.live} aria-label="Live values">
@@ -55,11 +57,16 @@ export function LiveValues({ instance }: { instance: Instance }) {
   );
 }
 
-const bare = (signal: Signal) =>
-  signal.name
-    .slice(signal.name.indexOf(".") + 1)
+const PROBABILITY = /\.probability\.(.+)$/;
+
+function bare({ name }: Signal): string {
+  const hypothesis = PROBABILITY.exec(name)?.[1];
+  if (hypothesis) return hypothesisWords(hypothesis);
+  return name
+    .slice(name.indexOf(".") + 1)
     .replaceAll("_", " ")
     .replaceAll(".", " ");
+}
 
 const COUNTS = ["false_switches", "delay"];
 
@@ -69,7 +76,7 @@ const COUNTS = ["false_switches", "delay"];
  */
 export function scoreWords(signal: string, value: number, names: readonly string[]): string | undefined {
   const port = signal.slice(signal.lastIndexOf(".") + 1);
-  if (port === "winner" || port === "truth") return names[value] ?? "none of these";
+  if (port === "winner" || port === "truth") return names[value] ? hypothesisWords(names[value]) : "none of these";
   if (port === "delay" && value < 0) return "not found";
   if (COUNTS.includes(port)) return formatNumber(value, 0);
   if (port === "correct_fraction") return formatPercent(value, 2);

@@ -19,7 +19,7 @@ export function FaultsPanel() {
   if (faults.length === 0)
     return (
       <EmptyState
-        title={failed ? "The catalogue did not come" : "Loading the faults"}
+        title={failed ? "The server did not send the catalogue" : "Loading the faults"}
         action={
           failed && (
             <Button size="xs" onClick={retry}>

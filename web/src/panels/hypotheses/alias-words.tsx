@@ -29,8 +29,8 @@ export function AliasWords({ report }: { report: AliasReport }) {
       </table>
       <p>
         {tones.length === 1
-          ? `At this one tone 1 % of mass moves like ${formatIn(worth, "%", 2)} of stiffness; a second tone parts them.`
-          : "Several tones: mass and stiffness cannot stand for one another at all of them."}
+          ? `At this one tone 1 % of mass moves like ${formatIn(worth, "%", 2)} of stiffness; a second tone separates them.`
+          : "The drive has several tones, which separate mass from stiffness."}
       </p>
       {likenesses.slice(0, SHOWN).map(({ name, factor, value }) => (
         <p key={`${name} ${factor}`}>

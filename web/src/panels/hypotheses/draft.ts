@@ -45,7 +45,7 @@ export function refusal(list: readonly Hypothesis[]): string | undefined {
   if (list.length < LEAST) return `A bank needs at least ${LEAST} hypotheses.`;
   const names = list.map((h) => h.name);
   const bad = names.find((name) => !/^[^\s.]{1,24}$/.test(name));
-  if (bad !== undefined) return `"${bad}" is no name: up to 24 characters, without spaces or dots.`;
+  if (bad !== undefined) return `"${bad}" cannot be a name: use up to 24 characters, without spaces or dots.`;
   const twice = names.find((name, i) => names.indexOf(name) !== i);
   return twice === undefined ? undefined : `${twice} is there twice.`;
 }

@@ -77,12 +77,13 @@ export function labsOf(bench: Pick<Bench, "parameters">, id: string, block: Bloc
     { name: "What is true", advice: "The bench itself.", knobs: TRUE_ONES.flatMap(knob) },
     {
       name: "What it assumes",
-      advice: "Assume too little noise and it is sure of everything; too much, and it is sure of nothing.",
+      advice: "With too little assumed noise the diagnoser is too sure; with too much it cannot decide.",
       knobs: own("assumed_noise_scale", "process_noise_v", "probability_floor", "switching"),
     },
     {
       name: "How long it remembers",
-      advice: "A factor near 1 averages for long and notices late; a small one is quick, and nervous.",
+      advice:
+        "A factor near 1 averages for long and notices late; a small one notices early and switches falsely more often.",
       knobs: own("forgetting", "gate"),
     },
   ];

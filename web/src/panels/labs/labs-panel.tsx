@@ -24,7 +24,7 @@ export function LabsPanel() {
   if (!parameters || !id)
     return (
       <EmptyState title="No diagnoser on this bench">
-        The labs turn what a diagnoser assumes away from what is true. Open a scenario of chapter 5 from New bench.
+        Here you set what a diagnoser assumes apart from what is true. Open a scenario of chapter 5 from New bench.
       </EmptyState>
     );
   const labs = labsOf({ parameters }, id, block);

@@ -45,7 +45,7 @@ export function LanesPanel() {
   if (all.length === 0)
     return (
       <EmptyState title="No diagnoser on this bench" action={<OfferDiagnoser />}>
-        One that weighs hypotheses about the device fills these lanes, a lane for each.
+        A diagnoser that weighs hypotheses about the device fills these lanes, one for each hypothesis.
       </EmptyState>
     );
   const one = all.length === 1 && all[0].truth ? all[0] : all.find((c) => c.id === wanted && c.truth);

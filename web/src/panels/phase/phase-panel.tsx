@@ -99,7 +99,7 @@ export function PhasePanel() {
               "Working out the unstable region."
             )
           ) : (
-            "The unstable region lies beneath a displacement; choose one across."
+            "The unstable region is drawn over a displacement; choose one for the axis across."
           ))}
       </p>
     </section>

@@ -25,7 +25,7 @@ export function mapExtent(map: UnstableRegion | undefined, axis: "x" | "y"): Ran
 
 /** In words what the map shows, or why there is none. */
 export function mapWords(map: UnstableRegion): string {
-  if (map.folds.some((f) => f.x_um === 0)) return "The rest itself is unstable: less bias is needed.";
+  if (map.folds.some((f) => f.x_um === 0)) return "The rest position is unstable: lower the bias.";
   const fold = map.folds[0];
   const text = fold
     ? `Dashed: a slow drive folds at ${formatSi(Math.abs(fold.x_um), "um", 3)} and ${formatSi(Math.abs(fold.volts), "V", 3)}.`

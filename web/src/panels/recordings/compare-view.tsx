@@ -54,7 +54,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
         />
         <SegmentedControl
           size="xs"
-          aria-label="Laid upon each other by"
+          aria-label="Align by"
           value={align}
           data={[
             { value: "tick", label: "equal ticks" },

@@ -1,7 +1,8 @@
 import { Tooltip } from "@mantine/core";
-import { type RefObject, useEffect, useState } from "react";
+import { type RefObject, useEffect } from "react";
 import { stream } from "../../stream/stream";
 import { formatCount, formatShort } from "../../ui/format";
+import { useChanged } from "../../ui/use-changed";
 import type { Banded } from "./envelope-rule";
 import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
@@ -16,21 +17,16 @@ interface EnvelopeNoteProps {
 
 /** Says that a filled band is the envelope of a tone too fast for the window, so that nobody takes it for a signal. */
 export function EnvelopeNote({ traces, plot }: EnvelopeNoteProps) {
-  const [bands, setBands] = useState<Banded | undefined>(undefined);
+  const [bands, setBands] = useChanged<Banded | undefined>(undefined);
   useEffect(() => {
     let last = 0;
-    let said: string | undefined;
     return stream.loop.add(() => {
       const now = performance.now();
       if (now - last < EVERY_MS) return;
       last = now;
-      const found = plot.current?.bands();
-      const says = JSON.stringify(found);
-      if (says === said) return; // React keeps each call that changes nothing until the next that does
-      said = says;
-      setBands(found);
+      setBands(plot.current?.bands());
     });
-  }, [plot]);
+  }, [plot, setBands]);
   if (!bands) return null;
   const names = bands.traces.flatMap((i) => traces[i]?.name.replaceAll(/[._]/g, " ") ?? []).join(", ");
   const label =

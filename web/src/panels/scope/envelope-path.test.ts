@@ -22,7 +22,7 @@ class Bars {
 }
 
 /** A field of 100 px by 100 px over values from 0 to 10. */
-function draw(low: number[], high: number[], { width = low.length - 1, dashes = [] as number[] } = {}) {
+function draw(low: number[], high: number[], { width = low.length - 1, dashes = [] as number[], isLine = false } = {}) {
   const pen = new Notes();
   const bars = new Bars();
   const field = { left: 0, top: 0, width, height: 100, from: 0, to: low.length - 1, min: 0, max: 10 };
@@ -33,7 +33,7 @@ function draw(low: number[], high: number[], { width = low.length - 1, dashes = 
     low.map((_, i) => i),
     columns,
     field,
-    { colour: "#123456", width: 2, dashes },
+    { colour: "#123456", width: 2, dashes, isLine },
   );
   return { bars: bars.all, points: pen.points };
 }
@@ -77,6 +77,19 @@ it("joins columns that lie apart by a plain line, and bridges columns without da
   expect(points).toEqual([
     [0, 80],
     [100, 60],
+  ]);
+});
+
+it("joins columns of few samples by a line that reaches both ends of each", () => {
+  const { bars, points } = draw([1, 3, 6, 2], [1, 5, 6, 5], { isLine: true });
+  expect(bars.every(({ top, bottom }) => bottom - top < 40)).toBe(true); // no bar that joins two columns
+  expect(points).toEqual([
+    [0, 90],
+    [0.75, 70],
+    [1.25, 50],
+    [2, 40],
+    [2.75, 50],
+    [3.25, 80],
   ]);
 });
 

@@ -21,6 +21,8 @@ export interface TraceInk {
   /** px of the pen, as are the dashes. */
   width: number;
   dashes: readonly number[];
+  /** The columns hold so few samples that the trace is a line, however close they stand. */
+  isLine?: boolean;
 }
 
 /** Columns closer than this, px, are drawn as bars that meet; those further apart are joined by a line. */
@@ -31,7 +33,8 @@ const CLOSE = 1.3;
  *
  * Bars are rectangles and no path: eight scopes of six fast traces are drawn in a tenth of the time that a stroke takes
  * where no graphics card helps. A spike of one tick is a bar of its full height, dashes or not, so it cannot be missed.
- * `pen` draws the lines that join columns, `bars` the bars, on the screen straight into pixels.
+ * `pen` draws the lines that join columns, `bars` the bars, on the screen straight into pixels. Bars have no slanted edge,
+ * so columns of few samples, which are a line to the eye, are joined by one too.
  */
 export function paintEnvelope(
   pen: Pen,
@@ -46,11 +49,9 @@ export function paintEnvelope(
   const perValue = height / (max - min);
   const bottom = top + height;
   const zero = bottom + min * perValue;
+  const step = (perTime * (times[times.length - 1] - times[0])) / (times.length - 1);
   // as wide as a column and no wider: what is filled is what costs
-  const bar = Math.max(
-    1,
-    Math.ceil(Math.min(CLOSE, (perTime * (times[times.length - 1] - times[0])) / (times.length - 1))),
-  );
+  const bar = Math.max(1, Math.ceil(Math.min(CLOSE, step)));
   const half = ink.width / 2;
   const isInk = dashing(ink.dashes);
   pen.save();
@@ -60,6 +61,7 @@ export function paintEnvelope(
   pen.setLineDash([...ink.dashes]);
   pen.beginPath();
   const before = { x: Number.NaN, high: 0, low: 0 };
+  let y = 0; // where the line has come to
   let drawing = false;
   let hasLines = false;
   for (let c = 0; c < times.length; c += 1) {
@@ -67,7 +69,7 @@ export function paintEnvelope(
     const x = left + (times[c] - from) * perTime;
     const yHigh = clamp(zero - high[c] * perValue, top, bottom);
     const yLow = clamp(zero - low[c] * perValue, top, bottom);
-    const meets = x - before.x <= CLOSE;
+    const meets = !ink.isLine && x - before.x <= CLOSE;
     if (meets && isInk(x - left)) {
       const head = Math.min(yHigh, before.low) - half;
       bars.fillRect(Math.round(x - bar / 2), head, bar, Math.max(yLow, before.high) + half - head);
@@ -76,10 +78,15 @@ export function paintEnvelope(
     }
     const isJoined = !meets && !Number.isNaN(before.x);
     if (isJoined) {
-      if (!drawing) pen.moveTo(before.x, (before.low + before.high) / 2);
-      pen.lineTo(x, (yLow + yHigh) / 2);
+      if (!drawing) pen.moveTo(before.x, y);
+      // both ends of a column, the nearer one first, as a signal goes that rises or falls
+      const [near, far] = Math.abs(yLow - y) < Math.abs(yHigh - y) ? [yLow, yHigh] : [yHigh, yLow];
+      const apart = far === near ? 0 : step / 4;
+      pen.lineTo(x - apart, near);
+      if (apart) pen.lineTo(x + apart, far);
+      y = far;
       hasLines = true;
-    }
+    } else y = (yLow + yHigh) / 2;
     drawing = isJoined;
     before.x = x;
     before.high = yHigh;

@@ -33,13 +33,17 @@ export interface Banded {
   samples: number;
 }
 
+/** How many samples a column holds. */
+export const samplesOf = ({ startTick, endTick, columns }: Pick<PanelFrame, "startTick" | "endTick" | "columns">) =>
+  (endTick - startTick) / columns;
+
 /** The bands of a picture; none where every column is a sample. */
 export function bandsOf(
   frame: PanelFrame,
   envelopes: Envelope[],
   ranges: (AxisRange | undefined)[],
 ): Banded | undefined {
-  const samples = (frame.endTick - frame.startTick) / frame.columns;
+  const samples = samplesOf(frame);
   if (samples <= 1) return undefined;
   const traces = envelopes.flatMap((envelope, i) => {
     const range = ranges[i];

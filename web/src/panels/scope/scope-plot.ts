@@ -10,12 +10,14 @@ import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
 import { BarRaster } from "./bar-raster";
 import { type Envelope, paintEnvelope } from "./envelope-path";
-import { type Banded, bandsOf } from "./envelope-rule";
+import { type Banded, bandsOf, samplesOf } from "./envelope-rule";
 import { type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { type ScopeModel, scopeOptions } from "./scope-options";
 
 const MOST_AXES = 3;
+/** Samples of a column up to which a trace is a line; bars draw more of them faster, and look the same then. */
+const FEW = 2;
 
 export interface ScopePlotOptions extends Look {
   host: HTMLElement;
@@ -227,6 +229,7 @@ export class ScopePlot {
     const { left, top, width, height } = this.plot.bbox;
     const { start, span } = this.shownTime;
     const ratio = uPlot.pxRatio;
+    const isLine = this.frame !== undefined && samplesOf(this.frame) <= FEW;
     // the raster lies on whole pixels, the field need not
     const [x, y] = [Math.floor(left), Math.floor(top)];
     this.raster.clear(Math.ceil(left + width) - x, Math.ceil(top + height) - y);
@@ -236,7 +239,7 @@ export class ScopePlot {
     for (const trace of inked) {
       const { colour, dash, unit } = traces[trace];
       const range = this.ranges[this.units.indexOf(unit)];
-      const ink = { colour, width: lineWidth * ratio, dashes: DASHES[dash].map((px) => px * ratio) };
+      const ink = { colour, width: lineWidth * ratio, dashes: DASHES[dash].map((px) => px * ratio), isLine };
       if (range) paintEnvelope(ctx, this.raster, this.times, this.envelopes[trace], { ...field, ...range }, ink);
     }
     if (this.bars && !this.raster.isEmpty) {
@@ -259,7 +262,7 @@ export class ScopePlot {
     ctx.textBaseline = "middle";
     const words = this.frame?.waiting
       ? "Waiting for the trigger"
-      : "No data here: the bench no longer has it, or not yet";
+      : "No data here: the bench has dropped it, or has not come to it yet";
     ctx.fillText(words, (left + right) / 2, (top + bottom) / 2);
   }
 }

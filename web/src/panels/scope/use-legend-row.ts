@@ -1,4 +1,5 @@
-import { type RefObject, useLayoutEffect, useRef, useState } from "react";
+import { type RefObject, useLayoutEffect, useRef } from "react";
+import { useChanged } from "../../ui/use-changed";
 import type { PlotTrace } from "./paint-scope";
 
 /** Kept free for the button of those that do not fit, px. */
@@ -16,12 +17,11 @@ interface LegendRow {
 /** How much of a legend has room in one row beside what else stands there: with whole names, else with short ones. */
 export function useLegendRow(traces: PlotTrace[]): LegendRow {
   const list = useRef<HTMLUListElement>(null);
-  const [row, setRow] = useState({ fits: traces.length, isShort: false });
+  const [row, setRow] = useChanged({ fits: traces.length, isShort: false });
   useLayoutEffect(() => {
     const box = list.current;
     const place = box?.parentElement;
     if (!box || !place) return;
-    let known: Pick<LegendRow, "fits" | "isShort"> | undefined;
     const measure = () => {
       const [first] = place.getElementsByTagName("ul");
       const last = place.lastElementChild as HTMLElement;
@@ -35,10 +35,7 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
       const shown = isShort ? widths(true) : whole;
       const fits = countFitting(shown, room, MORE_PX);
       box.style.maxWidth = `${fits < shown.length ? sum(shown.slice(0, fits)) : room}px`;
-      if (known?.fits !== fits || known.isShort !== isShort) {
-        known = { fits, isShort };
-        setRow(known); // React keeps every call that changes nothing until the next that does
-      }
+      setRow({ fits, isShort });
       first.dataset.short = String(isShort);
     };
     measure();
@@ -46,7 +43,7 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
     observer.observe(place);
     for (const entry of box.children) observer.observe(entry); // a value may grow
     return () => observer.disconnect();
-  }, [traces]);
+  }, [traces, setRow]);
   return { list, ...row, fits: Math.min(row.fits, traces.length) };
 }
 

@@ -1,4 +1,5 @@
 import { useEffect, useRef, useState } from "react";
+import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { usePageVisible } from "../../ui/panel-visible";
 import { useScheme } from "../../ui/use-canvas";
@@ -19,14 +20,15 @@ interface Look {
 /**
  * The server's 3D page in a frame, loaded when it is first seen; out of sight it draws nothing.
  *
- * When its connection closes, the frame waits for the server and is loaded afresh, unless the bench is gone. Scheme and
- * camera are told to it, so that neither loads it again, and it says where the camera is put, so that loading does not
+ * When its connection closes, the frame waits for the server and is loaded afresh, unless the bench is gone. Scheme,
+ * letters and camera are told to it, so that none of them loads it again, and it says where the camera is put, so that loading does not
  * lose it.
  */
 export function View3dFrame({ path, visible: inSight }: { path: string; visible: boolean }) {
   const waiting = useBench((s) => s.connection.phase === "waiting");
   const gone = useBench((s) => s.connection.phase === "closed");
   const scheme = useScheme();
+  const fontPx = useView((s) => s.fontPx);
   const frame = useRef<HTMLIFrameElement>(null);
   const visible = usePageVisible() && inSight;
   const [ready, setReady] = useState(false);
@@ -76,11 +78,11 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
     return () => clearInterval(timer);
   }, [closed, path, visible, gone]);
 
-  const tell = (message: { scheme?: string; camera?: Camera; look?: Look }) =>
+  const tell = (message: { scheme?: string; fontPx?: number; camera?: Camera; look?: Look }) =>
     frame.current?.contentWindow?.postMessage(message, window.location.origin);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a page that has just connected has to be told
-  useEffect(() => tell({ scheme }), [scheme, connected]);
+  useEffect(() => tell({ scheme, fontPx }), [scheme, fontPx, connected]);
   // biome-ignore lint/correctness/useExhaustiveDependencies: the same
   useEffect(() => tell(look.current ? { look: look.current } : { camera }), [connected]);
 

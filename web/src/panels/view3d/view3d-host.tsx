@@ -1,7 +1,8 @@
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useRef } from "react";
 import { create } from "zustand";
 import { useBench } from "../../stream/bench-store";
 import { stream } from "../../stream/stream";
+import { useChanged } from "../../ui/use-changed";
 import styles from "./view3d.module.css";
 import { View3dFrame } from "./view3d-frame";
 
@@ -14,24 +15,20 @@ export function View3dHost() {
   // the scene tells which fault acts, so nothing is kept of it while the fault is to be found
   const path = useBench((s) => (s.blind ? undefined : s.bench?.view3d));
   const host = useRef<HTMLElement>(null);
-  const [visible, setVisible] = useState(false);
+  const [visible, setVisible] = useChanged(false);
   useEffect(() => {
     usePlaces.setState({ hosted: true });
-    let laid = "";
-    let on: HTMLElement | null = null;
-    let seen = false;
+    let laid: HTMLElement | undefined;
+    let place = "";
     const stop = stream.loop.add(() => {
       const places = usePlaces.getState().places.map((place) => place.getBoundingClientRect());
       const rect = places.findLast(({ width, height }) => width > 0 && height > 0);
-      // React keeps every call that changes nothing until the next that does
-      if (seen !== (rect !== undefined)) setVisible(!seen);
-      seen = rect !== undefined;
+      setVisible(rect !== undefined);
       if (!rect || !host.current) return;
       const wanted = `${rect.left}px ${rect.top}px ${rect.width}px ${rect.height}px`;
-      // another bench has a frame of its own, which has not been laid anywhere yet
-      if (wanted === laid && host.current === on) return;
-      laid = wanted;
-      on = host.current;
+      if (laid === host.current && place === wanted) return; // one that comes with another bench has no place yet
+      laid = host.current;
+      place = wanted;
       const [left, top, width, height] = wanted.split(" ");
       Object.assign(host.current.style, { left, top, width, height });
     });
@@ -39,7 +36,7 @@ export function View3dHost() {
       stop();
       usePlaces.setState({ hosted: false });
     };
-  }, []);
+  }, [setVisible]);
   if (!path) return null;
   return (
     <section ref={host} className={styles.host} aria-label="3D view" hidden={!visible}>

@@ -136,7 +136,7 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
           </li>
           {floor && (
             <li>
-              <span>No hypothesis is ever given up</span>
+              <span>The bank never drops a hypothesis</span>
               <Formula latex={floor} />
             </li>
           )}
@@ -149,7 +149,8 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
         </ol>
       ) : (
         <p className={styles.note}>
-          Nothing was learnt from this sample: the residual is zero, so its covariance cannot be read from the record.
+          The filters learnt nothing from this sample: its residual is zero, and the record does not give its
+          covariance.
         </p>
       )}
     </div>
