@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from core import registry
-from core.board import abreast as eight
-from core.board import fold, program
+from core.board import abreast, fold, program
 from core.board.history import History
 from core.board.rows import Rows
 from core.board.wiring import wire
@@ -58,8 +57,8 @@ def _loop() -> None:
     table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
     wide, no, wide_folds = np.zeros((RESERVED, WIDTH)), np.zeros(0, np.int64), np.zeros((2, 0, WIDTH), np.uint64)
-    eight.run(0, 0, 1.0, table, wide, wide, wide, no, no, wide_folds, no, np.zeros((0, 0, WIDTH)), no, no, 0)
-    eight.call_once(sorting(), wide, np.zeros((0, WIDTH, 0)), np.zeros(4, np.int64), np.zeros(4, np.int64))
+    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, no, wide_folds, no, np.zeros((0, 0, WIDTH)), no, no, 0)
+    abreast.call_once(sorting(), wide, np.zeros((0, WIDTH, 0)), np.zeros(4, np.int64), np.zeros(4, np.int64))
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
     history.columns([0], 0, 1, 1)

@@ -1,4 +1,4 @@
-"""Boards abreast: up to eight boards of one structure, a tick of all of them at a time.
+"""Boards abreast: up to ``WIDTH`` boards of one structure, a tick of all of them at a time.
 
 The boards share blocks, wiring, intervals and choices. Each number of a board stands beside the same number of the
 next, and ``core.lanes`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
@@ -30,7 +30,7 @@ from core.ports import RESERVED, TICK, TIME_MS
 
 ALIGNMENT = 8
 """Numbers of a cache line, at which rows of lanes begin."""
-CHUNK = 256
+CHUNK = 128
 """Ticks whose signals are kept before they are sorted by board."""
 
 

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from llvmlite import binding as llvm
 from llvmlite import ir
 
-WIDTH = 8
-"""Boards side by side."""
+WIDTH = 16 if llvm.get_host_cpu_features().get("avx512f") else 8
+"""Boards side by side: two of the widest vectors or more, so that one computes while another waits for its operands."""
 
 BOOL, INT, UINT, FLOAT = 0, 1, 2, 3
 """Kinds of numbers, each wider than the one before."""

@@ -103,9 +103,9 @@ def sorting() -> int:
 
 
 def _transposed(builder: ir.IRBuilder, rows: list[Any]) -> list[Any]:
-    """Return the columns of a square of numbers: blocks of 1, 2 and 4 change places."""
+    """Return the columns of a square of numbers: blocks of 1, 2, 4 and so on change places."""
     rows = list(rows)
-    for size in (1, 2, 4):
+    for size in (1 << power for power in range(WIDTH.bit_length() - 1)):
         kept = [k if not k & size else WIDTH + k - size for k in range(WIDTH)]
         moved = [k + size if not k & size else WIDTH + k for k in range(WIDTH)]
         for i in (i for i in range(WIDTH) if not i & size):

@@ -19,9 +19,9 @@ from scenarios.run import DEFAULT_SAMPLES, figures, watched
 from scenarios.schema import Scenario
 
 FEWEST = 3
-"""Runs that are worth the loop of eight."""
+"""Runs that are worth the loop of many."""
 MOST_NUMBERS = 16_000_000
-"""Numbers of the traces of eight runs; longer ones run alone."""
+"""Numbers of the traces of runs abreast; longer ones run alone."""
 Run = tuple[Scenario, int]
 
 
@@ -50,7 +50,7 @@ def shape(scenario: Scenario) -> Any:
 
 
 def _abreast(runs: Sequence[Run], numbers: list[int]) -> dict[int, Outcome]:
-    """Carry out runs of one shape, eight at a time; those that cannot go on abreast are left out."""
+    """Carry out runs of one shape, `WIDTH` at a time; those that cannot go on abreast are left out."""
     scenario = runs[numbers[0]][0]
     samples = scenario.samples or DEFAULT_SAMPLES
     found: dict[int, Outcome] = {}
@@ -65,11 +65,11 @@ def _abreast(runs: Sequence[Run], numbers: list[int]) -> dict[int, Outcome]:
     for start in range(0, len(numbers), WIDTH):
         chosen = numbers[start : start + WIDTH]
         if len(chosen) >= FEWEST:
-            found |= _eight(pattern, names, samples, runs, chosen)
+            found |= _together(pattern, names, samples, runs, chosen)
     return found
 
 
-def _eight(
+def _together(
     pattern: Pattern, names: list[str], samples: int, runs: Sequence[Run], chosen: list[int]
 ) -> dict[int, Outcome]:
     began = time.perf_counter()

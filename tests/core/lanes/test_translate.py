@@ -193,13 +193,14 @@ def arrays() -> Any:
     p = rng.normal(size=(Packed.layout.numbers(2), WIDTH))
     record = Packed(np.arange(float(len(p))))
     p[int(record.count)] = 3.0
-    p[int(record.steps)] = [0, 1, 2, 3, 5, 8, 2, 1]
+    p[int(record.steps)] = np.resize([0, 1, 2, 3, 5, 8, 2, 1], WIDTH)
     p[int(record.array[-1])] = 2.0
-    p[int(record.level)] = [0.5, 1, 2, 3, 1, 1, 4, 0.1]
+    p[int(record.level)] = np.resize([0.5, 1, 2, 3, 1, 1, 4, 0.1], WIDTH)
     s = rng.normal(size=(State.layout.size, WIDTH))
     w = rng.normal(size=(RESERVED + 12, WIDTH)) * 3.0
-    w[RESERVED] = [0.0, -0.0, math.nan, math.inf, -7.5, 1e300, 2.5, 3.0]
-    w[RESERVED + 1] = [0.0, 1.0, 2.0, -math.inf, 2.5, math.nan, 2.5, -1.0]
+    w[RESERVED] = np.resize([0.0, -0.0, math.nan, math.inf, -7.5, 1e300, 2.5, 3.0], WIDTH)
+    others = [0.0, 1.0, 2.0, -math.inf, 2.5, math.nan, 2.5, -1.0]
+    w[RESERVED + 1] = [*others, *reversed(others)][:WIDTH]
     io = np.array([RESERVED, RESERVED + 1, RESERVED + 2, RESERVED + 7, RESERVED + 7], dtype=np.int64)
     io[4] = RESERVED + 8
     w = np.vstack([w, np.zeros((2, WIDTH))])
