@@ -23,15 +23,15 @@ def cpu_ns(work: Callable[[], Any], units: int) -> float:
     return (time.thread_time_ns() - begin) / units
 
 
-def interleaved(candidates: Mapping[str, Callable[[], float]], repeats: int = REPEATS) -> dict[str, float]:
-    """Measure candidates in turn and return the median of each, so that drift affects all in the same way."""
+def interleaved(candidates: Mapping[str, Callable[[], float]], repeats: int = REPEATS) -> dict[str, list[float]]:
+    """Measure candidates in turn, so that drift affects all in the same way; return what each repeat gave."""
     costs: dict[str, list[float]] = {name: [] for name in candidates}
     for measure in candidates.values():
         measure()
     for _ in range(repeats):
         for name, measure in candidates.items():
             costs[name].append(measure())
-    return {name: median(values) for name, values in costs.items()}
+    return costs
 
 
 def advance_cost(board: Board, ticks: int = 100 * CHUNK) -> float:
@@ -73,5 +73,5 @@ def block_costs(board: Board, *only: str, alive: Sequence[str] = ALIVE) -> dict[
     for instance in board.wiring.instances:
         if not only or instance.key in only:
             candidates[instance.key] = partial(loop_cost, board, [*alive, instance.key], 50_000)
-    ns = interleaved(candidates)
+    ns = {key: median(values) for key, values in interleaved(candidates).items()}
     return {key: round(value - ns[""], 1) for key, value in ns.items() if key}

@@ -30,7 +30,7 @@ test("the phase plane moves, and has the unstable region beneath once the plant 
   await expect(panel.getByText(/a slow drive folds at \d\.\d\d\sµm and \d[\d.]+\sV/)).toBeVisible();
   await expect(panel.getByRole("img", { name: /over the map of the unstable region$/ })).toBeVisible();
   await panel.getByRole("combobox", { name: "Across" }).selectOption("drive.voltage");
-  await expect(panel.getByText(/lies beneath a displacement/)).toBeVisible();
+  await expect(panel.getByText(/is drawn over a displacement/)).toBeVisible();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 });
 

@@ -42,7 +42,7 @@ for (const prefix of ["", "/bench"]) {
       await expect(page.getByRole("textbox", { name: "Link", exact: true })).toHaveValue(
         new RegExp(`^${base}\\?link=[2-9a-z]{8}$`),
       );
-      await expect(page.getByText("Others cannot reach")).toHaveCount(0);
+      await expect(page.getByText("cannot reach this address")).toHaveCount(0);
 
       expect(
         await page.locator("img[src='./comb.svg']").evaluate((img) => (img as HTMLImageElement).naturalWidth),

@@ -49,7 +49,7 @@ test("a link made in two clicks opens the same tick, log, layout, cursors and no
   await expect(link).toHaveValue(new RegExp(`^${server.origin}/\\?link=[2-9a-z]{8}$`));
   const qr = page.getByRole("img", { name: /^QR code of/ });
   expect((await qr.boundingBox())?.width).toBeGreaterThanOrEqual(200);
-  await expect(page.getByText("Others cannot reach this address")).toBeVisible();
+  await expect(page.getByText("Other computers cannot reach this address")).toBeVisible();
   await page.getByLabel("Note").fill("Watch the mass.");
   expect(await seriousViolations(page)).toEqual([]);
   await page.getByRole("button", { name: "Copy", exact: true }).click();
