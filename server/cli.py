@@ -246,14 +246,14 @@ def bench(as_json: JsonOption = False) -> None:
     if as_json:
         say_json(report)
         return
-    for figure in report["figures"]:
-        mark = "ok  " if figure["ok"] else "MISS"
-        value, unit = format_si(figure["value"], ""), unit_text(figure["unit"])
-        say(f"{mark} {figure['name']:<60} {value:>10} {unit:<3} {figure['target']}")
+    for row in report["figures"]:
+        mark = "info" if row["target"] == "information" else "ok  " if row["ok"] else "MISS"
+        value, low, high = (format_si(row[name], "") for name in ("value", "low", "high"))
+        say(f"{mark} {value:>7} {unit_text(row['unit']):<3} [{low} to {high}]  {row['target']:<24} {row['name']}")
     say("cost of each block, ns per tick:")
     say("  " + "  ".join(f"{name} {format_si(value, '')}" for name, value in report["blocks_ns"].items()))
-    if report["missing"]:
-        say(report["missing"])
+    for text in report["missing"]:
+        say(text)
 
 
 @app.command()

@@ -1,15 +1,36 @@
-"""Use of two processors by a campaign: its rate on two processes over twice the rate on one."""
+"""Rates of campaigns: by the command, by processes, and by a loop of single runs."""
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import tempfile
 import time
 from collections.abc import Sequence
-from statistics import median
+from pathlib import Path
 
+from core.errors import InputError
 from scenarios.campaign.campaign import Campaign, Found
 from scenarios.campaign.sweep import Sweep
+from scenarios.library import get
+from scenarios.run import run
+from scenarios.speed.timing import cpu_ns
 
-REPEATS = 3
+SCENARIO = "ch5-seven-step"
+FEW, MANY = 500, 3000
+"""Runs of a short campaign and of a long one: the rate is that of the difference."""
+REPEATS = 5
+SPREAD = """
+[latin_hypercube]
+points = {runs}
+seed = {seed}
+
+[latin_hypercube.ranges]
+"device.mass_kg" = {{ min = 2.0e-10, max = 2.4e-10 }}
+"device.stiffness_n_m" = {{ min = 0.051, max = 0.056 }}
+"device.damping_ns_m" = {{ min = 6.5e-7, max = 7.5e-7 }}
+"""
+"""Devices of a process, each once."""
 
 
 class _Kept:
@@ -37,7 +58,7 @@ def rate(workers: int, runs: int, first_seed: int) -> float:
     runs, first_seed : int
         Number of seeds, and the first of them.
     """
-    document = {"schema": 1, "scenario": "ch5-seven-step", "seeds": {"first": first_seed, "count": runs}}
+    document = {"schema": 1, "scenario": SCENARIO, "seeds": {"first": first_seed, "count": runs}}
     table = _Kept()
     Campaign(Sweep(document), table, workers=workers).run()
     # The clock starts after the first quarter, when all processes are up and batches have their size.
@@ -49,7 +70,49 @@ def rate(workers: int, runs: int, first_seed: int) -> float:
     raise AssertionError("a campaign ends with all its runs")
 
 
-def scaling(runs: int, repeats: int = REPEATS) -> tuple[float, float]:
-    """Return the median of rate(2) / (2 rate(1)) over alternating measurements, and the best rate of two processes."""
+def shares(runs: int, repeats: int = REPEATS) -> list[float]:
+    """Return rate(2) / (2 rate(1)) of alternating measurements."""
     pairs = [(rate(1, runs // 2, 1), rate(2, runs, 1)) for _ in range(repeats)]
-    return median(double / (2.0 * single) for single, double in pairs), max(double for _, double in pairs)
+    return [double / (2.0 * single) for single, double in pairs]
+
+
+def sweep_s(axes: str, workers: int) -> float:
+    """Return how long ``combbench sweep`` takes with a campaign of the seven steps, from start to report, s."""
+    command = Path(sys.executable).with_name("combbench")
+    if not command.exists():
+        raise InputError(f"is not beside {sys.executable}: install the project, then measure", "combbench")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "campaign.toml"
+        file.write_text(f'schema = 1\nid = "speed"\nscenario = "{SCENARIO}"\n{axes}')
+        begin = time.perf_counter()
+        asked: list[str | Path] = [command, "sweep", file, "--workers", str(workers), "--out", Path(folder) / "out"]
+        subprocess.run(asked, check=True, capture_output=True)
+        return time.perf_counter() - begin
+
+
+def command_rates(axes: str, repeats: int = REPEATS) -> tuple[list[float], list[float]]:
+    """Return the runs per second of the command on two processes, and its seconds for the longer campaign.
+
+    The rate is that of the runs that a longer campaign has more, so that what starting takes is not in it.
+    """
+    rates, whole = [], []
+    for _ in range(repeats):
+        short, long = (sweep_s(axes.format(runs=runs, seed=1), 2) for runs in (FEW, MANY))
+        rates.append((MANY - FEW) / (long - short))
+        whole.append(long)
+    return rates, whole
+
+
+SEEDS = "[seeds]\ncount = {runs}\n"
+
+
+def single_runs(runs: int = 20, repeats: int = REPEATS) -> list[float]:
+    """Return the runs per second of a Python loop of single runs on one processor."""
+    scenario = get(SCENARIO)
+    run(scenario, 0)
+
+    def work() -> None:
+        for seed in range(runs):
+            run(scenario, seed)
+
+    return [1e9 / cpu_ns(work, runs) for _ in range(repeats)]

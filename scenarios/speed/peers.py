@@ -6,12 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy import signal
+from scipy.integrate import solve_ivp
 
 from core import estimation
 from core.block import FloatArray, Oscillator
 from core.board.board import Board
 from core.device.oscillator import transition
 from core.kernel import kernel
+from core.plant.nonlinear import Nonlinear
 from core.record import Record, Vector, vector
 from scenarios.speed.timing import cpu_ns
 
@@ -60,6 +62,40 @@ def lsim_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
     )
     t = np.arange(len(voltage)) * 0.01
     return lambda: cpu_ns(lambda: signal.lsim(system, voltage, t), len(voltage))
+
+
+def forced_response_sample(device: Oscillator, voltage: FloatArray) -> Callable[[], float]:
+    """Return the measurement of ``control.forced_response`` on the same record, ns per sample."""
+    import control
+
+    system = control.tf2ss([device.force], [device.mass, device.damping, device.stiffness])
+    t = np.arange(len(voltage)) * 0.01
+    return lambda: cpu_ns(lambda: control.forced_response(system, t, voltage), len(voltage))
+
+
+def solved(board: Board, samples: int, *, rtol: float = 1e-3, atol: float = 1e-6) -> FloatArray:
+    """Return displacement and velocity of the nonlinear plant of a bench by ``solve_ivp``, sample by sample, from rest.
+
+    The voltage is that of its sine, held over each sample; the tolerances are those of scipy unless given.
+    """
+    device, p = board.spec.context().device, board.wiring.packed(board.wiring.row("plant"))
+    cubic = Nonlinear.Packed(p).cubic
+    sine = board.spec.reference.params
+    step = 2e-3 * np.pi * sine.frequency_hz * board.dt_ms  # type: ignore[attr-defined]
+
+    def motion(_t: float, x: FloatArray, force: float) -> list[float]:
+        return [x[1], (force - device.damping * x[1] - device.stiffness * x[0] - cubic * x[0] ** 3) / device.mass]
+
+    states = np.zeros((samples + 1, 2))
+    for i in range(samples):
+        force = device.force * sine.amplitude_v * np.sin(step * i)  # type: ignore[attr-defined]
+        states[i + 1] = solve_ivp(motion, (0.0, board.dt_ms), states[i], args=(force,), rtol=rtol, atol=atol).y[:, -1]
+    return states
+
+
+def solved_sample(board: Board, samples: int = 200) -> Callable[[], float]:
+    """Return the measurement of the same, ns per sample."""
+    return lambda: cpu_ns(lambda: solved(board, samples), samples)
 
 
 class Estimate(Record):

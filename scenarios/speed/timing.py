@@ -42,9 +42,14 @@ def advance_cost(board: Board, ticks: int = 100 * CHUNK) -> float:
             board.advance(CHUNK)
 
     cost = cpu_ns(work, ticks)
-    if board.trip is not None:  # one that stands still costs nothing
-        raise RuntimeError(f"the board to be measured has stopped: {board.trip.reason}")
+    must_run(board)
     return cost
+
+
+def must_run(board: Board) -> None:
+    """Raise an error when a board that was measured has stopped: standing still costs nothing."""
+    if board.trip is not None:
+        raise RuntimeError(f"the board to be measured has stopped: {board.trip.reason}")
 
 
 def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:

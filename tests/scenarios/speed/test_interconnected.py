@@ -7,10 +7,10 @@ import pytest
 
 from core import registry
 from core.board.board import CHUNK, Board
+from scenarios.speed.boards import ADAPTIVE, GAIN
 from scenarios.speed.gyroscope import ALIVE, ONE, running
 from scenarios.speed.interconnected import adaptive_loop, simulate
 from scenarios.speed.peers import interconnected_sample
-from scenarios.speed.ratios import ADAPTIVE, GAIN
 from scenarios.speed.timing import advance_cost, block_costs, loop_cost
 from tests.lab import inject, make, play
 
