@@ -111,6 +111,8 @@ def plain_step(block: type[Block], tally: Tally) -> Any:
             return _Mathematics(tally)
         if name == "flush_tiny":
             return lambda number: number
+        if name == "whole":  # what only fills a vector register up does not count
+            return lambda number: number
         if name == "shrunk":  # an exponential, though it is left out where it would be nothing
             return counted(EXPONENTIAL, tally)
         return counted(value, tally)

@@ -11,6 +11,7 @@ from core.diagnose.chance import chi_square
 from core.diagnose.filters import between_updates, driven, filters_step
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.elementary import cos, sin
+from core.kernel import whole
 from core.ports import output, tap
 from core.record import Vector
 
@@ -109,7 +110,7 @@ class Consistency(KalmanBank):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Predict, correct, test every hypothesis, conclude."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         place = window.begin(p, s)
         turn = window.angle(p, x.tick)

@@ -7,6 +7,7 @@ from core.diagnose.filters import between_updates, filters_step, informed, take_
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import take_softmax
+from core.kernel import whole
 from core.ports import output, tap
 from core.record import Vector, vector
 
@@ -54,7 +55,7 @@ class Cusum(KalmanBank):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Predict, correct, add up, compare with the threshold."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         threshold = p.threshold
         evidence = informed(p, s, x.measured)

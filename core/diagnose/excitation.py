@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from core.diagnose.lanes import Filters, PackedFilters
 from core.diagnose.weights import winner_of
-from core.kernel import flush_tiny, inlined
+from core.kernel import flush_tiny, inlined, whole
 from core.record import Vector
 
 LEAST_INFORMATION = 1e-3
@@ -24,11 +24,12 @@ def nearest_rival(p: PackedFilters, s: Filters, separation: Vector, probability:
     winner = winner_of(probability, n)
     of_winner = s.residual[winner]
     nearest = 1e300
-    for i in range(n):
+    for i in range(whole(n)):
         apart = s.residual[i] - of_winner
         gain = 0.5 * apart * apart * s.inverse[i]
         mean = p.memory * separation[i] + (1.0 - p.memory) * gain
         separation[i] = flush_tiny(mean)
-        if i != winner and mean < nearest:
-            nearest = mean
+    for i in range(n):
+        if i != winner and separation[i] < nearest:
+            nearest = separation[i]
     return nearest

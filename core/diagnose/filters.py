@@ -6,7 +6,7 @@ import math
 
 from core.diagnose.lanes import Filters, PackedFilters
 from core.elementary import log
-from core.kernel import flush_tiny, inlined, kernel
+from core.kernel import flush_tiny, inlined, kernel, whole
 from core.ports import output, tap
 from core.record import Vector
 from core.voltage import AppliedPorts, ObservedPorts
@@ -194,7 +194,7 @@ def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
     s.started = 1.0
     changed = 0
     if p.steady == 0.0:
-        for i in range(n):
+        for i in range(whole(n)):
             changed += filter_step(p, s, i, z, first, seen)
     else:
         for i in range(n):
@@ -224,12 +224,12 @@ def take_logarithms(s: Filters, n: int) -> None:
 @inlined
 def judge(s: Filters, before: Vector, after: Vector, n: int, evidence: bool) -> float:
     """Add the log-likelihood of each residual to the logarithms ``before``, write ``after``; return the largest."""
+    for i in range(whole(n)):
+        likelihood = before[i] - (0.5 * s.nis[i] + s.half_log[i])
+        after[i] = likelihood if evidence else before[i]
     best = -math.inf
     for i in range(n):
-        likelihood = before[i] - (0.5 * s.nis[i] + s.half_log[i])
-        likelihood = likelihood if evidence else before[i]
-        after[i] = likelihood
-        best = max(best, likelihood)
+        best = max(best, after[i])
     return best
 
 

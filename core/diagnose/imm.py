@@ -11,7 +11,7 @@ from core.diagnose.filters import between_updates, filters_step, informed
 from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.elementary import exp
-from core.kernel import inlined
+from core.kernel import inlined, whole
 from core.ports import tap
 from core.record import Vector, vector
 
@@ -40,7 +40,7 @@ def mix(s: Imm.State, n: int, switching: float) -> None:
         m11 += weight * (s.p11[i] + d1 * d1)
         m12 += weight * (s.p12[i] + d1 * d2)
         m22 += weight * (s.p22[i] + d2 * d2)
-    for i in range(n):
+    for i in range(whole(n)):
         stays = keep * s.weight[i]
         before = switching + stays
         stays /= before
@@ -93,9 +93,10 @@ class Imm(KalmanBank):
         switching: float
 
     class State(KalmanBank.State):
-        """The filters; weights of the hypotheses, separations."""
+        """The filters; weights of the hypotheses, densities of a sample, separations."""
 
         weight: Vector = vector(LANE)
+        density: Vector = vector(LANE)
         separation: Vector = vector(LANE)
 
     class Ports(KalmanBank.Ports):
@@ -130,7 +131,7 @@ class Imm(KalmanBank):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Mix, predict and correct, weigh."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         evidence = informed(p, s, x.measured)
         if evidence and s.started != 0.0:
@@ -141,9 +142,10 @@ class Imm(KalmanBank):
             for i in range(n):
                 least = min(least, s.nis[i])
             total = 0.0
+            for i in range(whole(n)):
+                s.density[i] = exp(0.5 * (least - s.nis[i])) / math.sqrt(s.covariance[i])
             for i in range(n):
-                density = exp(0.5 * (least - s.nis[i])) / math.sqrt(s.covariance[i])
-                share = s.weight[i] * density
+                share = s.weight[i] * s.density[i]
                 s.weight[i] = share
                 total += share
             for i in range(n):

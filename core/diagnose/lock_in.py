@@ -12,6 +12,7 @@ from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import cos, log, sin
+from core.kernel import whole
 from core.ports import tap
 from core.record import Vector, vector
 
@@ -98,7 +99,7 @@ class LockIn(KalmanBank):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Predict, correct, demodulate the residuals, weigh by their part at the tone."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         evidence = informed(p, s, x.measured)
         place = window.begin(p, s)

@@ -12,6 +12,7 @@ from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import take_softmax
 from core.elementary import cos, sin
+from core.kernel import whole
 from core.ports import output, tap
 from core.record import Vector, vector
 
@@ -80,7 +81,7 @@ class LockInGlr(KalmanBank):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Predict, correct, demodulate, compare with the threshold."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         place = window.begin(p, s)
         turn = window.angle(p, x.tick)

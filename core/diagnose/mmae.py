@@ -12,7 +12,7 @@ from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import exp, log
-from core.kernel import kernel
+from core.kernel import kernel, whole
 from core.ports import tap
 from core.record import Choice, Vector, vector
 
@@ -153,7 +153,7 @@ class Mmae(KalmanBank):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Predict and correct every filter, then weigh the hypotheses."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         evidence = informed(p, s, x.measured)
         if filters_step(p, s, x, n):

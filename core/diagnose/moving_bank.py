@@ -9,6 +9,7 @@ from core.block import Context, Equation, parameter
 from core.diagnose.filters import between_updates, driven, filter_step, hand_over
 from core.diagnose.hypothesis import Hypothesis
 from core.diagnose.kalman import FilterParams, KalmanBank
+from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import log
 from core.ports import output, tap
@@ -88,8 +89,8 @@ class MovingBank(KalmanBank):
         """All filters; the one in the centre; logarithms of probabilities of the three that run, and of this sample."""
 
         centre: float
-        log: Vector = vector(3)
-        likelihood: Vector = vector(3)
+        log: Vector = vector(LANE)
+        likelihood: Vector = vector(LANE)
         x1: Vector = tail()
         x2: Vector = tail()
         p11: Vector = tail()

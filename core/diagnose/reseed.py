@@ -10,7 +10,7 @@ from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE, Filters
 from core.diagnose.weights import floored, take_floored_softmax, winner_of
 from core.elementary import log
-from core.kernel import kernel
+from core.kernel import kernel, whole
 from core.record import Vector, vector
 
 
@@ -88,7 +88,7 @@ class Reseed(KalmanBank):
     def step(p: Packed, s: State, x: KalmanBank.Ports) -> None:
         """Predict, correct, weigh; now and then seed anew."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         evidence = informed(p, s, x.measured)
         if filters_step(p, s, x, n):

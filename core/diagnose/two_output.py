@@ -11,7 +11,7 @@ from core.diagnose.kalman import KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE, Filters
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import log
-from core.kernel import kernel
+from core.kernel import kernel, whole
 from core.ports import reads, tap
 from core.record import Vector, vector
 
@@ -112,7 +112,7 @@ class TwoOutput(KalmanBank):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Predict, correct by one output and then by the other, weigh."""
         n = int(p.count)
-        if between_updates(p, s, x, 0, n):
+        if between_updates(p, s, x, 0, whole(n)):
             return
         zv = x.velocity
         seen = math.isfinite(x.measured)

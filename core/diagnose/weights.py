@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.elementary import exp, log
-from core.kernel import SMALL, inlined
+from core.kernel import SMALL, inlined, whole
 from core.record import Vector
 
 LEAST_LOG = log(SMALL)
@@ -18,7 +18,8 @@ def floored(floor: float) -> list[float]:
 @inlined
 def shrunk(logarithm: float) -> float:
     """Return the number with this logarithm, or 0 for the smallest: a processor is ten times slower with underflow."""
-    return 0.0 if logarithm < LEAST_LOG else exp(logarithm)
+    number = exp(LEAST_LOG if logarithm < LEAST_LOG else logarithm)
+    return 0.0 if logarithm < LEAST_LOG else number
 
 
 @inlined
@@ -51,14 +52,14 @@ def take_floored_softmax(
         Smallest probability, 0 for none, and its logarithm.
     """
     total = 0.0
+    for i in range(whole(n)):
+        logs[i] = shrunk(likelihood[i] - best)
     for i in range(n):
-        share = shrunk(likelihood[i] - best)
-        probability[i] = share
-        total += share
+        total += logs[i]
     after = 0.0
     inverse = 1.0 / total
     for i in range(n):
-        share = max(probability[i] * inverse, floor)
+        share = max(logs[i] * inverse, floor)
         probability[i] = share
         after += share
     shift = best + log(total)

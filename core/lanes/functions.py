@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from core.elementary.bits import bits_of, number_of
+from core.kernel import whole
 from core.lanes.numbers import FLOAT, INT, UINT, Arithmetic, Number, type_of
 
 
@@ -74,6 +75,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     math.copysign: lambda a, size, sign: a.intrinsic("copysign", size, sign),
     math.isfinite: _finite,
     math.floor: _floor,
+    whole: lambda a, n: n,
     bits_of: _bits,
     number_of: _from_bits,
 }
