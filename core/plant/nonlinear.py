@@ -115,6 +115,7 @@ class Nonlinear(Shuttle):
             x.velocity = p.initial_velocity_um_ms
             return
         m, b, k = coefficients(p, x)
+        inverse_mass = 1.0 / m  # a division takes longer than the rest of an acceleration
         cubic = x.elasticity_scale * (p.cubic + x.cubic)
         tick = x.tick - 1.0
         u0, rise, bend = comb_voltage_parabola(x)
@@ -133,13 +134,13 @@ class Nonlinear(Shuttle):
             fa = comb_force(p, u0 + noise + a0 * (rise + a0 * bend), short) + outside
             drag = 0.0
             if rubbing > 0.0:
-                net = m * acceleration(p, m, b, k, cubic, q, 0.0, fa)
+                net = m * acceleration(p, inverse_mass, b, k, cubic, q, 0.0, fa)
                 if v == 0.0 and abs(net) <= rubbing:
                     done += stride
                     continue
                 drag = dry_friction(rubbing, v, net)
                 fa += drag
-            k1 = acceleration(p, m, b, k, cubic, q, v, fa)
+            k1 = acceleration(p, inverse_mass, b, k, cubic, q, v, fa)
             # a whole substep, or one of its parts if the whole might meet a stop or a turn of the friction
             gain = whole * abs(k1)
             if abs(q) + whole * (abs(v) + gain) > p.near_stop_um or abs(v) - gain < p.slow_um_ms:
@@ -152,13 +153,14 @@ class Nonlinear(Shuttle):
             fc = comb_force(p, u0 + noise + a2 * (rise + a2 * bend), short) + outside + drag
             before = v
             v2 = v + 0.5 * h * k1
-            k2 = acceleration(p, m, b, k, cubic, q + 0.5 * h * v, v2, fb)
+            k2 = acceleration(p, inverse_mass, b, k, cubic, q + 0.5 * h * v, v2, fb)
             v3 = v + 0.5 * h * k2
-            k3 = acceleration(p, m, b, k, cubic, q + 0.5 * h * v2, v3, fb)
+            k3 = acceleration(p, inverse_mass, b, k, cubic, q + 0.5 * h * v2, v3, fb)
             v4 = v + h * k3
-            k4 = acceleration(p, m, b, k, cubic, q + h * v3, v4, fc)
-            q += h * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
-            v += h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
+            k4 = acceleration(p, inverse_mass, b, k, cubic, q + h * v3, v4, fc)
+            sixth = h * (1.0 / 6.0)
+            q += sixth * (v + 2.0 * v2 + 2.0 * v3 + v4)
+            v += sixth * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
             if rubbing > 0.0 and before * v < 0.0:
                 v = 0.0  # friction brings the shuttle to rest where it would turn
         x.displacement = flush_tiny(q)
@@ -167,10 +169,10 @@ class Nonlinear(Shuttle):
 
 @kernel
 def acceleration(
-    p: Nonlinear.Packed, m: float, b: float, k: float, cubic: float, x: float, v: float, force: float
+    p: Nonlinear.Packed, inverse_mass: float, b: float, k: float, cubic: float, x: float, v: float, force: float
 ) -> float:
-    """Return the acceleration at one point, um/ms^2."""
+    """Return the acceleration at one point, um/ms^2; ``inverse_mass`` is one over the mass."""
     total = force - b * v - k * x - cubic * x * x * x
     if p.smoothed_friction != 0.0:  # most plants have none, and it takes longer than all the rest
         total -= p.smoothed_friction * tanh(v / p.slip_velocity_um_ms)
-    return float((total + wall(p.stop_um, p.stop_stiffness_n_m, p.stop_damping, x, v)) / m)
+    return float((total + wall(p.stop_um, p.stop_stiffness_n_m, p.stop_damping, x, v)) * inverse_mass)
