@@ -54,6 +54,9 @@ NONLINEAR = {
 }
 """Driven at 2 kHz, without noise."""
 
+HISTORY_MB = 72.0
+"""Memory of the history of a bench, that of the service unless it is set."""
+
 NOISY = {"plant.drive_noise_v": 0.01}
 EVERYTHING = {
     "plant": {"model": "nonlinear", "substeps": 4, "drive_noise_v": 0.01},
@@ -87,8 +90,14 @@ def with_all_diagnosers() -> Board:
 
 
 def live_cost(board: Board, ticks: int = 100 * CHUNK) -> Callable[[], float]:
-    """Return the measurement of a tick as a live bench runs it, ns: blocks, trace, digest, log, history."""
-    history = History(board.signals.outputs, len(board.signals.taps))
+    """Return the measurement of a tick as a live bench runs it, ns: blocks, trace, digest, log, history.
+
+    The history is full, as it is from some seconds on: before, the system hands out its memory page by page.
+    """
+    outputs, taps = board.signals.outputs, len(board.signals.taps)
+    history = History(outputs, taps, History.ticks_within(HISTORY_MB, outputs, taps))
+    while board.tick < history.capacity:
+        history.append(board.advance(CHUNK))
 
     def work() -> None:
         for _ in range(ticks // CHUNK):
