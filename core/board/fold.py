@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,30 +72,40 @@ def digest(folds: Words, blocks: Sequence[str]) -> str:
     blocks : sequence of str
         The block each column belongs to; empty for one that does not count.
     """
-    columns: dict[str, list[int]] = {}
-    for column, block in enumerate(blocks):
-        columns.setdefault(block, []).append(column)
-    columns.pop("", None)
-    sha, folds = hashlib.sha256(), np.ascontiguousarray(folds)
-    for name in sorted(columns):
-        sha.update(name.encode() + b"\0" + joined(folds, np.array(columns[name])).astype("<u8").tobytes())
+    names, owners = _owners(tuple(blocks))
+    words = joined(np.ascontiguousarray(folds), owners, len(names)).astype("<u8")
+    sha = hashlib.sha256()
+    for name, own in zip(names, words, strict=True):
+        sha.update(name + b"\0" + own.tobytes())
     return sha.hexdigest()
 
 
+@lru_cache(maxsize=64)
+def _owners(blocks: tuple[str, ...]) -> tuple[list[bytes], IntArray]:
+    """Return the names of the blocks that count, in order, and the number of each column's among them, -1 for none."""
+    names = sorted({*blocks} - {""})
+    return [name.encode() for name in names], np.array([names.index(name) if name else -1 for name in blocks], np.int64)
+
+
 @kernel
-def joined(folds: Words, columns: IntArray) -> Words:
-    """Fold the folds of the columns of a block into one, in their order.
+def joined(folds: Words, owners: IntArray, blocks: int) -> Words:
+    """Fold the folds of the columns of each block into one, in their order.
 
     Parameters
     ----------
     folds : ndarray of uint64, shape (2, columns)
         Of every column.
-    columns : ndarray of int64
-        Those of the block.
+    owners : ndarray of int64, shape (columns,)
+        The block of each, below 0 for none.
+    blocks : int
+        How many there are.
     """
-    words = START[:, 0].copy()
-    for column in columns:
-        for word in folds[:, column]:
-            a, b = (words[0] ^ word) * FACTOR_A, (words[1] + word) * FACTOR_B
-            words[0], words[1] = a ^ (a >> S32), b ^ (b >> S29)
+    words = np.empty((blocks, 2), dtype=np.uint64)
+    words[:, 0], words[:, 1] = START[0, 0], START[1, 0]
+    for column, own in enumerate(owners):
+        if own >= 0:
+            for k in range(2):
+                word = folds[k, column]
+                a, b = (words[own, 0] ^ word) * FACTOR_A, (words[own, 1] + word) * FACTOR_B
+                words[own, 0], words[own, 1] = a ^ (a >> S32), b ^ (b >> S29)
     return words

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right, insort
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import takewhile
 
 import numpy as np
@@ -60,9 +60,9 @@ class Queue:
         return _as_asked(self._entries)
 
     def copy(self) -> Queue:
-        """Return a queue in which the same commands wait, for another board."""
+        """Return a queue in which the same commands wait for the same ticks, for another board."""
         queue = Queue()
-        queue._entries, queue._asked = [replace(entry) for entry in self._entries], self._asked
+        queue._entries, queue._asked = [*self._entries], self._asked  # only what waits for a condition ever changes
         return queue
 
     def add(self, entry: Pending) -> None:

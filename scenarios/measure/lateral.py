@@ -51,9 +51,16 @@ def device_pull_in(device: Device, stiffness_scale: float = 1.0) -> float | None
     A device without a drawing has the beams of LCR-350. The bias is proportional to the root of the stiffness against
     rotation; ``stiffness_scale`` is the factor of environment and faults on that stiffness.
     """
+    volts = aligned_pull_in(device) if device.usual_plant == "linear" else None
+    return None if volts is None else volts * math.sqrt(stiffness_scale)
+
+
+@lru_cache(maxsize=256)
+def aligned_pull_in(device: Device) -> float | None:
+    """Return the bias of pull-in of a resonator as it was made."""
     if device.capacitance_gradient == 0.0:
         return None
-    return geometry_pull_in(device.drawing, device.capacitance_gradient) * math.sqrt(stiffness_scale)
+    return geometry_pull_in(device.drawing, device.capacitance_gradient)
 
 
 @lru_cache(maxsize=256)
