@@ -22,6 +22,9 @@ NPM = ["scripts/npm", "--silent", "--prefix", "web"]
 COUNT = re.compile(r"(\d+) (passed|failed|errors?|skipped|xfailed|flaky)")
 COLOUR = re.compile(r"\x1b\[[\d;]*m")
 CLOSING = re.compile(r"^(=+ .*\bin [\d.]+s.*=+|\s*Tests\s+.*\(\d+\)|\s+\d+ (passed|failed|flaky|skipped)\b.*)$")
+REASON = re.compile(r"^(FAILED |ERROR |\s+\d+\) \S+\.ts:|\s+Error: |\s+[-+] {2,}\S)")
+MOST_REASONS = 40
+"""Lines that say why something failed, shown once more at the end."""
 
 
 @dataclass
@@ -35,6 +38,7 @@ class Step:
     code: int = 0
     seconds: float = 0.0
     closing: list[str] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
 
     def run(self) -> None:
         """Run the command, showing its output as it comes, or all at the end if it runs aside; keep closing lines."""
@@ -60,6 +64,8 @@ class Step:
                 plain = COLOUR.sub("", line).rstrip()
                 if self.tests and CLOSING.match(plain):
                     self.closing.append(plain.strip())
+                if REASON.match(plain):
+                    self.reasons.append(plain[:200])
         self.code = process.returncode
         self.seconds = time.monotonic() - start
         if self.aside:
@@ -125,6 +131,9 @@ def main() -> int:
         if step.name == "python" and step.closing:
             print(step.closing[-1])
     broken = [step.name for step in todo if step.code]
+    for step in todo:
+        if step.code and step.reasons:
+            print(f"why {step.name} failed:", *step.reasons[:MOST_REASONS], sep="\n")
     if broken:
         print(f"FAILED: {', '.join(broken)}")
     print(", ".join(f"{total[word]} {word}" for word in ("passed", "failed", "skipped")))
