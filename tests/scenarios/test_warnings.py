@@ -9,12 +9,12 @@ import pytest
 from typer.testing import CliRunner
 
 from core.errors import InputError
+from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.report.run import run_report
 from scenarios.run import build, run
 from scenarios.schema import Scenario
-from scenarios.seeds import run_seeds
 from server.cli import app
 from tests.lab import do, make, play
 

@@ -31,6 +31,9 @@ class Memory:
     def have(self, keys: Sequence[str]) -> set[str]:
         return self.found.keys() & set(keys)
 
+    def outcomes(self, keys: Sequence[str]) -> list[tuple[str, str]]:
+        return [(key, self.found[key].model_dump_json()) for key in keys if key in self.found]
+
     def put(self, found: list[tuple[str, str]]) -> None:
         for key, entry in found:
             self.puts.append(key)

@@ -11,7 +11,7 @@ from alembic import command
 from sqlalchemy import inspect, text
 
 from server.store.database import Database, alembic_config, make_engine
-from server.store.models import Base, RecordingRow, SweepRow
+from server.store.models import Base, RecordingRow, RequestRow
 
 
 def test_the_migrations_lead_to_the_models(place: Any) -> None:
@@ -58,7 +58,7 @@ def test_rows_of_the_first_version_are_carried_along(place: Any) -> None:
     database.migrate()
     found = database.transact(lambda session: session.get(RecordingRow, "a"))
     assert (found.name, found.start_tick, found.ticks, found.bytes, found.scenario) == ("old", 5, 7, 0, None)
-    assert database.transact(lambda session: session.get(SweepRow, "s").done) == 200
+    assert database.transact(lambda session: session.get(RequestRow, "s").done) == 200
     # ticks of a long recording do not fit into 32 bits
     database.transact(lambda session: setattr(session.get(RecordingRow, "a"), "ticks", 2**40))
     assert database.transact(lambda session: session.get(RecordingRow, "a").ticks) == 2**40
