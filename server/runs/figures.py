@@ -103,7 +103,7 @@ class Figures:
         campaign = Campaign(
             single(scenario, [scenario.spec.seed]), self._queue.results, processes=self._queue.processes, trace=draw
         )
-        await self._queue.compute(campaign)
+        await self._queue.run(campaign)
         return dict(campaign.kept)
 
     def _tell(self, text: str) -> None:

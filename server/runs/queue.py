@@ -70,7 +70,7 @@ class Queue:
         self.results, self.processes = Results(database), Processes(workers, NICE)
         self.requests = Requests(database, settings.data / "runs")
         self._turns = {"run": asyncio.Semaphore(workers), "campaign": asyncio.Semaphore(1)}
-        self._threads = ThreadPoolExecutor(workers + 1, thread_name_prefix="combbench-campaign")
+        self._threads = ThreadPoolExecutor(workers + 2, thread_name_prefix="combbench-campaign")  # figures are made too
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self.campaigns: dict[str, Campaign] = {}
         self._is_closing = False
@@ -103,11 +103,6 @@ class Queue:
             raise ApiError(409, "conflict", f"the {kind} is {row.state}; it cannot be cancelled any more")
         self._cancel(row_id, task)
         await asyncio.wait([task], timeout=CANCEL_S)
-
-    async def compute(self, campaign: Campaign, kind: Kind = "run") -> bool:
-        """Carry a campaign out in its turn; return whether all of it is there."""
-        async with self._turns[kind]:
-            return await self._run(campaign)
 
     async def warm(self, ready: Callable[[], Awaitable[None]]) -> None:
         """Start the worker processes before somebody waits for them, once the server is ready and has calmed down."""
@@ -148,7 +143,8 @@ class Queue:
         else:
             task.cancel()
 
-    async def _run(self, campaign: Campaign) -> bool:
+    async def run(self, campaign: Campaign) -> bool:
+        """Carry a campaign out, now; return whether all of it is there."""
         try:
             return await asyncio.get_running_loop().run_in_executor(self._threads, campaign.run)
         except asyncio.CancelledError:
@@ -166,7 +162,7 @@ class Queue:
             async with self._turns[row.kind]:
                 await self.requests.update(row.id, state="running", attempts=RequestRow.attempts + 1)
                 campaign = self.campaigns[row.id] = await maker.campaign(row, self._first_result(row.id))
-                if not await self._run(campaign):
+                if not await self.run(campaign):
                     state = "cancelled"
         except asyncio.CancelledError:
             state = "cancelled"
