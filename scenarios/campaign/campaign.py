@@ -183,8 +183,8 @@ class Campaign:
             except LOST as error:
                 losses = 1 if self.done > before else losses + 1
                 if losses >= (PATIENCE if self._scheduler else ATTEMPTS):
-                    died = f"lost the scheduler at {self._scheduler}" if self._scheduler else "its worker processes died"
-                    text = f"{died} {losses} times in a row; {self.done} of {self.total} runs are done"
+                    lost = f"lost the scheduler at {self._scheduler}" if self._scheduler else "its processes died"
+                    text = f"{lost} {losses} times in a row; {self.done} of {self.total} runs are done"
                     raise Stopped(text) from error
                 time.sleep(min(2.0**losses, 10.0) / 4)
         return not self._left

@@ -51,6 +51,19 @@ def test_warnings_of_several_seeds_of_a_study_and_of_a_twin():
     assert run(twin).summary()["warnings"] == [f"other: {text}" for text in run(slow).summary()["warnings"]]
 
 
+def test_a_campaign_tells_them(tmp_path):
+    """On the command line, in its points, and in the report."""
+    (tmp_path / "thin.toml").write_text(
+        'schema = 1\nid = "thin"\nscenario = "ch3-stvsc-mass"\nseeds = "1:3"\n'
+        "[set]\nduration_ms = 3\n[grid]\n'controller.layer_um' = [1e-4, 0.5]\n"
+    )
+    told = call("sweep", str(tmp_path / "thin.toml"), "--workers", "1", "--out", str(tmp_path / "out"))
+    assert told.exit_code == 0 and told.stderr.count(f"combbench: warning: {LAYER}\n") == 1
+    points = json.loads((tmp_path / "out" / "points.json").read_text())
+    assert [point["warnings"] for point in points] == [[f"{LAYER} (3 runs)"], []]
+    assert LAYER in (tmp_path / "out" / "report.html").read_text()
+
+
 def test_the_command_line_and_the_report_tell_them():
     arguments = ["run", SEVEN, *assigned({**SHORT, "diagnosers.slow.kind": "arx_bank", "diagnosers.slow.every": 5})]
     found = json.loads(call(*arguments, "--json").stdout)["warnings"]

@@ -205,7 +205,7 @@ def test_a_run_whose_worker_dies_begins_again_but_not_for_ever(serve: Any) -> No
             until_running(live, run_id)
             killed |= kill_workers(live, killed)
         found = wait(live, run_id)
-        assert found["state"] == "aborted" and "died 3 times" in found["error"]["message"]
+        assert found["state"] == "aborted" and "died 3 times in a row" in found["error"]["message"]
         again = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step"}).json()["id"]
         assert wait(live, again)["state"] == "done"
 
