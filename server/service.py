@@ -66,7 +66,7 @@ class Service:
         self.idling = Idling(self._present, settings.idle_minutes)
         self.queue = Queue(self.database, settings, self.metrics)
         self.jobs = Jobs(self.queue, settings)
-        self.sweeps = Sweeps(self.queue, self.database, settings)
+        self.sweeps = Sweeps(self.queue, settings, self.database)
         self.figures = Figures(self.queue, settings)
         self.keeping = Keeping(self.database, settings)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)

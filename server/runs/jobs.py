@@ -11,15 +11,14 @@ from typing import Any
 
 from scenarios.campaign.campaign import Campaign
 from scenarios.campaign.single import single
-from scenarios.key import code_version, content_hash, run_key
+from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import ApiError, not_found
 from server.runs.length import check_length
-from server.runs.listing import Run, RunFilter
-from server.runs.queue import Queue
+from server.runs.listing import Run, fresh
+from server.runs.queue import Requested
 from server.runs.worker import STEM, Keep
-from server.settings import Settings
-from server.store.models import RequestRow, now
+from server.store.models import RequestRow
 
 
 def identify(scenario: Scenario, seeds: list[int]) -> tuple[dict[str, Any], str]:
@@ -28,20 +27,10 @@ def identify(scenario: Scenario, seeds: list[int]) -> tuple[dict[str, Any], str]
     return document, run_key(content_hash(document), *seeds)
 
 
-class Jobs:
-    """The runs of the queue, and their files.
+class Jobs(Requested[Run]):
+    """The runs of the queue, and their files."""
 
-    Parameters
-    ----------
-    queue : Queue
-        Carries them out.
-    settings : Settings
-        Limits.
-    """
-
-    def __init__(self, queue: Queue, settings: Settings) -> None:
-        self._queue, self._requests, self._settings = queue, queue.requests, settings
-        queue.makers["run"] = self
+    kind = "run"
 
     async def start(self, scenario: Scenario, seeds: list[int], label: str = "") -> tuple[Run, bool]:
         """Queue a run, or return the same one if it exists; true when it is new. A name it is given is its name then.
@@ -55,31 +44,20 @@ class Jobs:
             raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
         await asyncio.to_thread(check_length, scenario, len(seeds), self._settings, "this run", "scenario")
         document, key = identify(scenario, seeds)
-        row = RequestRow(
+        row = fresh(
             id=key[:32],
-            kind="run",
+            kind=self.kind,
             key=key,
-            state="queued",
             name=scenario.id,
             scenario_id=scenario.id,
             title=scenario.head.title,
             label=label,
             document=document,
             seeds=seeds,
-            version=code_version(),
             runs=len(seeds),
-            done=0,
-            attempts=0,
-            created=now(),
-            finished=None,
-            summary=None,
-            error=None,
         )
         found, is_new = await self._queue.start(row)
-        return self._shown(found), is_new
-
-    async def check(self, row: RequestRow) -> None:
-        """Leave it at that; a run was checked when it was asked for."""
+        return self.shown(found), is_new
 
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a run as a campaign; it is carried out on this machine."""
@@ -93,30 +71,9 @@ class Jobs:
             on_progress=on_progress,
         )
 
-    async def all(self, wanted: RunFilter) -> list[Run]:
-        """List the runs that are asked for, newest first."""
-        return [self._shown(row) for row in await self._requests.all("run", wanted)]
-
     async def some(self, run_ids: list[str]) -> dict[str, Run]:
         """Return those of some runs that are known."""
-        return {row.id: self._shown(row) for row in await self._requests.some("run", run_ids)}
-
-    async def get(self, run_id: str) -> Run:
-        """Return one run, or refuse with 404."""
-        return self._shown(await self._requests.get("run", run_id))
-
-    async def rename(self, run_id: str, label: str) -> Run:
-        """Give a run a name."""
-        return self._shown(await self._requests.rename("run", run_id, label))
-
-    async def remove(self, run_ids: list[str] | None) -> int:
-        """Remove runs that have ended, all of them if none is named, with their files."""
-        return await self._requests.remove("run", run_ids)
-
-    async def cancel(self, run_id: str) -> Run:
-        """End a run that waits or is under way."""
-        await self._queue.cancel("run", run_id)
-        return await self.get(run_id)
+        return {row.id: self.shown(row) for row in await self._requests.some(self.kind, run_ids)}
 
     async def traces(self, run_ids: list[str]) -> tuple[list[Run], list[Path]]:
         """Return runs, and where their traces are if they have any."""
@@ -131,7 +88,7 @@ class Jobs:
             raise not_found(f"{ending[1:]} file of run", run_id, "a run has its files once it is done")
         return run, path
 
-    def _shown(self, row: RequestRow) -> Run:
+    def shown(self, row: RequestRow) -> Run:
         """Return a run as the interface shows it, with its progress while it is under way."""
         run, campaign = Run.model_validate(row), self._queue.campaigns.get(row.id)
         return run if campaign is None else run.model_copy(update={"progress": campaign.progress})

@@ -14,9 +14,10 @@ from sqlalchemy import Delete, Select, delete, or_, select, update
 from sqlalchemy.orm import Session, defer
 
 from core.errors import InputError
+from scenarios.key import code_version
 from server.errors import ApiError, not_found
 from server.store.database import Database
-from server.store.models import RequestRow
+from server.store.models import RequestRow, now
 
 ACTIVE = ("queued", "running")
 MOST = 200
@@ -161,6 +162,21 @@ class Requests:
 
     async def _rows(self, query: Select[Any]) -> list[RequestRow]:
         return await self._database.run(lambda session: list(session.scalars(query)))
+
+
+def fresh(**values: Any) -> RequestRow:
+    """Return a request that waits from now on."""
+    return RequestRow(
+        **values,
+        state="queued",
+        version=code_version(),
+        done=0,
+        attempts=0,
+        created=now(),
+        finished=None,
+        summary=None,
+        error=None,
+    )
 
 
 def change(session: Session, row_id: str, **values: Any) -> bool:

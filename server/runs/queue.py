@@ -14,9 +14,10 @@ import asyncio
 import logging
 import os
 import shutil
-from collections.abc import Awaitable, Callable
+from abc import ABC, abstractmethod
+from collections.abc import Awaitable, Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Protocol
+from typing import Any, ClassVar, Generic, TypeVar
 
 from sqlalchemy.exc import DBAPIError
 
@@ -26,7 +27,7 @@ from scenarios.campaign.executor import Processes
 from scenarios.key import code_version
 from server.errors import ApiError, body_of
 from server.metrics import Metrics
-from server.runs.listing import Kind, Requests, change
+from server.runs.listing import Kind, Requests, RunFilter, change
 from server.runs.worker import NICE, NotKept
 from server.settings import Settings
 from server.store.database import Database, reason_of
@@ -35,19 +36,60 @@ from server.store.results import Results
 
 log = logging.getLogger(__name__)
 
+Shown = TypeVar("Shown")
 CANCEL_S = 5.0
 CALM_S = 5.0
 """Time from the start of the server to that of idle worker processes; a first visitor comes first."""
 
 
-class Maker(Protocol):
-    """What knows one kind of request."""
+class Requested(ABC, Generic[Shown]):
+    """The requests of one kind: how they become campaigns, and how the interface shows them.
+
+    Parameters
+    ----------
+    queue : Queue
+        Carries them out.
+    settings : Settings
+        Limits.
+    """
+
+    kind: ClassVar[Kind]
+
+    def __init__(self, queue: Queue, settings: Settings) -> None:
+        self._queue, self._requests, self._settings = queue, queue.requests, settings
+        queue.kinds[self.kind] = self
 
     async def check(self, row: RequestRow) -> None:
         """Refuse what could not be checked when it was asked for."""
 
+    @abstractmethod
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
-        """Return it as a campaign."""
+        """Return a request as a campaign."""
+
+    @abstractmethod
+    def shown(self, row: RequestRow) -> Shown:
+        """Return a request as the interface shows it, with its progress while it is under way."""
+
+    async def all(self, wanted: RunFilter) -> list[Shown]:
+        """List those that are asked for, newest first."""
+        return [self.shown(row) for row in await self._requests.all(self.kind, wanted)]
+
+    async def get(self, row_id: str) -> Shown:
+        """Return one, or refuse with 404."""
+        return self.shown(await self._requests.get(self.kind, row_id))
+
+    async def rename(self, row_id: str, label: str) -> Shown:
+        """Give one a name; an empty one takes it away."""
+        return self.shown(await self._requests.rename(self.kind, row_id, label))
+
+    async def remove(self, ids: Sequence[str] | None) -> int:
+        """Remove some that have ended, all of them if none is named, with their files; results stay."""
+        return await self._requests.remove(self.kind, ids)
+
+    async def cancel(self, row_id: str) -> Shown:
+        """End one that waits or is under way; the same can be asked for again, and goes on from there."""
+        await self._queue.cancel(self.kind, row_id)
+        return await self.get(row_id)
 
 
 class Queue:
@@ -66,7 +108,7 @@ class Queue:
     def __init__(self, database: Database, settings: Settings, metrics: Metrics) -> None:
         self._database, self._settings, self._metrics = database, settings, metrics
         workers = max(1, settings.run_workers)
-        self.makers: dict[str, Maker] = {}
+        self.kinds: dict[str, Requested[Any]] = {}
         self.results, self.processes = Results(database), Processes(workers, NICE)
         self.requests = Requests(database, settings.data / "runs")
         self._turns = {"run": asyncio.Semaphore(workers), "campaign": asyncio.Semaphore(1)}
@@ -114,10 +156,10 @@ class Queue:
     async def recover(self) -> None:
         """Go on with what the end of the server interrupted; give up what was begun too often."""
         for row in await self.requests.active():
-            text = ""
+            text, has_workers = "", self._settings.run_workers or (row.kind == "campaign" and self._settings.scheduler)
             if row.version != code_version():
                 text = "was begun by another version of the code; start it again"
-            elif row.attempts >= ATTEMPTS or (row.kind == "run" and self._settings.run_workers == 0):
+            elif row.attempts >= ATTEMPTS or not has_workers:
                 text = f"the server stopped before this {row.kind} was done, {row.attempts} times"
             if text:
                 await self._end(row.id, "aborted", error={"code": "aborted", "message": text})
@@ -153,15 +195,15 @@ class Queue:
 
     async def _carry_out(self, row: RequestRow) -> None:
         """Wait for the turn, then for the end; write every outcome into the table."""
-        maker = self.makers[row.kind]
+        kind = self.kinds[row.kind]
         state = "done"
         error: dict[str, Any] | None = None
         campaign: Campaign | None = None
         try:
-            await maker.check(row)
+            await kind.check(row)
             async with self._turns[row.kind]:
                 await self.requests.update(row.id, state="running", attempts=RequestRow.attempts + 1)
-                campaign = self.campaigns[row.id] = await maker.campaign(row, self._first_result(row.id))
+                campaign = self.campaigns[row.id] = await kind.campaign(row, self._first_result(row.id))
                 if not await self.run(campaign):
                     state = "cancelled"
         except asyncio.CancelledError:

@@ -17,11 +17,11 @@ from scenarios.schema import Scenario
 from server.errors import ApiError
 from server.runs.apart import FEW_POINTS, FEW_RUNS, Apart, contents, examine
 from server.runs.length import check_length
-from server.runs.listing import RunFilter
-from server.runs.queue import Queue
+from server.runs.listing import fresh
+from server.runs.queue import Queue, Requested
 from server.settings import Settings
 from server.store.database import Database
-from server.store.models import RequestRow, now
+from server.store.models import RequestRow
 
 T = TypeVar("T")
 
@@ -44,24 +44,25 @@ class SweepRun(BaseModel):
     error: dict[str, Any] | None
 
 
-class Sweeps:
+class Sweeps(Requested[SweepRun]):
     """The campaigns of the queue, and their results.
 
     Parameters
     ----------
     queue : Queue
         Carries them out.
-    database : Database
-        Where results are read.
     settings : Settings
         Limits, scheduler.
+    database : Database
+        Where results are read.
     """
 
-    def __init__(self, queue: Queue, database: Database, settings: Settings) -> None:
-        self._queue, self._requests = queue, queue.requests
-        self._database, self._settings = database, settings
+    kind = "campaign"
+
+    def __init__(self, queue: Queue, settings: Settings, database: Database) -> None:
+        super().__init__(queue, settings)
+        self._database = database
         self._expanding, self._reading = Apart(FEW_POINTS), Apart(FEW_RUNS)
-        queue.makers["campaign"] = self
 
     async def start(self, document: dict[str, Any], label: str = "") -> tuple[SweepRun, bool]:
         """Queue a campaign, or return the same one if it exists; true when it is new. A name it is given is its name.
@@ -85,28 +86,20 @@ class Sweeps:
         await self._check_length(await asyncio.to_thread(sweep.longest, some))
         is_checked = len(some) == len(sweep.points)
         key = run_key(content_hash({"sweep": document}))
-        row = RequestRow(
+        row = fresh(
             id=key[:32],
-            kind="campaign",
+            kind=self.kind,
             key=key,
-            state="queued",
             name=sweep.head.id,
             scenario_id=sweep.base.id,
             title=sweep.head.title,
             label=label,
             document=json.loads(json.dumps(document, default=str)),
             seeds=None,
-            version=code_version(),
             runs=len(set(sweep.contents)) * len(sweep.seeds) if is_checked else len(sweep),
-            done=0,
-            attempts=0,
-            created=now(),
-            finished=None,
-            summary=None,
-            error=None,
         )
         found, is_new = await self._queue.start(row)
-        return self._shown(found), is_new
+        return self.shown(found), is_new
 
     async def check(self, row: RequestRow) -> None:
         """Check the points of a campaign, if there are many."""
@@ -124,34 +117,13 @@ class Sweeps:
         processes = None if scheduler else self._queue.processes
         return Campaign(sweep, self._queue.results, scheduler=scheduler, processes=processes, on_progress=on_progress)
 
-    async def all(self, wanted: RunFilter) -> list[SweepRun]:
-        """List the campaigns that are asked for, newest first."""
-        return [self._shown(row) for row in await self._requests.all("campaign", wanted)]
-
-    async def get(self, sweep_id: str) -> SweepRun:
-        """Return one campaign, or refuse with 404."""
-        return self._shown(await self._requests.get("campaign", sweep_id))
-
-    async def rename(self, sweep_id: str, label: str) -> SweepRun:
-        """Give a campaign a name."""
-        return self._shown(await self._requests.rename("campaign", sweep_id, label))
-
-    async def remove(self, sweep_ids: list[str] | None) -> int:
-        """Remove campaigns that have ended, all if none is named; results stay, for others share them."""
-        return await self._requests.remove("campaign", sweep_ids)
-
-    async def cancel(self, sweep_id: str) -> SweepRun:
-        """Stop a campaign; its results stay, and the same campaign can go on from there."""
-        await self._queue.cancel("campaign", sweep_id)
-        return await self.get(sweep_id)
-
     async def document(self, sweep_id: str) -> dict[str, Any]:
         """Return the document that a campaign was requested with."""
-        return (await self._requests.get("campaign", sweep_id)).document
+        return (await self._requests.get(self.kind, sweep_id)).document
 
     async def read(self, sweep_id: str, reader: Callable[[dict[str, Any], str], T]) -> T:
         """Call one of the readers of `server.runs.apart` on the results so far."""
-        row = await self._requests.get("campaign", sweep_id)
+        row = await self._requests.get(self.kind, sweep_id)
         if row.version != code_version():
             text = f"its runs are of version {row.version} of the code, this is {code_version()}"
             raise ApiError(409, "conflict", text)
@@ -166,7 +138,7 @@ class Sweeps:
         """Refuse a campaign whose longest run is too long."""
         await asyncio.to_thread(check_length, longest, 1, self._settings, "a run of this campaign", "sweep")
 
-    def _shown(self, row: RequestRow) -> SweepRun:
+    def shown(self, row: RequestRow) -> SweepRun:
         """Return a campaign as the interface shows it, with its progress while it is under way."""
         sweep, campaign = SweepRun.model_validate(row), self._queue.campaigns.get(row.id)
         return sweep if campaign is None else sweep.model_copy(update={"done": campaign.done})
