@@ -32,10 +32,9 @@ MAX_BATCH = 500
 AHEAD = 2
 """Batches under way for each worker."""
 LOOK_S = 0.2
-ATTEMPTS = 3
-"""Losses of processes in a row, without a result in between, after which a campaign gives up as their cause."""
-PATIENCE = 5
-"""Losses of a scheduler in a row, which may need some time to come back."""
+PATIENCE, ATTEMPTS = 5, 3
+"""Losses in a row, without a result in between, after which a campaign gives up, and one that keeps a trace: where both
+share processes, the single run is the likelier cause."""
 
 Waiting = tuple[str, Point, int]
 Task = tuple[str, dict[str, Any], int]
@@ -182,7 +181,7 @@ class Campaign:
                     self._work(executor)
             except LOST as error:
                 losses = 1 if self.done > before else losses + 1
-                if losses >= (PATIENCE if self._scheduler else ATTEMPTS):
+                if losses >= (PATIENCE if self._trace is None else ATTEMPTS):
                     lost = f"lost the scheduler at {self._scheduler}" if self._scheduler else "its processes died"
                     text = f"{lost} {losses} times in a row; {self.done} of {self.total} runs are done"
                     raise Stopped(text) from error

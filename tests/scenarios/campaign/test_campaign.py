@@ -66,6 +66,15 @@ def test_processes_give_what_single_runs_give_and_nothing_is_run_twice() -> None
     assert Campaign(small(7), table, workers=1).run() and len(table.puts) == 14
 
 
+def test_what_another_has_put_into_the_table_meanwhile_is_not_computed() -> None:
+    sweep, table = small(20, 9000), Memory()
+    there = {key: Outcome(seed=seed) for key, _, seed in list(sweep.runs())[20:]}
+    assert Campaign(
+        sweep, table, workers=1, on_progress=lambda done, _: table.found.update(there) if done == 1 else None
+    ).run()
+    assert len(table.found) == 40 and 20 <= len(table.puts) <= 22  # a batch or two were under way
+
+
 def test_a_run_that_cannot_be_carried_out_does_not_stop_the_others() -> None:
     document = {**small().document, "grid": {"events.0.severity": [0.05, 1e9]}, "seeds": {"count": 2}}
     table = Memory()
