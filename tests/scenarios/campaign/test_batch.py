@@ -117,6 +117,7 @@ def test_warnings_are_those_of_a_run_alone_in_their_order(abreast):
         ("ch5-seven-step", {"diagnosers.slow": slow, "events": [tone]}, 2),
         ("ch3-stvsc-mass", {"controller.layer_um": 1e-4, "diagnosers.slow": slower}, 2),
         ("ch3-stvsc-mass", {"events": [thin], "diagnosers.slow": slower}, 2),
+        ("ch3-stvsc-mass", {"controller.layer_um": 1e-4, "diagnosers.slow": slower, "events": [tone]}, 3),
         ("ch5-seven-step", {"controllers.stvsc.layer_um": 1e-4}, 0),
     )
     for name, values, count in benches:
