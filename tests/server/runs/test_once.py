@@ -170,3 +170,8 @@ def test_a_short_run_does_not_wait_for_a_long_campaign(serve: Any) -> None:
             answer = live.http.post(SWEEPS, json={"sweep": {**sweep, "seeds": f"{seed}:60000"}})
         assert "max_queued_runs" in refused(answer, 429, "too_many_runs")
         assert live.http.delete(f"{SWEEPS}/{long}").json()["state"] == "cancelled"
+
+
+def test_a_run_is_carried_out_on_this_machine_where_campaigns_go_to_a_cluster(serve: Any) -> None:
+    with serve(scheduler="tcp://127.0.0.1:1") as live:
+        assert ask(live, "1:2")["state"] == "done"
