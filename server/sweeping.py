@@ -1,4 +1,4 @@
-"""A campaign from the command line: a folder with the run table, the results, and the report."""
+"""A campaign from the command line: a folder with the table of results, and the report."""
 
 from __future__ import annotations
 
