@@ -1,18 +1,17 @@
-"""Runs over several seeds: means and spreads of every figure."""
+"""Noise seeds as people write them."""
 
 from __future__ import annotations
 
-import hashlib
 import re
-from collections.abc import Sequence
-from typing import Any
+from typing import Any, Self
 
-import numpy as np
+from pydantic import Field, model_validator
 
 from core.board.spec import MOST_SEED
 from core.errors import InputError, short
-from scenarios.run import judge, run
-from scenarios.schema import Scenario
+from core.table import Table
+
+MAX_RUNS = 1_000_000
 
 
 def parse_seeds(text: str, field: str = "--seeds") -> range:
@@ -30,34 +29,29 @@ def parse_seeds(text: str, field: str = "--seeds") -> range:
     return range(first, last + 1)
 
 
-def run_seeds(scenario: Scenario, seeds: Sequence[int]) -> dict[str, Any]:
-    """Run a scenario once for each seed and return one summary with means and standard deviations."""
-    return together(scenario, [run(scenario, seed).summary() for seed in seeds])
+class Seeds(Table):
+    """Noise seeds, ``"A:B"`` with both ends, the same for every point, so that points differ by their values.
 
-
-def together(scenario: Scenario, summaries: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Join the summaries of several seeds: means, standard deviations of a sample, expectations of the means, warnings.
-
-    The digest is the SHA-256 over the digests of the runs. A figure that some runs lack is the mean over the others.
+    A first seed and a count are read as well.
     """
-    names = sorted({name for summary in summaries for name in summary["metrics"]})
-    values = {name: [s["metrics"][name] for s in summaries if name in s["metrics"]] for name in names}
-    means = {name: float(np.mean(over_seeds)) for name, over_seeds in values.items()}
-    expectations = judge(scenario, means)
-    digests = [summary["digest"] for summary in summaries]
-    return {
-        **summaries[0],
-        "seeds": [summaries[0]["seed"], summaries[-1]["seed"]],
-        "elapsed_s": sum(summary["elapsed_s"] for summary in summaries),
-        "digest": hashlib.sha256("".join(digests).encode()).hexdigest(),
-        "digests": digests,
-        "tripped_runs": sum(summary["trip"] is not None for summary in summaries),
-        "warnings": list(dict.fromkeys(text for summary in summaries for text in summary["warnings"])),
-        "metrics": means,
-        "metrics_std": {
-            name: float(np.std(over_seeds, ddof=1)) if len(over_seeds) > 1 else 0.0
-            for name, over_seeds in values.items()
-        },
-        "expectations": expectations,
-        "ok": all(entry["ok"] for entry in expectations),
-    }
+
+    first: int = Field(1, ge=0, le=MOST_SEED)
+    count: int = Field(1, ge=1, le=MAX_RUNS)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _both_ends(cls, given: Any) -> Any:
+        if not isinstance(given, str):
+            return given
+        try:
+            seeds = parse_seeds(given, "seeds")
+        except InputError as error:
+            raise ValueError(error.message) from None
+        return {"first": seeds[0], "count": len(seeds)}
+
+    @model_validator(mode="after")
+    def _reach(self) -> Self:
+        last = self.first + self.count - 1
+        if last > MOST_SEED:
+            raise ValueError(f"the last seed would be {last}; allowed: up to {MOST_SEED}")
+        return self

@@ -20,14 +20,14 @@ import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.errors import InputError, one_line
 from core.format import format_short, format_si, unit_text
 from core.registry import BlockCard, catalog
-from scenarios.counterpart import beside
+from scenarios.campaign.single import beside, run_seeds
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
 from scenarios.report.keeping import keep
 from scenarios.report.text import gallery_text, run_text
 from scenarios.run import run as run_scenario
 from scenarios.schema import Scenario
-from scenarios.seeds import parse_seeds, run_seeds
+from scenarios.seeds import parse_seeds
 
 UsageError: Any = typer.BadParameter.__base__
 """Every usage error of options and arguments; Typer exports only one kind of them."""
@@ -122,7 +122,7 @@ def run(
         result = run_scenario(chosen, seed, taps=out is not None)
         summary = result.summary()
         if out is not None:
-            summary = beside(summary, chosen)
+            summary = beside(result)
             try:
                 keep(result, summary, [result.seed], out / f"{chosen.id}-seed{result.seed}")
             except OSError as error:
@@ -144,7 +144,7 @@ def gallery(
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
     if not chosen:
         raise InputError(f"no scenario matches {only!r}", "--only")
-    summaries = [beside(run_scenario(entry).summary(), entry) for entry in chosen]
+    summaries = [beside(run_scenario(entry)) for entry in chosen]
     if as_json:
         say_json(summaries)
     else:
@@ -195,6 +195,8 @@ def sweep(
     except KeyboardInterrupt:
         sys.stderr.write(f"combbench: interrupted{again}\n")
         raise typer.Exit(130) from None
+    for text in ended.warnings:
+        sys.stderr.write(f"combbench: warning: {text}\n")
     say(f"{ended.done} of {ended.total} runs, {ended.failed} could not be carried out; {ended.folder}/report.html")
     raise typer.Exit(1 if ended.failed or ended.done < ended.total else 0)
 

@@ -24,6 +24,7 @@ from server.lag import Lateness, probe
 from server.metrics import Metrics
 from server.runs.figures import Figures
 from server.runs.jobs import Jobs
+from server.runs.queue import Queue
 from server.runs.sweeps import Sweeps
 from server.security.limits import Buckets
 from server.settings import Settings
@@ -63,10 +64,11 @@ class Service:
         self.records = Records(self.engine, self.recordings, settings.max_recording_ticks)
         self.links = Links(self.database, settings.max_links)
         self.idling = Idling(self._present, settings.idle_minutes)
-        self.jobs = Jobs(self.database, settings, self.metrics)
-        self.figures = Figures(self.jobs, settings)
+        self.queue = Queue(self.database, settings, self.metrics)
+        self.jobs = Jobs(self.queue, settings)
+        self.sweeps = Sweeps(self.queue, settings, self.database)
+        self.figures = Figures(self.queue, settings)
         self.keeping = Keeping(self.database, settings)
-        self.sweeps = Sweeps(self.database, settings, self.metrics)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
         self.viewers = _viewers()
         self._coming_back = asyncio.Lock()
@@ -83,11 +85,11 @@ class Service:
         await self.recordings.recover()
         self.engine.start()
         await self.kernels.start()
-        await self.jobs.recover()
-        await self.sweeps.recover()
+        await self.queue.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run()))
         tasks.append(asyncio.create_task(self._watch_idle()))
+        tasks.append(asyncio.create_task(self.queue.warm(self.kernels.compiled)))
         self.figures.start(self.kernels.compiled)
         self.is_ready = True
         try:
@@ -101,8 +103,8 @@ class Service:
             if self.viewers is not None:
                 await self.viewers.close()
             await self.figures.stop()
-            await self.sweeps.close()
-            await self.jobs.close()
+            await self.queue.close()
+            self.sweeps.close()
             await self.benches.close()
             await asyncio.to_thread(self.engine.stop)
             await asyncio.to_thread(self.database.close)

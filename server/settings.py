@@ -53,7 +53,7 @@ class Settings(BaseSettings):
     max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
     max_clients_per_bench: int = Field(256, ge=1, description="Open streams of one bench.")
     max_snapshots: int = Field(32, ge=1, description="Snapshots kept per bench.")
-    max_queued_runs: int = Field(256, ge=1, description="Headless runs waiting or running.")
+    max_queued_runs: int = Field(256, ge=1, description="Headless runs and campaigns waiting or running.")
     max_run_seeds: int = Field(200, ge=1, description="Seeds of one headless run.")
     max_run_ticks: int = Field(20_000_000, ge=1, description="Ticks of one headless run, over all its seeds.")
     max_run_mb: int = Field(
@@ -80,9 +80,7 @@ class Settings(BaseSettings):
     command_burst: int = Field(40, ge=1, description="Commands one client may send at once.")
     frame_rate_hz: float = Field(60.0, gt=0, le=120, description="Frames per second of a stream.")
 
-    run_workers: int = Field(
-        1, ge=0, le=64, description="Processes for headless runs, and as many for campaigns; 0 refuses them."
-    )
+    run_workers: int = Field(1, ge=0, le=64, description="Processes for headless runs and campaigns; 0 refuses them.")
     figures: bool = Field(
         True, description="Make the figures of the gallery that are missing after a start, at low priority."
     )

@@ -1,4 +1,4 @@
-"""A campaign from the command line: a folder with the run table, the results, and the report."""
+"""A campaign from the command line: a folder with the table of results, and the report."""
 
 from __future__ import annotations
 
@@ -42,6 +42,7 @@ class Ended:
     done: int
     total: int
     failed: int
+    warnings: list[str]
     folder: Path
 
 
@@ -111,7 +112,7 @@ def carry_out(
         try:
             campaign.run()
         finally:
-            failed = write(sweep, results, folder)
+            failed, warnings = write(sweep, results, folder)
     except DBAPIError as error:
         text = f"the database cannot be used: {reason_of(error)}"
         raise Stopped(f"{text}; {campaign.done} of {campaign.total} runs are done") from None
@@ -121,11 +122,19 @@ def carry_out(
     finally:
         database.close()
         held.close()
-    return Ended(campaign.done, campaign.total, failed, folder)
+    return Ended(campaign.done, campaign.total, failed, warnings, folder)
 
 
-def write(sweep: Sweep, results: Results, folder: Path) -> int:
-    """Write report and tables, each under a temporary name first; return how many runs could not be carried out."""
+def write(sweep: Sweep, results: Results, folder: Path) -> tuple[int, list[str]]:
+    """Write report and tables, each under a temporary name first.
+
+    Returns
+    -------
+    int
+        How many runs could not be carried out.
+    list of str
+        What the others warn of, once each.
+    """
     keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
     outcomes = {key: Outcome.model_validate_json(text) for key, text in results.outcomes(keys)}
     points = tally(sweep, outcomes)
@@ -139,4 +148,5 @@ def write(sweep: Sweep, results: Results, folder: Path) -> int:
         part = folder / f"{name}.part"
         put(part)
         part.rename(folder / name)
-    return sum(bool(outcome.error) for outcome in outcomes.values())
+    told = dict.fromkeys(text for outcome in outcomes.values() for text in outcome.warnings)
+    return sum(bool(outcome.error) for outcome in outcomes.values()), list(told)

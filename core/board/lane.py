@@ -20,7 +20,8 @@ class Lane(Board):
     """A board whose arrays are columns of those of all; it keeps no log.
 
     A lane that differs from an earlier one by the seed alone follows it: the leader carries out the commands, and its
-    followers take over what they change. They share all of its wiring but the numbers.
+    followers take over what they change. They share all of its wiring but the numbers. ``specs`` are the benches it has
+    been, each with the tick from which on, but for faults.
 
     Parameters
     ----------
@@ -42,9 +43,10 @@ class Lane(Board):
         self.compiled, self.tick, self.trip = True, 0, None
         self.log, self.done, self.used = Log(), [], set()
         self.followers: list[Lane] = []
+        self.specs: list[tuple[int, Spec]] = [(0, spec)]
         if leader is not None:
             leader.followers.append(self)
-            self.done, self.used = leader.done, leader.used
+            self.done, self.used, self.specs = leader.done, leader.used, leader.specs
 
     def leads(self, spec: Spec, pending: Queue) -> bool:
         """Say whether a bench and its commands are those of this lane but for the seed, and are faults alone."""
@@ -61,8 +63,12 @@ class Lane(Board):
 
     def carry_out_due(self) -> None:
         """Carry out what waits for this tick, here and in the lanes that follow."""
-        before = self.wiring.instances
+        before, done = self.wiring.instances, len(self.done)
         self.apply_due()
+        if not all(isinstance(command, Inject | Heal) for _, command in self.done[done:]):
+            if self.specs[-1][0] == self.tick:
+                self.specs.pop()
+            self.specs.append((self.tick, self.spec))
         now = self.wiring.instances
         changed = [row for row, instance in enumerate(now) if instance is not before[row] and instance != before[row]]
         for lane in self.followers:

@@ -59,12 +59,7 @@ class Observer:
             if f"{name}.verdict" in known:
                 labels = self._names[name]
                 self._consistent[name] = [signals.index(f"{name}.consistent.{label}") for label in labels]
-        self._warnings = {
-            signals.index(f"{instance.prefix}.{port.name}"): f"{instance.key}: {port.warning}"
-            for instance in wiring.instances
-            for port in instance.block.taps
-            if port.warning
-        }
+        self._warnings = {signals.index(name): text for name, text in warnings(wiring).items()}
         start = {column: 0.0 for _, _, column in self._said} | dict.fromkeys(self._warnings, 0.0)
         for truth, delay in self._scored.values():
             start[truth], start[delay] = -2.0, -1.0
@@ -161,6 +156,16 @@ class Observer:
         left = [label for label, at in zip(labels, columns, strict=True) if column(at)[row] != 0.0]
         aliases = _aliases(spec, name, left[0]) if value == ISOLATED else ""
         return f"{VERDICTS[value]}: {', '.join(left)}{aliases}"
+
+
+def warnings(wiring: Wiring) -> dict[str, str]:
+    """Return the taps that warn when they rise, and what of."""
+    return {
+        f"{instance.prefix}.{port.name}": f"{instance.key}: {port.warning}"
+        for instance in wiring.instances
+        for port in instance.block.taps
+        if port.warning
+    }
 
 
 def cautions(spec: Spec) -> list[str]:

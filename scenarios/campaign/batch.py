@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import time
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import chain
 from typing import Any
 
+import numpy as np
+
+from core.block import FloatArray
 from core.board.abreast import Abreast
 from core.board.board import Board
 from core.board.changes import check
+from core.board.lane import Lane
+from core.board.observer import cautions, warnings
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import Pending, Queue
 from core.errors import InputError
@@ -25,8 +31,16 @@ MOST_NUMBERS = 16_000_000
 Run = tuple[Scenario, int]
 
 
-def outcomes(runs: Sequence[Run]) -> list[Outcome]:
-    """Carry out runs, each a scenario and a seed; return their outcomes in the same order."""
+def outcomes(runs: Sequence[Run], on_tick: Callable[[int], None] = lambda _: None) -> list[Outcome]:
+    """Carry out runs, each a scenario and a seed; return their outcomes in the same order.
+
+    Parameters
+    ----------
+    runs : sequence of (Scenario, int)
+        The runs.
+    on_tick : callable
+        Called every now and then with the ticks of all runs so far; it may raise to end them.
+    """
     found: dict[int, Outcome] = {}
     groups: dict[Any, list[int]] = defaultdict(list)
     shapes: dict[int, Any] = {}
@@ -34,10 +48,18 @@ def outcomes(runs: Sequence[Run]) -> list[Outcome]:
         if id(scenario) not in shapes:
             shapes[id(scenario)] = shape(scenario)
         groups[shapes[id(scenario)]].append(number)
+
+    def tell(ticks: int = 0) -> None:
+        on_tick(ticks + sum(one.ticks for one in found.values()))
+
     for key, numbers in groups.items():
         if key is not None and len(numbers) >= FEWEST:
-            found |= _abreast(runs, numbers)
-    return [found[number] if number in found else outcome(*run) for number, run in enumerate(runs)]
+            _abreast(runs, numbers, found, tell)
+    for number, one in enumerate(runs):
+        if number not in found:
+            found[number] = outcome(*one, tell)
+            tell()
+    return [found[number] for number in range(len(runs))]
 
 
 def shape(scenario: Scenario) -> Any:
@@ -49,28 +71,28 @@ def shape(scenario: Scenario) -> Any:
     return blocks, tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
 
 
-def _abreast(runs: Sequence[Run], numbers: list[int]) -> dict[int, Outcome]:
-    """Carry out runs of one shape, `WIDTH` at a time; those that cannot go on abreast are left out."""
+def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, Outcome], tell: Callable[[], None]) -> None:
+    """Carry out runs of one shape, `WIDTH` at a time, and add their outcomes; some cannot go on abreast."""
     scenario = runs[numbers[0]][0]
     samples = scenario.samples or DEFAULT_SAMPLES
-    found: dict[int, Outcome] = {}
     try:
         board = Board(scenario.spec)
         board.pending = waiting(scenario, board)
-        pattern, names = Pattern(board), watched(board)
+        pattern, told = Pattern(board), running_warnings(board)
     except (InputError, Uneven):
-        return found
+        return
+    names = [*watched(board), *told]
     if samples * len(names) * WIDTH > MOST_NUMBERS:
-        return found
+        return
     for start in range(0, len(numbers), WIDTH):
         chosen = numbers[start : start + WIDTH]
         if len(chosen) >= FEWEST:
-            found |= _together(pattern, names, samples, runs, chosen)
-    return found
+            found |= _together(pattern, names, told, samples, runs, chosen)
+            tell()
 
 
 def _together(
-    pattern: Pattern, names: list[str], samples: int, runs: Sequence[Run], chosen: list[int]
+    pattern: Pattern, names: list[str], told: dict[str, str], samples: int, runs: Sequence[Run], chosen: list[int]
 ) -> dict[int, Outcome]:
     began = time.perf_counter()
     try:
@@ -86,11 +108,29 @@ def _together(
     for lane, number in enumerate(chosen):
         if came[lane]:
             scenario, board, trace = runs[number][0], boards.boards[lane], boards.trace(lane)
-            found[number] = summed(scenario, board, figures(board, trace, scenario), board.digest(), trace)
+            said = warned(scenario, board, told, trace)
+            found[number] = summed(scenario, board, figures(board, trace, scenario), board.digest(), trace, said)
     elapsed = (time.perf_counter() - began) / len(chosen)
     for outcome_ in found.values():
         outcome_.elapsed_s = elapsed
     return found
+
+
+def running_warnings(board: Board) -> dict[str, str]:
+    """Return the taps that warn of the blocks that run, and what of."""
+    wiring = board.wiring
+    out = {wiring.instances[row].prefix for row in wiring.left_out}
+    return {name: text for name, text in warnings(wiring).items() if name.rpartition(".")[0] not in out}
+
+
+def warned(scenario: Scenario, board: Lane, told: dict[str, str], trace: dict[str, FloatArray]) -> list[str]:
+    """Return the warnings that a run alone would have in its log, each once, in the order in which they came."""
+    found = [(tick, text) for tick, spec in board.specs for text in cautions(spec)]
+    for name, text in told.items():
+        if (risen := trace[name] > 0.0).any():
+            found.append((int(np.argmax(risen)), text))
+    found.sort(key=lambda one: one[0])
+    return list(dict.fromkeys(chain(scenario.warnings, (text for _, text in found))))
 
 
 def waiting(scenario: Scenario, board: Board) -> Queue:

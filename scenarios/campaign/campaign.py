@@ -1,22 +1,29 @@
-"""Carries a campaign out: computes in batches the runs that the run table lacks, and puts them into it.
+"""Carries a campaign out: computes in batches the runs that the table of results lacks, and puts them into it.
 
 The table alone records progress. If a worker, the scheduler or this process dies, the runs in the table are never
-computed again; the next process that resumes the campaign computes the missing ones.
+computed again; the next process that resumes the campaign computes the missing ones. A single run is a campaign too,
+which keeps the trace of its first run; that one comes last, when all others are there for its report. As no campaign
+keeps traces otherwise, it is computed for its trace even though the table has its outcome.
 """
 
 from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import AbstractContextManager, nullcontext
 from statistics import fmean
 from typing import Any, Protocol
 
 from scenarios.campaign.batch import outcomes
-from scenarios.campaign.executor import LOST, open_executor, width_of
+from scenarios.campaign.cluster import Cluster, open_cluster
+from scenarios.campaign.executor import LOST, Processes
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.signs import Cancelled, tell
 from scenarios.campaign.sweep import Point, Sweep
 from scenarios.key import code_version
+from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 
 BATCH_S = 1.0
@@ -25,23 +32,36 @@ MAX_BATCH = 500
 AHEAD = 2
 """Batches under way for each worker."""
 LOOK_S = 0.2
-PATIENCE = 5
-"""Number of losses in a row, without a result in between, after which a campaign gives up."""
+PATIENCE, ATTEMPTS = 5, 3
+"""Losses in a row, without a result in between, after which a campaign gives up, and one that keeps a trace: where both
+share processes, the single run is the likelier cause."""
 
 Waiting = tuple[str, Point, int]
 Task = tuple[str, dict[str, Any], int]
 Found = list[tuple[str, str]]
 """Outcomes as JSON, by the key of the run."""
+Others = list[list[str]]
+"""Outcomes of all runs but the first, point by point."""
 
 
 class Table(Protocol):
-    """The run table."""
+    """The table of results."""
 
     def have(self, keys: Sequence[str]) -> set[str]:
         """Return the keys that are in the table."""
 
+    def outcomes(self, keys: Sequence[str]) -> Iterable[tuple[str, str]]:
+        """Return what the table has for some keys."""
+
     def put(self, found: Found) -> None:
         """Add outcomes in one transaction; an outcome that the table has already stays as it is."""
+
+
+class Trace(Protocol):
+    """What keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
+
+    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, Any]:
+        """Carry the run out; return its outcome, and what is wanted of it besides."""
 
 
 class Stopped(Exception):
@@ -56,16 +76,28 @@ def compute(tasks: list[Task], version: str) -> tuple[Found, float]:
     RuntimeError
         When the worker runs another version of the code.
     """
-    if version != code_version():
-        raise RuntimeError(f"the worker runs version {code_version()} of the code, the campaign is of {version}")
+    _check_version(version)
     read: dict[int, Scenario] = {}
     scenario = None
     for _, document, _ in tasks:
         if id(document) not in read:
             read[id(document)] = scenario = Scenario.load(document, like=scenario)
-    found = outcomes([(read[id(document)], seed) for _, document, seed in tasks])
+    found = outcomes([(read[id(document)], seed) for _, document, seed in tasks], tell)
     texts = [(key, outcome.model_dump_json()) for (key, _, _), outcome in zip(tasks, found, strict=True)]
     return texts, fmean(outcome.elapsed_s for outcome in found)
+
+
+def compute_traced(trace: Trace, task: Task, others: Others, version: str) -> tuple[Found, float, Any]:
+    """Carry out the run whose trace is kept; in a worker. Return its outcome, its time, and what is wanted besides."""
+    _check_version(version)
+    key, document, seed = task
+    found, kept = trace(document, seed, others)
+    return [(key, found.model_dump_json())], found.elapsed_s, kept
+
+
+def _check_version(version: str) -> None:
+    if version != code_version():
+        raise RuntimeError(f"the worker runs version {code_version()} of the code, the campaign is of {version}")
 
 
 class Campaign:
@@ -81,8 +113,10 @@ class Campaign:
         Processes of this machine.
     scheduler : str
         Address of a Dask scheduler instead.
-    niceness : int
-        Niceness of the processes.
+    processes : Processes, optional
+        Processes of this machine that it shares with others instead.
+    trace : Trace, optional
+        What keeps the trace of the first run; `kept` is what it returned.
     on_progress : callable
         Called after every batch, with the number of runs done and of all runs.
     """
@@ -94,28 +128,35 @@ class Campaign:
         *,
         workers: int = 1,
         scheduler: str = "",
-        niceness: int = 0,
+        processes: Processes | None = None,
+        trace: Trace | None = None,
         on_progress: Callable[[int, int], None] = lambda _done, _all: None,
     ) -> None:
         self.sweep, self.total = sweep, 0
+        self.kept: Any = None
         self._table, self._on_progress = table, on_progress
-        self._workers, self._scheduler, self._niceness = workers, scheduler, niceness
+        self._workers, self._scheduler, self._processes = workers, scheduler, processes
+        self._trace = trace
         self._cost = BATCH_S
         self._left: dict[str, Waiting] = {}
-        self._is_cancelled = self._is_abandoned = False
+        self._pending: tuple[Future[Any], ...] = ()
+        self._is_cancelled = False
 
     @property
     def done(self) -> int:
         """Runs that are in the table."""
         return self.total - len(self._left)
 
-    def cancel(self) -> None:
-        """Stop after the batches under way; finished runs stay."""
-        self._is_cancelled = True
+    @property
+    def progress(self) -> float:
+        """Share of the ticks that are done; of runs under way they are known if processes are shared."""
+        ticks = sum(self._processes.ticks(one) for one in self._pending) if self._processes is not None else 0
+        done = self.done + ticks / (self.sweep.base.samples or DEFAULT_SAMPLES)
+        return min(done / self.total, 1.0) if self.total else 0.0
 
-    def abandon(self) -> None:
-        """Stop at once; the runs under way are lost, and the next process that resumes the campaign computes them."""
-        self._is_cancelled = self._is_abandoned = True
+    def cancel(self) -> None:
+        """Stop at once; the runs in the table stay, those under way are lost."""
+        self._is_cancelled = True
 
     def run(self) -> bool:
         """Compute the missing runs; return whether all runs are there.
@@ -127,6 +168,8 @@ class Campaign:
         """
         tasks = {key: (key, point, seed) for key, point, seed in self.sweep.runs()}
         have = self._table.have(list(tasks))
+        if self._trace is not None:
+            have.discard(next(iter(tasks)))
         self._left = {key: task for key, task in tasks.items() if key not in have}
         self.total = len(tasks)  # two points may be the same run
         self._on_progress(self.done, self.total)
@@ -134,57 +177,85 @@ class Campaign:
         while self._left and not self._is_cancelled:
             before = self.done
             try:
-                with open_executor(self._workers, self._scheduler, self._niceness) as executor:
+                with self._open() as executor:
                     self._work(executor)
             except LOST as error:
                 losses = 1 if self.done > before else losses + 1
-                if losses >= PATIENCE:
-                    where = f"the scheduler at {self._scheduler}" if self._scheduler else "worker processes"
-                    text = f"lost {where} {losses} times in a row; {self.done} of {self.total} runs are done"
+                if losses >= (PATIENCE if self._trace is None else ATTEMPTS):
+                    lost = f"lost the scheduler at {self._scheduler}" if self._scheduler else "its processes died"
+                    text = f"{lost} {losses} times in a row; {self.done} of {self.total} runs are done"
                     raise Stopped(text) from error
                 time.sleep(min(2.0**losses, 10.0) / 4)
         return not self._left
 
-    def _work(self, executor: Executor) -> None:
+    def _open(self) -> AbstractContextManager[Processes | Cluster]:
+        if self._scheduler:
+            return open_cluster(self._scheduler)
+        return Processes(self._workers) if self._processes is None else nullcontext(self._processes)
+
+    def _work(self, executor: Processes | Cluster) -> None:
         """Keep the workers busy until no run is left, and put results into the table as they arrive."""
         waiting = deque(self._left.values())
-        pending: set[Future[tuple[Found, float]]] = set()
+        first = waiting.popleft() if self._trace is not None else None
+        pending: set[Future[Any]] = set()
         lost: BaseException | None = None
-        while (waiting and not self._is_cancelled) or pending:
-            try:
-                width = width_of(executor, self._workers)
-                while waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * width:
-                    pending.add(executor.submit(compute, self._batch(waiting, width), code_version()))
-            except LOST as error:
-                lost = error
-            done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)
-            for future in done:
+        try:
+            while ((waiting or first) and not self._is_cancelled) or pending:
                 try:
-                    self._take(*future.result())
+                    while waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * executor.width:
+                        if batch := self._batch(waiting, executor.width):
+                            pending.add(executor.submit(compute, batch, code_version()))
+                    if first and not (waiting or pending or self._is_cancelled) and lost is None:
+                        pending.add(self._submit_traced(executor, first))
+                        first = None
                 except LOST as error:
                     lost = error
-            if lost is not None and not pending:
-                raise lost
-            if self._is_cancelled:
-                for future in pending:
-                    future.cancel()
-            if self._is_abandoned:
-                for process in list((getattr(executor, "_processes", None) or {}).values()):
-                    process.kill()
-                return
+                self._pending = tuple(pending)
+                done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)
+                for future in done:
+                    try:
+                        self._take(*future.result())
+                    except LOST as error:
+                        lost = error
+                    except Cancelled:
+                        pass
+                if lost is not None and not pending:
+                    raise lost
+                if self._is_cancelled:
+                    for future in pending:
+                        executor.stop(future)
+        finally:
+            for future in pending:
+                executor.stop(future)
 
     def _batch(self, waiting: deque[Waiting], width: int) -> list[Task]:
-        """Take runs worth `BATCH_S` from the queue, fewer if some worker would otherwise get none."""
+        """Take runs worth `BATCH_S` from the queue, fewer if some worker would otherwise get none.
+
+        Those that another campaign has put into the table meanwhile are done.
+        """
         size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, -(-len(waiting) // width))
         chosen = [waiting.popleft() for _ in range(min(size, len(waiting)))]
-        points = {id(point): point for _, point, _ in chosen}
+        for key in self._table.have([key for key, _, _ in chosen]):
+            self._left.pop(key)
+        points = {id(point): point for key, point, _ in chosen if key in self._left}
         documents = {number: point.document for number, point in points.items()}
-        return [(key, documents[id(point)], seed) for key, point, seed in chosen]
+        return [(key, documents[id(point)], seed) for key, point, seed in chosen if key in self._left]
 
-    def _take(self, outcomes: Found, cost_s: float) -> None:
+    def _submit_traced(self, executor: Processes | Cluster, first: Waiting) -> Future[tuple[Found, float, Any]]:
+        """Hand over the run whose trace is kept, with the outcomes of the others."""
+        key, point, seed = first
+        assert self._trace is not None
+        keys = [one for one, _, _ in self.sweep.runs()]
+        texts = dict(self._table.outcomes(keys))
+        count = len(self.sweep.seeds)
+        others = [[texts[one] for one in keys[at : at + count] if one != key] for at in range(0, len(keys), count)]
+        return executor.submit(compute_traced, self._trace, (key, point.document, seed), others, code_version())
+
+    def _take(self, outcomes: Found, cost_s: float, kept: Any = None) -> None:
         """Put results into the table and update the cost of a run."""
         self._table.put(outcomes)
         self._cost = max(cost_s, 1e-6)
+        self.kept = kept
         for key, _ in outcomes:
             self._left.pop(key, None)
         self._on_progress(self.done, self.total)

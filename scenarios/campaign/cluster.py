@@ -44,6 +44,10 @@ class Cluster(Executor):
         except AttributeError as error:  # a client that lost its scheduler can ask nobody
             raise ConnectionError(f"the client of the scheduler is {self._client.status}") from error
 
+    def stop(self, task: Future[Any]) -> None:
+        """Call a piece of work off; a worker that has begun it goes on to its end, and nobody hears of it."""
+        task.cancel()
+
     def submit(self, function: Callable[..., T], /, *arguments: Any, **named: Any) -> Future[T]:
         """Hand over a piece of work.
 

@@ -1,4 +1,4 @@
-"""Executors of the runs of a campaign: processes of this machine, or a Dask cluster by its address."""
+"""Executors of runs: processes of this machine, or a Dask cluster by its address."""
 
 from __future__ import annotations
 
@@ -7,54 +7,102 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Executor, ProcessPoolExecutor
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from typing import Any, TypeVar
 
-from scenarios.campaign.cluster import Cluster, open_cluster
+from scenarios.campaign.signs import Signs, receive, watched
 
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
 """Errors of a future or a connection after a worker, the scheduler or the line to it is lost."""
+T = TypeVar("T")
 
 
-@contextmanager
-def open_executor(workers: int, scheduler: str = "", niceness: int = 0) -> Iterator[Executor]:
-    """Open processes of this machine, or a cluster when there is an address.
+class Processes(Executor):
+    """Processes of this machine, which several campaigns may share; when one dies, all are started anew.
 
-    Raises
-    ------
-    OSError
-        When the cluster does not answer.
+    Parameters
+    ----------
+    workers : int
+        How many.
+    niceness : int
+        Their niceness.
     """
-    if scheduler:
-        with open_cluster(scheduler) as executor:
-            yield executor
-        return
-    # Spawned, because forking a process with threads is not safe.
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(workers, context, prepare, (niceness,))
-    try:
-        yield pool
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+
+    def __init__(self, workers: int, niceness: int = 0) -> None:
+        self.width = workers
+        # Spawned, because forking a process with threads is not safe.
+        self._context = multiprocessing.get_context("spawn")
+        count = 4 * workers * (workers + 2)  # each process works for a campaign of its own, which hands over more ahead
+        self._signs, self._free = Signs(self._context, count), deque(range(count))
+        self._niceness = niceness
+        self._places: dict[Future[Any], int] = {}
+        self._pool: ProcessPoolExecutor | None = None
+        self._lock = threading.Lock()
+
+    def submit(self, function: Callable[..., T], /, *arguments: Any, **named: Any) -> Future[T]:
+        """Hand over a piece of work; the processes are started with the first.
+
+        Raises
+        ------
+        BrokenProcessPool
+            When a process died just now.
+        """
+        assert not named
+        with self._lock:
+            pool = self._pool = self._pool or self._start()
+            place = self._free.popleft()
+            self._signs.ticks[place] = self._signs.stop[place] = 0
+            try:
+                future = pool.submit(watched, place, function, *arguments)
+            except BrokenProcessPool:
+                self._free.append(place)
+                self._pool = None
+                raise
+            self._places[future] = place
+        future.add_done_callback(lambda future: self._release(future, pool))
+        return future
+
+    def ticks(self, future: Future[Any]) -> int:
+        """Return how far a piece of work is."""
+        place = self._places.get(future)
+        return int(self._signs.ticks[place]) if place is not None else 0
+
+    def stop(self, future: Future[Any]) -> None:
+        """Call a piece of work off: it is not begun, or ends at its next look."""
+        place = self._places.get(future)
+        if not future.cancel() and place is not None:
+            self._signs.stop[place] = 1
+
+    def kill(self) -> None:
+        """End the processes at once."""
+        pool = self._pool
+        for process in list((getattr(pool, "_processes", None) or {}).values()):
+            process.kill()
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
+        """End the processes after the work in hand."""
+        if self._pool is not None:
+            self._pool.shutdown(wait=wait, cancel_futures=cancel_futures)
+
+    def _start(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(self.width, self._context, prepare, (self._niceness, self._signs))
+
+    def _release(self, future: Future[Any], pool: ProcessPoolExecutor) -> None:
+        """Take back the signs of a piece of work that has ended, and give up processes of which one died."""
+        self._free.append(self._places.pop(future))
+        if not future.cancelled() and isinstance(future.exception(), BrokenProcessPool) and self._pool is pool:
+            self._pool = None
 
 
-def width_of(executor: Executor, workers: int) -> int:
-    """Return the number of batches computed at once: the threads of a cluster, or the processes of the pool.
-
-    Raises
-    ------
-    OSError
-        When the scheduler is gone.
-    """
-    return executor.width if isinstance(executor, Cluster) else workers
-
-
-def prepare(niceness: int = 0) -> None:
+def prepare(niceness: int = 0, signs: Signs | None = None) -> None:
     """Set up a process: one thread, its priority, an end with its parent; Ctrl-C is left to the parent."""
     if niceness:
         os.nice(niceness)
+    if signs is not None:
+        receive(signs)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:

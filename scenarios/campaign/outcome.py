@@ -1,20 +1,22 @@
-"""Outcome of a run in a campaign: figures, digest, and the counted verdicts of its diagnosers."""
+"""Outcome of a run: figures, digest, warnings, and the counted verdicts of its diagnosers."""
 
 from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel
+from pydantic import BaseModel, computed_field
 
 from core.block import FloatArray, IntArray
 from core.board.board import Board
+from core.board.commands import Trip
 from core.errors import InputError
 from core.kernel import kernel
 from core.loop.score import Scores
-from scenarios.run import run
+from scenarios.run import Result, run
 from scenarios.schema import Scenario
 
 EVIDENCE = np.linspace(-8.0, 8.0, 161)
@@ -45,34 +47,53 @@ class Diagnosis(BaseModel):
 
 
 class Outcome(BaseModel):
-    """One run of a campaign."""
+    """One run, whoever asked for it."""
 
     seed: int
     digest: str = ""
     ticks: int = 0
     elapsed_s: float = 0.0
     ok: bool = False
-    trip: str = ""
+    stopped: Trip | None = None
     error: str = ""
+    warnings: list[str] = []
     metrics: dict[str, float] = {}
     diagnosis: dict[str, Diagnosis] = {}
 
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def trip(self) -> str:
+        """Why the board stopped, if it did."""
+        return self.stopped.reason if self.stopped is not None else ""
 
-def outcome(scenario: Scenario, seed: int) -> Outcome:
+
+def outcome(scenario: Scenario, seed: int, on_tick: Callable[[int], None] | None = None) -> Outcome:
     """Run a scenario and count its results; a scenario that cannot be run gives its error."""
     began = time.perf_counter()
     try:
-        result = run(scenario, seed, figures_only=True)
+        result = run(scenario, seed, figures_only=True, on_tick=on_tick)
     except InputError as error:
         return Outcome(seed=seed, error=str(error))
-    trace = dict(zip(result.names, result.outputs.T, strict=True))
-    found = summed(scenario, result.board, result.metrics, result.digest, trace)
+    found = outcome_of(result)
     found.elapsed_s = time.perf_counter() - began
     return found
 
 
+def outcome_of(result: Result) -> Outcome:
+    """Return the outcome of a result: the same whether all its outputs were kept or those of its figures alone."""
+    trace = dict(zip(result.names, result.outputs.T, strict=True))
+    found = summed(result.scenario, result.board, result.metrics, result.digest, trace, result.warnings)
+    found.elapsed_s = result.elapsed_s
+    return found
+
+
 def summed(
-    scenario: Scenario, board: Board, metrics: dict[str, float], digest: str, trace: dict[str, FloatArray]
+    scenario: Scenario,
+    board: Board,
+    metrics: dict[str, float],
+    digest: str,
+    trace: dict[str, FloatArray],
+    warnings: list[str],
 ) -> Outcome:
     """Return the outcome of a run that has come to its end."""
     return Outcome(
@@ -80,7 +101,8 @@ def summed(
         digest=digest,
         ticks=board.tick,
         ok=all(entry.holds(metrics.get(entry.metric)) for entry in scenario.head.expect),
-        trip=board.trip.reason if board.trip is not None else "",
+        stopped=board.trip,
+        warnings=warnings,
         metrics={name: value for name, value in metrics.items() if math.isfinite(value)},
         diagnosis={name: _diagnosis(board, name, scores, trace) for name, scores in board.scores().items()},
     )

@@ -13,7 +13,6 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from core.block import FloatArray
-from core.board.spec import MOST_SEED
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
 from core.nesting import read_toml
@@ -23,41 +22,12 @@ from scenarios.key import content_hash, run_key
 from scenarios.library import get
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
-from scenarios.seeds import parse_seeds
+from scenarios.seeds import MAX_RUNS, Seeds
 
-MAX_RUNS = 1_000_000
 MAX_POINTS = 20_000
 MAX_RANGES = 50
 """Values that vary at once."""
 Values = dict[str, Any]
-
-
-class Seeds(Table):
-    """Noise seeds, ``"A:B"`` with both ends, the same for every point, so that points differ by their values.
-
-    A first seed and a count are read as well.
-    """
-
-    first: int = Field(1, ge=0, le=MOST_SEED)
-    count: int = Field(1, ge=1, le=MAX_RUNS)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _both_ends(cls, given: Any) -> Any:
-        if not isinstance(given, str):
-            return given
-        try:
-            seeds = parse_seeds(given, "seeds")
-        except InputError as error:
-            raise ValueError(error.message) from None
-        return {"first": seeds[0], "count": len(seeds)}
-
-    @model_validator(mode="after")
-    def _reach(self) -> Self:
-        last = self.first + self.count - 1
-        if last > MOST_SEED:
-            raise ValueError(f"the last seed would be {last}; allowed: up to {MOST_SEED}")
-        return self
 
 
 class Range(Table):

@@ -51,6 +51,7 @@ class PointTally(BaseModel):
     ok: int = 0
     tripped: int = 0
     errors: list[str] = []
+    warnings: list[str] = []
     metrics: dict[str, Spread] = {}
     diagnosis: dict[str, DiagnosisTally] = {}
 
@@ -61,6 +62,7 @@ class Sums:
     def __init__(self) -> None:
         self.runs = self.ok = self.tripped = 0
         self.errors: Counter[str] = Counter()
+        self.warnings: Counter[str] = Counter()
         self._moments: dict[str, list[float]] = {}
         self._diagnosis: dict[str, _DiagnosisSums] = {}
 
@@ -71,6 +73,7 @@ class Sums:
         self.tripped += bool(outcome.trip)
         if outcome.error:
             self.errors[outcome.error] += 1
+        self.warnings.update(outcome.warnings)
         for name, value in outcome.metrics.items():
             count, mean, square, low, high = self._moments.get(name, (0.0, 0.0, 0.0, math.inf, -math.inf))
             count += 1.0  # Welford 1962
@@ -87,7 +90,8 @@ class Sums:
             runs=self.runs,
             ok=self.ok,
             tripped=self.tripped,
-            errors=[f"{text} ({count} runs)" for text, count in self.errors.most_common(3)],
+            errors=_counted(self.errors),
+            warnings=_counted(self.warnings),
             metrics={
                 name: Spread(
                     count=int(count),
@@ -100,6 +104,11 @@ class Sums:
             },
             diagnosis={name: sums.tally() for name, sums in self._diagnosis.items()},
         )
+
+
+def _counted(texts: Counter[str]) -> list[str]:
+    """Return what most runs said."""
+    return [f"{text} ({count} runs)" for text, count in texts.most_common(3)]
 
 
 class _DiagnosisSums:

@@ -78,6 +78,7 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
             for point in points
         ],
         errors=[f"{name_of(point.labels)}: {text}" for point in points for text in point.errors],
+        warnings=[f"{name_of(point.labels)}: {text}" for point in points for text in point.warnings],
         trends=_trends(points, axes, shown),
         diagnosers=[
             _diagnoser(name, points) for name in dict.fromkeys(name for point in points for name in point.diagnosis)

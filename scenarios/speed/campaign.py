@@ -43,6 +43,10 @@ class _Kept:
         """Return no keys: all runs are to be computed."""
         return set()
 
+    def outcomes(self, keys: Sequence[str]) -> Found:  # noqa: ARG002
+        """Return nothing: no outcome is kept."""
+        return []
+
     def put(self, found: Found) -> None:
         """Record the moment and the size of a batch."""
         self.batches.append((time.perf_counter(), len(found)))

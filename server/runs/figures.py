@@ -1,7 +1,8 @@
 """Figures of the gallery: made once for each scenario and version of the code, and kept in the data folder.
 
 They are made by the worker processes of headless runs, at their low priority, one after the other: a run that somebody
-asks for waits for one figure at most. A scenario that fails, or a full disk, is told in one line and stops nothing.
+asks for waits for one figure at most. What the table of results has of them is not computed again, and what they
+measure is put there. A scenario that fails, or a full disk, is told in one line and stops nothing.
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from scenarios.campaign.campaign import Campaign
+from scenarios.campaign.single import single
 from scenarios.library import is_demo, library
 from scenarios.report.traces import write_json
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
-from server.runs.jobs import Jobs, identify
+from server.runs.jobs import identify
+from server.runs.queue import Queue
 from server.runs.worker import draw
 from server.settings import Settings
 
@@ -39,14 +43,14 @@ class Figures:
 
     Parameters
     ----------
-    jobs : Jobs
+    queue : Queue
         Whose worker processes make them.
     settings : Settings
         Data folder, and whether they are made.
     """
 
-    def __init__(self, jobs: Jobs, settings: Settings) -> None:
-        self._jobs, self._settings = jobs, settings
+    def __init__(self, queue: Queue, settings: Settings) -> None:
+        self._queue, self._settings = queue, settings
         self._folder = settings.data / "figures"
         self._task: asyncio.Task[None] | None = None
         self.made: dict[str, Figure] = {}
@@ -85,8 +89,7 @@ class Figures:
         await ready()
         for scenario, key in missing:
             try:
-                made = await self._jobs.apart(draw, scenario.document)
-                figure = Figure(key, made["summary"], made["svg"])
+                figure = Figure(key, **await self._draw(scenario))
                 self.made[scenario.id] = figure
                 await asyncio.to_thread(self._keep, figure)
             except OSError as error:
@@ -95,6 +98,13 @@ class Figures:
                 self.failed[scenario.id] = str(error) or type(error).__name__
                 self._tell(f"the figure of {scenario.id} could not be made: {self.failed[scenario.id]}")
         log.info("figures of the gallery: %d of %d are there", len(self.made), self.total)
+
+    async def _draw(self, scenario: Scenario) -> dict[str, Any]:
+        campaign = Campaign(
+            single(scenario, [scenario.spec.seed]), self._queue.results, processes=self._queue.processes, trace=draw
+        )
+        await self._queue.run(campaign)
+        return dict(campaign.kept)
 
     def _tell(self, text: str) -> None:
         self.problem = " ".join(text.split())

@@ -1,4 +1,4 @@
-"""Lists of runs and campaigns: which are asked for, how they are called, and how those that have ended are removed."""
+"""Runs and campaigns as rows: which are asked for, how they are called, how those that have ended are removed."""
 
 from __future__ import annotations
 
@@ -11,16 +11,19 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import Delete, Select, delete, or_, select, update
+from sqlalchemy.orm import Session, defer
 
 from core.errors import InputError
+from scenarios.key import code_version
 from server.errors import ApiError, not_found
 from server.store.database import Database
-from server.store.models import RunRow, SweepRow
+from server.store.models import RequestRow, now
 
 ACTIVE = ("queued", "running")
 MOST = 200
 """Rows of one list."""
 LONGEST_LABEL = 120
+Kind = Literal["run", "campaign"]
 State = Literal["queued", "running", "done", "failed", "cancelled", "aborted"]
 
 
@@ -50,16 +53,16 @@ class RunFilter(BaseModel):
     state: State | None = Field(None, description="Only those in this state")
     scenario: str = Field("", max_length=200, description="Only those of this scenario")
 
-    def of(self, table: type[RunRow] | type[SweepRow]) -> Select[Any]:
+    def of(self, kind: Kind) -> Select[Any]:
         """Return the rows that are asked for, newest first."""
-        scenario: Any = RunRow.scenario_id if table is RunRow else SweepRow.document["scenario"].as_string()
-        query = select(table).order_by(table.created.desc()).limit(MOST)
+        row = RequestRow
+        query = select(row).where(row.kind == kind).order_by(row.created.desc()).limit(MOST)
         for word in self.text.split():
-            named = (column.icontains(word, autoescape=True) for column in (table.label, table.title, scenario))
+            named = (column.icontains(word, autoescape=True) for column in (row.label, row.title, row.scenario_id))
             query = query.where(or_(*named))
         if self.state is not None:
-            query = query.where(table.state == self.state)
-        return query.where(scenario == self.scenario) if self.scenario else query
+            query = query.where(row.state == self.state)
+        return query.where(row.scenario_id == self.scenario) if self.scenario else query
 
 
 def clean_label(label: str) -> str:
@@ -76,42 +79,107 @@ def clean_label(label: str) -> str:
     return text
 
 
-async def rename(database: Database, table: type[RunRow] | type[SweepRow], noun: str, row_id: str, label: str) -> None:
-    """Give a run or a campaign a name; an empty one takes it away."""
-    statement = update(table).where(table.id == row_id).values(label=clean_label(label)).returning(table.id)
-    if await database.run(lambda session: session.execute(statement).first()) is None:
-        raise not_found(noun, row_id)
-
-
-async def remove(
-    database: Database,
-    table: type[RunRow] | type[SweepRow],
-    noun: str,
-    ids: Sequence[str] | None,
-    folder: Path | None = None,
-) -> int:
-    """Remove some that have ended, or all; return how many. If one of them cannot be removed, none is.
+class Requests:
+    """The table of requests.
 
     Parameters
     ----------
-    ids : sequence of str, optional
-        Those to remove; all that have ended when left out.
-    folder : Path, optional
-        Where each has a folder of its own. Files go first: on a full disk the row can be deleted only after they have
-        made room.
+    database : Database
+        Where it is.
+    folder : Path
+        Where each run has a folder of its own.
     """
-    query = select(table.id, table.state)
-    rows = await database.run(lambda session: dict(session.execute(query).all()))
-    if ids is None:
-        ids = [row_id for row_id, state in rows.items() if state not in ACTIVE]
-    for row_id in ids:
-        if row_id not in rows:
-            raise not_found(noun, row_id)
-        if rows[row_id] in ACTIVE:
-            raise ApiError(409, "conflict", f"the {noun} {row_id} is {rows[row_id]}; cancel it first", "ids")
-    for row_id in dict.fromkeys(ids):
-        if folder is not None:
-            await asyncio.to_thread(shutil.rmtree, folder / row_id, ignore_errors=True)
-        statement: Delete = delete(table).where(table.id == row_id, table.state.not_in(ACTIVE))
-        await database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
-    return len(set(ids))
+
+    def __init__(self, database: Database, folder: Path) -> None:
+        self._database, self.folder = database, folder
+
+    async def settle(self, row: RequestRow, has_room: bool) -> RequestRow | None:
+        """Return the same request if it waits, is under way or done, named anew; otherwise put it there if it may."""
+
+        def work(session: Session) -> RequestRow | None:
+            known = session.get(RequestRow, row.id)
+            if known is not None and known.state in (*ACTIVE, "done"):
+                known.label = row.label or known.label
+                return known
+            row.label = row.label or (known.label if known is not None else "")
+            if has_room:
+                session.merge(row)
+            return None
+
+        return await self._database.run(work)
+
+    async def all(self, kind: Kind, wanted: RunFilter) -> list[RequestRow]:
+        """List those that are asked for, newest first, without their documents."""
+        return await self._rows(wanted.of(kind).options(defer(RequestRow.document)))
+
+    async def some(self, kind: Kind, ids: Sequence[str]) -> list[RequestRow]:
+        """Return those of some that are known."""
+        return await self._rows(select(RequestRow).where(RequestRow.id.in_(ids), RequestRow.kind == kind))
+
+    async def active(self) -> list[RequestRow]:
+        """Return those that wait or are under way, in the order in which they were asked for."""
+        return await self._rows(
+            select(RequestRow).where(RequestRow.state.in_(ACTIVE)).order_by(RequestRow.created, RequestRow.id)
+        )
+
+    async def get(self, kind: Kind, row_id: str) -> RequestRow:
+        """Return one, or refuse with 404."""
+        for row in await self.some(kind, [row_id]):
+            return row
+        raise not_found(kind, row_id)
+
+    async def update(self, row_id: str, **values: Any) -> bool:
+        """Change a row; return whether there is one."""
+        return await self._database.run(lambda session: change(session, row_id, **values))
+
+    async def rename(self, kind: Kind, row_id: str, label: str) -> RequestRow:
+        """Give a run or a campaign a name; an empty one takes it away."""
+        name = clean_label(label)
+        await self.get(kind, row_id)
+        await self.update(row_id, label=name)
+        return await self.get(kind, row_id)
+
+    async def remove(self, kind: Kind, ids: Sequence[str] | None) -> int:
+        """Remove some that have ended, or all if none is named; return how many. If one of them cannot be, none is.
+
+        Files go first: on a full disk the row can be deleted only after they have made room. Results stay, for others
+        share them.
+        """
+        query = select(RequestRow.id, RequestRow.state).where(RequestRow.kind == kind)
+        rows = await self._database.run(lambda session: dict(session.execute(query).all()))
+        if ids is None:
+            ids = [row_id for row_id, state in rows.items() if state not in ACTIVE]
+        for row_id in ids:
+            if row_id not in rows:
+                raise not_found(kind, row_id)
+            if rows[row_id] in ACTIVE:
+                raise ApiError(409, "conflict", f"the {kind} {row_id} is {rows[row_id]}; cancel it first", "ids")
+        for row_id in dict.fromkeys(ids):
+            await asyncio.to_thread(shutil.rmtree, self.folder / row_id, ignore_errors=True)
+            statement: Delete = delete(RequestRow).where(RequestRow.id == row_id, RequestRow.state.not_in(ACTIVE))
+            await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
+        return len(set(ids))
+
+    async def _rows(self, query: Select[Any]) -> list[RequestRow]:
+        return await self._database.run(lambda session: list(session.scalars(query)))
+
+
+def fresh(**values: Any) -> RequestRow:
+    """Return a request that waits from now on."""
+    return RequestRow(
+        **values,
+        state="queued",
+        version=code_version(),
+        done=0,
+        attempts=0,
+        created=now(),
+        finished=None,
+        summary=None,
+        error=None,
+    )
+
+
+def change(session: Session, row_id: str, **values: Any) -> bool:
+    """Change a row; return whether there is one."""
+    statement = update(RequestRow).where(RequestRow.id == row_id).values(**values)
+    return session.execute(statement.returning(RequestRow.id)).first() is not None

@@ -1,113 +1,79 @@
-"""The work of a worker process: it runs a scenario for its seeds and keeps the results."""
+"""What worker processes do besides computing outcomes: they keep the files of a run, or draw a figure."""
 
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from scenarios.campaign.campaign import Others
+from scenarios.campaign.outcome import Outcome, outcome_of
+from scenarios.campaign.signs import tell
+from scenarios.campaign.single import counterparts, summary
+from scenarios.run import DEFAULT_SAMPLES, Result, build, run, run_bytes
+from scenarios.schema import Scenario
+
 NICE = 10
-REPORT_S = 0.1
-STEM, PROGRESS, CANCEL = "run", "progress", "cancel"
+STEM = "run"
 
 
-class Cancelled(Exception):
-    """The run was cancelled."""
+class NotKept(Exception):
+    """The files of a run could not be written; says why."""
 
 
-class Watch:
-    """Writes the progress of a run, and checks whether it was cancelled.
-
-    Parameters
-    ----------
-    place : Path
-        Folder of the run.
-    total : int
-        Ticks of all its seeds.
-    """
-
-    def __init__(self, place: Path, total: int) -> None:
-        self._place, self._total, self._due = place, total, 0.0
-
-    def at(self, before: int) -> Callable[[int], None]:
-        """Return the function to call after every chunk, when earlier seeds took so many ticks."""
-
-        def report(tick: int) -> None:
-            if time.monotonic() < self._due:
-                return
-            self._due = time.monotonic() + REPORT_S
-            if (self._place / CANCEL).exists():
-                raise Cancelled
-            (self._place / PROGRESS).write_text(str((before + tick) / self._total))
-
-        return report
-
-
-def work(document: dict[str, Any], seeds: list[int], folder: str, most_bytes: int) -> dict[str, Any]:
-    """Run a scenario once per seed; trace, report and drawing are of the first.
+@dataclass(frozen=True)
+class Keep:
+    """Keeps trace, report, drawing and script of a run.
 
     Parameters
     ----------
-    document : dict
-        The scenario.
-    seeds : list of int
-        At least one.
     folder : str
-        Where the results go, each under a temporary name first.
+        Where the files go, each under a temporary name first.
     most_bytes : int
         Memory of the process; taps that would not fit are left out, then outputs that no figure is made of.
-
-    Returns
-    -------
-    dict
-        The summary, with the open loop beside each expectation; with several seeds metrics are means and
-        ``metrics_std`` is added.
-
-    Raises
-    ------
-    Cancelled
-        When a file ``cancel`` has appeared in the folder.
     """
-    from scenarios.counterpart import beside
-    from scenarios.report.keeping import keep
-    from scenarios.run import DEFAULT_SAMPLES, Result, build, run, run_bytes
-    from scenarios.schema import Scenario
-    from scenarios.seeds import together
 
-    place = Path(folder)
-    place.mkdir(parents=True, exist_ok=True)
-    scenario = Scenario.load(document)
-    summaries: list[dict[str, Any]] = []
-    samples = scenario.samples or DEFAULT_SAMPLES
-    watch = Watch(place, samples * len(seeds))
-    board = build(scenario)
-    has_room = run_bytes(board, samples, taps=True) <= most_bytes
-    figures_only = run_bytes(board, samples) > most_bytes
-    kept: Result | None = None
-    for number, seed in enumerate(seeds):
-        told = watch.at(number * samples)
-        told(0)
-        taps = has_room and number == 0
-        result = run(scenario, seed, taps=taps, figures_only=figures_only or number > 0, on_tick=told)
-        summaries.append(result.summary())
-        kept = kept or result
-    assert kept is not None
-    summary = summaries[0] if len(summaries) == 1 else together(scenario, summaries)
-    summary = dict(json.loads(json.dumps(beside(summary, scenario), default=str)))
-    keep(kept, summary, seeds, place / STEM)
-    return summary
+    folder: str
+    most_bytes: int
+
+    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, dict[str, Any]]:
+        """Run a scenario; return its outcome, and the summary of all its seeds, counterparts beside each expectation.
+
+        Raises
+        ------
+        Cancelled
+            When the work was called off.
+        NotKept
+            When the disk failed.
+        """
+        from scenarios.report.keeping import keep
+
+        scenario = Scenario.load(document)
+        board, samples = build(scenario), scenario.samples or DEFAULT_SAMPLES
+        taps = run_bytes(board, samples, taps=True) <= self.most_bytes
+        result = run(scenario, seed, taps=taps, figures_only=run_bytes(board, samples) > self.most_bytes, on_tick=tell)
+        runs, told = _summary(result, others)
+        try:
+            keep(result, told, [one.seed for one in runs], Path(self.folder) / STEM)
+        except OSError as error:
+            raise NotKept(error.strerror or str(error)) from None
+        return runs[0], told
 
 
-def draw(document: dict[str, Any]) -> dict[str, Any]:
-    """Run a scenario with its own seed, and return its summary and its figure; nothing else of it is kept."""
-    from scenarios.counterpart import beside
+def draw(document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, dict[str, Any]]:
+    """Run a scenario; return its outcome, and its summary with its figure. Nothing else of it is kept."""
     from scenarios.report.figure import figure
     from scenarios.report.svg import CARD, paint
-    from scenarios.run import run
-    from scenarios.schema import Scenario
 
-    result = run(Scenario.load(document))
-    summary = dict(json.loads(json.dumps(beside(result.summary(), result.scenario), default=str)))
-    return {"summary": summary, "svg": paint(figure(result), CARD)}
+    result = run(Scenario.load(document), seed, on_tick=tell)
+    runs, told = _summary(result, others)
+    return runs[0], {"summary": told, "svg": paint(figure(result), CARD)}
+
+
+def _summary(result: Result, others: Others) -> tuple[list[Outcome], dict[str, Any]]:
+    """Return the outcomes of a run, seed by seed, and their summary."""
+    rest, *beside = [[Outcome.model_validate_json(text) for text in texts] for texts in others]
+    runs = [outcome_of(result), *rest]
+    told = summary(result.scenario, runs, dict(zip(counterparts(result.scenario), beside, strict=True)))
+    return runs, json.loads(json.dumps(told, default=str))

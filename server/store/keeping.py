@@ -8,12 +8,12 @@ import shutil
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from sqlalchemy import delete, select
+from sqlalchemy import delete, select, true
 
 from server.errors import ApiError
 from server.settings import Settings
 from server.store.database import Database
-from server.store.models import RecordingRow, RunRow
+from server.store.models import RecordingRow, RequestRow
 from server.store.recording import free_bytes
 
 log = logging.getLogger(__name__)
@@ -71,8 +71,11 @@ class Keeping:
             return 0
         before = datetime.now(UTC) - timedelta(days=self._settings.retention_days)
         count = 0
-        for table, folder in ((RecordingRow, "recordings"), (RunRow, "runs")):
-            query = select(table.id).where(table.finished < before)
+        for table, folder, which in (
+            (RecordingRow, "recordings", true()),
+            (RequestRow, "runs", RequestRow.kind == "run"),
+        ):
+            query = select(table.id).where(table.finished < before, which)
             ids = await self._database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
             for key in ids:
                 # The files go first: on a full disk the row can be deleted only after they have made room.

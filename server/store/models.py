@@ -1,4 +1,4 @@
-"""Tables: headless runs, campaigns, their results, recordings, links. Bulk data is in files; a row says which."""
+"""Tables: headless runs and campaigns, their results, recordings, links. Bulk data is in files; a row says which."""
 
 from __future__ import annotations
 
@@ -44,48 +44,60 @@ class Base(DeclarativeBase):
     }
 
 
-class RunRow(Base):
-    """One headless run: its request, its progress, its results."""
+class RequestRow(Base):
+    """What somebody asked to be computed, a run with its seeds or a campaign; the table of results has the outcomes.
 
-    __tablename__ = "runs"
+    Attributes
+    ----------
+    kind : str
+        ``run`` or ``campaign``.
+    key : str
+        What it is known by; the id is its beginning.
+    name : str
+        Id of the scenario of a run, or of the campaign.
+    document : dict
+        The scenario of a run, or the campaign.
+    seeds : list of int
+        Those of a run.
+    version : str
+        Of the code; runs from before it was kept have none.
+    runs, done : int
+        Different runs it is made of, and those in the table of results when it ended.
+    attempts : int
+        Starts in a row without a result.
+    summary : dict
+        That of a run.
+    """
+
+    __tablename__ = "requests"
 
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
-    key: Mapped[str] = mapped_column(String(64), index=True)
+    kind: Mapped[str] = mapped_column(String(16), index=True)
+    key: Mapped[str] = mapped_column(String(64), default="", server_default="")
     state: Mapped[str] = mapped_column(String(16), index=True)
+    name: Mapped[str] = mapped_column(String(200))
     scenario_id: Mapped[str] = mapped_column(String(200))
     title: Mapped[str] = mapped_column(String(400))
     label: Mapped[str] = mapped_column(String(120), default="", server_default="")
     document: Mapped[dict[str, Any]]
-    seeds: Mapped[list[Any]]
+    seeds: Mapped[list[Any] | None]
+    version: Mapped[str] = mapped_column(String(16), default="", server_default="")
+    runs: Mapped[int] = mapped_column(Integer)
+    done: Mapped[int] = mapped_column(Integer, default=0, server_default="0")
+    attempts: Mapped[int] = mapped_column(Integer, default=0, server_default="0")
     created: Mapped[datetime] = mapped_column(default=now, index=True)
     finished: Mapped[datetime | None]
-    progress: Mapped[float] = mapped_column(Float, default=0.0)
-    attempts: Mapped[int] = mapped_column(Integer, default=0, server_default="0")
     summary: Mapped[dict[str, Any] | None]
     error: Mapped[dict[str, Any] | None]
 
-
-class SweepRow(Base):
-    """One campaign: its request, and how it ended; the table of results has its results."""
-
-    __tablename__ = "sweeps"
-
-    id: Mapped[str] = mapped_column(String(32), primary_key=True)
-    state: Mapped[str] = mapped_column(String(16), index=True)
-    name: Mapped[str] = mapped_column(String(64))
-    title: Mapped[str] = mapped_column(String(200))
-    label: Mapped[str] = mapped_column(String(120), default="", server_default="")
-    document: Mapped[dict[str, Any]]
-    version: Mapped[str] = mapped_column(String(16))
-    runs: Mapped[int] = mapped_column(Integer)
-    done: Mapped[int] = mapped_column(Integer, default=0, server_default="0")
-    created: Mapped[datetime] = mapped_column(default=now, index=True)
-    finished: Mapped[datetime | None]
-    error: Mapped[dict[str, Any] | None]
+    @property
+    def progress(self) -> float:
+        """Share of the runs that were done when it ended."""
+        return self.done / self.runs if self.runs else 0.0
 
 
 class ResultRow(Base):
-    """One run of a campaign, by its key: scenario, seed and version. All campaigns share these rows."""
+    """One single run, by its key: scenario, seed and version. All runs and campaigns share these rows."""
 
     __tablename__ = "results"
 

@@ -1,4 +1,4 @@
-"""The results of campaigns, by the key of the run."""
+"""The results of runs, by the key of the run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ AT_ONCE = 500
 
 
 class Results:
-    """The run table of campaigns.
+    """The table of results of all runs and campaigns.
 
     Parameters
     ----------

@@ -10,10 +10,10 @@ import pytest
 from filterpy.kalman import KalmanFilter, MMAEFilterBank
 
 from core.plain import plain
+from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
-from scenarios.seeds import run_seeds
 from tests.lab import do, inject, make, phasor, play
 from tests.physics.bank import BENCH, BETA, FACTORS, FORCE, NAMES, K, M, model, of_bank, signals
 

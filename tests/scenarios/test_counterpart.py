@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from scenarios.counterpart import beside, compared, counterpart
+from scenarios.campaign.single import beside, compared
+from scenarios.counterpart import counterpart
 from scenarios.edit import with_values
 from scenarios.library import get, library
 from scenarios.run import run
@@ -34,13 +35,13 @@ def test_every_controller_that_drives_is_replaced_and_faults_stay():
 
 def test_it_is_the_open_loop_to_the_bit():
     alone = with_values(get("ch3-mrac-spring-x2"), {"controller": {"kind": "open_loop"}})
-    assert compared(get("ch3-mrac-spring-x2"), [1])["open_loop"] == run(alone).metrics
+    assert compared(get("ch3-mrac-spring-x2"), [1])["open_loop"][0].metrics == run(alone).metrics
 
 
 def test_scenarios_without_a_controller_have_none():
     for name in ("ch5-seven-step", "ch1-beam-width", "appB-mit", "ch6-gyro-imperfections", "ch5-noise-over"):
         assert counterpart(get(name)) is None, name
-        summary = beside(run(get(name)).summary(), get(name))
+        summary = beside(run(get(name)))
         assert all(entry["open_loop"] is None and entry["pid"] is None for entry in summary["expectations"])
 
 
@@ -58,7 +59,7 @@ def test_what_praises_a_controller_is_missed_without_it(scenario):
         assert entry.compare, f"{entry.metric} says neither what it is compared with nor why with nothing"
         against = {"open_loop": ["open_loop"], "pid": ["open_loop", "pid"], "none": []}[entry.compare]
         for kind in against:
-            measured = others[kind].get(entry.metric)
+            measured = others[kind][0].metrics.get(entry.metric)
             assert entry.missed_twice(measured), f"{entry.metric} {entry.text()}: {kind} gives {measured}"
 
 

@@ -9,12 +9,12 @@ import pytest
 from typer.testing import CliRunner
 
 from core.errors import InputError
+from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.report.run import run_report
 from scenarios.run import build, run
 from scenarios.schema import Scenario
-from scenarios.seeds import run_seeds
 from server.cli import app
 from tests.lab import do, make, play
 
@@ -49,6 +49,19 @@ def test_warnings_of_several_seeds_of_a_study_and_of_a_twin():
     assert run(with_values(get("ch5-flops"), study)).summary()["warnings"] == run(slow).summary()["warnings"]
     twin = with_values(get(SEVEN), {**SHORT, "twins": {"other": SLOW}})
     assert run(twin).summary()["warnings"] == [f"other: {text}" for text in run(slow).summary()["warnings"]]
+
+
+def test_a_campaign_tells_them(tmp_path):
+    """On the command line, in its points, and in the report."""
+    (tmp_path / "thin.toml").write_text(
+        'schema = 1\nid = "thin"\nscenario = "ch3-stvsc-mass"\nseeds = "1:3"\n'
+        "[set]\nduration_ms = 3\n[grid]\n'controller.layer_um' = [1e-4, 0.5]\n"
+    )
+    told = call("sweep", str(tmp_path / "thin.toml"), "--workers", "1", "--out", str(tmp_path / "out"))
+    assert told.exit_code == 0 and told.stderr.count(f"combbench: warning: {LAYER}\n") == 1
+    points = json.loads((tmp_path / "out" / "points.json").read_text())
+    assert [point["warnings"] for point in points] == [[f"{LAYER} (3 runs)"], []]
+    assert LAYER in (tmp_path / "out" / "report.html").read_text()
 
 
 def test_the_command_line_and_the_report_tell_them():

@@ -63,6 +63,21 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 });
 
+test("a campaign tells what its runs warn of, in the words of a run", async ({ page, server }) => {
+  const scenario = "ch3-stvsc-mass";
+  const set = { duration_ms: 3, "controller.layer_um": 1e-4 };
+  const sweep = { schema: 1, id: "thin", scenario, set, seeds: "1:3" };
+  const campaign = await server.ask<{ id: string }>("POST", "/sweeps", { sweep });
+  const run = await server.ask<{ id: string }>("POST", "/runs", { scenario, set, seed: 2 });
+  await page.request.get(server.url);
+  for (const place of [`sweep=${campaign.id}`, `run=${run.id}`]) {
+    await page.goto(`${server.origin}/?page=runs&${place}`);
+    const warning = page.getByRole("region", { name: "Result" }).getByText(/^Warning: stvsc: the boundary layer/);
+    await expect(warning).toBeVisible({ timeout: 60_000 });
+  }
+  await seriousViolations(page).then((found) => expect(found).toEqual([]));
+});
+
 test("runs are named, found, compared and removed", async ({ page, server }) => {
   const wait = async (seed: number, label: string) => {
     const body = { scenario: "ch5-seven-step", set: { samples: 800 }, seed, label };

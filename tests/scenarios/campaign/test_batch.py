@@ -9,6 +9,7 @@ import pytest
 from scenarios.campaign import batch
 from scenarios.campaign.outcome import Outcome, outcome
 from scenarios.campaign.sweep import Sweep
+from scenarios.edit import with_values
 from scenarios.library import get, library
 from scenarios.run import run
 from scenarios.schema import Scenario
@@ -105,3 +106,24 @@ def test_a_block_that_a_command_exchanges(abreast):
     found = batch.outcomes([(Scenario.load(document), seed) for seed in (1, 2, 3)])
     assert len(abreast) == 3
     assert [said(entry) for entry in found] == [said(outcome(Scenario.load(document), seed)) for seed in (1, 2, 3)]
+
+
+def test_warnings_are_those_of_a_run_alone_in_their_order(abreast):
+    """Of taps that rise, of blocks before the first tick, and of what a command changes; shadows warn of nothing."""
+    slow, slower = ({"kind": "arx_bank", "every": every} for every in (5, 20))
+    thin = {"at_sample": 200, "set": {"controller.layer_um": 1e-4}}
+    tone = {"at_sample": 120, "set": {"reference.frequency_hz": 4000.0}}
+    benches = (
+        ("ch5-seven-step", {"diagnosers.slow": slow, "events": [tone]}, 2),
+        ("ch3-stvsc-mass", {"controller.layer_um": 1e-4, "diagnosers.slow": slower}, 2),
+        ("ch3-stvsc-mass", {"events": [thin], "diagnosers.slow": slower}, 2),
+        ("ch3-stvsc-mass", {"controller.layer_um": 1e-4, "diagnosers.slow": slower, "events": [tone]}, 3),
+        ("ch5-seven-step", {"controllers.stvsc.layer_um": 1e-4}, 0),
+    )
+    for name, values, count in benches:
+        scenario = with_values(cut(get(name)), values)
+        found = batch.outcomes([(scenario, seed) for seed in (1, 2, 3)])
+        assert not abreast and len(found[0].warnings) == count, found[0].warnings
+        for ours in found:
+            assert said(ours) == said(outcome(scenario, ours.seed))
+            assert ours.warnings == run(scenario, ours.seed).warnings

@@ -31,6 +31,9 @@ class Memory:
     def have(self, keys: Sequence[str]) -> set[str]:
         return self.found.keys() & set(keys)
 
+    def outcomes(self, keys: Sequence[str]) -> list[tuple[str, str]]:
+        return [(key, self.found[key].model_dump_json()) for key in keys if key in self.found]
+
     def put(self, found: list[tuple[str, str]]) -> None:
         for key, entry in found:
             self.puts.append(key)
@@ -61,6 +64,15 @@ def test_processes_give_what_single_runs_give_and_nothing_is_run_twice() -> None
     # again: everything is there, nothing is computed; with more seeds only those that are new
     assert Campaign(sweep, table, workers=1).run() and len(table.puts) == 12
     assert Campaign(small(7), table, workers=1).run() and len(table.puts) == 14
+
+
+def test_what_another_has_put_into_the_table_meanwhile_is_not_computed() -> None:
+    sweep, table = small(20, 9000), Memory()
+    there = {key: Outcome(seed=seed) for key, _, seed in list(sweep.runs())[20:]}
+    assert Campaign(
+        sweep, table, workers=1, on_progress=lambda done, _: table.found.update(there) if done == 1 else None
+    ).run()
+    assert len(table.found) == 40 and 20 <= len(table.puts) <= 22  # a batch or two were under way
 
 
 def test_a_run_that_cannot_be_carried_out_does_not_stop_the_others() -> None:

@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import InputError
+from scenarios.campaign.single import run_seeds
 from scenarios.measure.metrics import first_peak, fundamental, step_lengths
 from scenarios.run import run
 from scenarios.schema import Scenario
-from scenarios.seeds import parse_seeds, run_seeds
+from scenarios.seeds import parse_seeds
 from tests.lab import document
 
 M, BETA, K = 2.2090e-10, 7.09e-7, 0.0538

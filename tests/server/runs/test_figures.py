@@ -60,7 +60,7 @@ def test_figures_are_made_once_and_survive_a_restart(
     (tmp_path / "figures" / "of-another-version.json").write_text("{}")
     with serve(folder=tmp_path, figures=True) as live:
         assert settled(live)["figures"]["made"] == 3
-        assert live.service.jobs._pool is not None  # the broken one is made again, the others are not
+        assert live.service.queue.processes._pool is not None  # the broken one is made again, the others are not
     after = {path: path.stat().st_mtime_ns for path in (tmp_path / "figures").iterdir()}
     assert set(after) == set(kept)
     assert [path for path in kept if after[path] != kept[path]] == [broken]

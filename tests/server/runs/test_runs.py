@@ -15,13 +15,13 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
+from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get, library
 from scenarios.run import build, run, run_bytes
-from scenarios.seeds import run_seeds
 from server.runs.length import check_length
 from server.settings import Settings
-from server.store.models import RunRow
+from server.store.models import RequestRow
 
 
 def wait(live: Any, run_id: str, seconds: float = 60.0) -> dict[str, Any]:
@@ -173,7 +173,7 @@ def test_a_run_a_crash_interrupted_begins_again_but_not_for_ever(serve: Any, tmp
     def as_after_a_crash(attempts: int) -> None:
         database = Database(tmp_path / "combbench.sqlite3")
         values = {"state": "running", "summary": None, "attempts": attempts}
-        database.transact(lambda s: [setattr(s.get(RunRow, found["id"]), *pair) for pair in values.items()])
+        database.transact(lambda s: [setattr(s.get(RequestRow, found["id"]), *pair) for pair in values.items()])
         database.close()
 
     as_after_a_crash(1)
@@ -189,7 +189,7 @@ def test_a_run_a_crash_interrupted_begins_again_but_not_for_ever(serve: Any, tmp
 def kill_workers(live: Any, killed: set[int]) -> set[int]:
     """Kill the workers there are, but for those that were killed before; wait for some."""
     end = time.monotonic() + 60
-    while not (fresh := set(getattr(live.service.jobs._pool, "_processes", None) or {}) - killed):
+    while not (fresh := set(getattr(live.service.queue.processes._pool, "_processes", None) or {}) - killed):
         assert time.monotonic() < end
         time.sleep(0.05)
     for pid in fresh:
@@ -205,7 +205,7 @@ def test_a_run_whose_worker_dies_begins_again_but_not_for_ever(serve: Any) -> No
             until_running(live, run_id)
             killed |= kill_workers(live, killed)
         found = wait(live, run_id)
-        assert found["state"] == "aborted" and "died 3 times" in found["error"]["message"]
+        assert found["state"] == "aborted" and "died 3 times in a row" in found["error"]["message"]
         again = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step"}).json()["id"]
         assert wait(live, again)["state"] == "done"
 
@@ -242,8 +242,8 @@ def test_a_run_takes_no_more_memory_than_is_reckoned_with(tmp_path: Any) -> None
     """The largest resident size of a process of its own, trace, report and Parquet included."""
     scenario = with_values(get("ch5-seven-step"), {"samples": 150_000})
     program = (
-        "import json, re, sys; from server.runs.worker import work; "
-        "work(json.loads(sys.argv[1]), [1], sys.argv[2], 10**10); "
+        "import json, re, sys; from server.runs.worker import Keep; "
+        "Keep(sys.argv[2], 10**10)(json.loads(sys.argv[1]), 1, [[]]); "
         # not ru_maxrss, which begins with the size of the process that started this one
         "print(1024 * int(re.search(r'VmHWM:\\s+(\\d+)', open('/proc/self/status').read())[1]))"
     )

@@ -52,7 +52,7 @@ def test_two_hundred_runs_though_worker_scheduler_and_server_are_killed(tmp_path
     moments.shuffle(kills)
     with forks(tmp_path / "log") as loaded, Cluster(tmp_path) as cluster, ExitStack() as stack:
         workers = [cluster.start_worker(), cluster.start_worker()]
-        served = stack.enter_context(loaded.serve(data, scheduler=cluster.address))
+        served = stack.enter_context(loaded.serve(data, scheduler=cluster.address, figures=False))
         sweep_id = served.http.post("/api/v1/sweeps", json={"sweep": CAMPAIGN}).json()["id"]
         seen: dict[str, tuple[str, str]] = {}
         for number, victim in enumerate(kills):
@@ -76,7 +76,7 @@ def test_two_hundred_runs_though_worker_scheduler_and_server_are_killed(tmp_path
                 workers = [cluster.start_worker(), cluster.start_worker()]
             else:
                 served.kill()
-                served = stack.enter_context(loaded.serve(data, scheduler=cluster.address))
+                served = stack.enter_context(loaded.serve(data, scheduler=cluster.address, figures=False))
             for worker in workers:
                 worker.send_signal(signal.SIGCONT)
             now = rows(data)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
 from alembic import command
-from sqlalchemy import inspect, text
+from sqlalchemy import MetaData, inspect, text
 
 from server.store.database import Database, alembic_config, make_engine
-from server.store.models import Base, RecordingRow, SweepRow
+from server.store.models import Base, RecordingRow, RequestRow, ResultRow
+from tests.server.store.postgres import new_database
 
 
 def test_the_migrations_lead_to_the_models(place: Any) -> None:
@@ -58,11 +60,125 @@ def test_rows_of_the_first_version_are_carried_along(place: Any) -> None:
     database.migrate()
     found = database.transact(lambda session: session.get(RecordingRow, "a"))
     assert (found.name, found.start_tick, found.ticks, found.bytes, found.scenario) == ("old", 5, 7, 0, None)
-    assert database.transact(lambda session: session.get(SweepRow, "s").done) == 200
+    assert database.transact(lambda session: session.get(RequestRow, "s").done) == 200
     # ticks of a long recording do not fit into 32 bits
     database.transact(lambda session: setattr(session.get(RecordingRow, "a"), "ticks", 2**40))
     assert database.transact(lambda session: session.get(RecordingRow, "a").ticks) == 2**40
     database.close()
+
+
+OLD = {
+    "runs": {
+        "ended": {
+            "state": "done",
+            "label": "mine",
+            "seeds": [3, 4, 5],
+            "summary": {"digest": "d", "metrics": {"m": 1.5}},
+        },
+        "failed": {"state": "failed", "seeds": [1], "error": {"code": "invalid", "message": "no"}, "attempts": 1},
+        "begun": {"state": "running", "seeds": [1, 2], "progress": 0.4, "attempts": 2, "finished": None},
+    },
+    "sweeps": {
+        "named": {"state": "done", "label": "study", "document": {"scenario": "first-look"}, "runs": 20, "done": 20},
+        "whole": {"state": "cancelled", "document": {"scenario": {"id": "own", "samples": 5}}, "runs": 9, "done": 4},
+    },
+}
+"""Rows as the code of the sixth version wrote them, but for what all of them have."""
+
+
+def as_it_was(database: Database, tables: tuple[str, ...] = ("runs", "sweeps")) -> dict[str, list[dict[str, Any]]]:
+    """Return the rows of the tables of the sixth version."""
+    engine = make_engine(database.url)
+    metadata = MetaData()
+    metadata.reflect(engine, only=tables)
+    with engine.connect() as connection:
+        found = {
+            name: [dict(row) for row in connection.execute(metadata.tables[name].select().order_by("id")).mappings()]
+            for name in tables
+        }
+    engine.dispose()
+    return found
+
+
+def put_old_rows(database: Database) -> None:
+    """Make the tables of the sixth version with some rows."""
+    command.upgrade(alembic_config(database.url), "0006")
+    engine = make_engine(database.url)
+    metadata = MetaData()
+    metadata.reflect(engine)
+    moment = datetime(2026, 3, 4, 5, 6, 7, 89, UTC)
+    with engine.begin() as connection:
+        for name, given in (pair for rows in OLD.values() for pair in rows.items()):
+            is_run = name in OLD["runs"]
+            run = {"key": f"{name}-key", "scenario_id": "first-look", "progress": 1.0, "attempts": 0, "summary": None}
+            sweep = {"name": f"{name}-name", "version": "old"}
+            shared = {"id": name, "title": "A title", "label": "", "document": {"id": "first-look"}, "created": moment}
+            row = {**shared, "finished": moment, "error": None, **(run if is_run else sweep), **given}
+            connection.execute(metadata.tables["runs" if is_run else "sweeps"].insert(), row)
+        outcome = {"key": "k" * 64, "outcome": {"seed": 1}, "created": moment}
+        connection.execute(metadata.tables["results"].insert(), outcome)
+    engine.dispose()
+
+
+def test_runs_and_campaigns_come_into_one_table_and_lead_back(place: Any) -> None:
+    database = Database(place)
+    put_old_rows(database)
+    before = as_it_was(database)
+    database.migrate()
+    rows = database.transact(lambda session: {row.id: row for row in session.query(RequestRow)})
+    assert set(rows) == {*OLD["runs"], *OLD["sweeps"]}
+    run, begun, named, whole = (rows[name] for name in ("ended", "begun", "named", "whole"))
+    assert (run.kind, run.key, run.name, run.scenario_id) == ("run", "ended-key", "first-look", "first-look")
+    assert (run.seeds, run.runs, run.done, run.label) == ([3, 4, 5], 3, 3, "mine")
+    assert run.summary == OLD["runs"]["ended"]["summary"] and run.document == {"id": "first-look"}
+    assert run.created == run.finished == datetime(2026, 3, 4, 5, 6, 7, 89, UTC)
+    assert (begun.state, begun.attempts, begun.done, begun.finished) == ("running", 2, 0, None)
+    assert rows["failed"].error == OLD["runs"]["failed"]["error"]
+    assert (named.kind, named.name, named.scenario_id, named.version) == ("campaign", "named-name", "first-look", "old")
+    assert (named.runs, named.done, named.label, named.seeds) == (20, 20, "study", None)
+    assert (whole.scenario_id, whole.done, whole.document["scenario"]["samples"]) == ("own", 4, 5)
+    assert database.transact(lambda session: session.get(ResultRow, "k" * 64).outcome) == {"seed": 1}
+    command.downgrade(alembic_config(database.url), "0006")
+    after = as_it_was(database)
+    for row in before["runs"]:
+        row["progress"] = 1.0 if row["state"] == "done" else 0.0  # of one that did not come to its end nothing is kept
+    assert after == before
+    database.close()
+
+
+@pytest.mark.parametrize("kind", ["sqlite", "postgresql"])
+def test_a_data_folder_of_the_sixth_version_opens(
+    kind: str, request: pytest.FixtureRequest, serve: Any, tmp_path: Path
+) -> None:
+    """Runs, campaigns, names and files are there; what was under way is told of."""
+    at: dict[str, Any] = {}
+    if kind == "postgresql":
+        at = {"database_url": new_database(request.getfixturevalue("postgres_server"), "folder")}
+    database = Database(at.get("database_url", tmp_path / "combbench.sqlite3"))
+    put_old_rows(database)
+    database.close()
+    (tmp_path / "runs" / "ended").mkdir(parents=True)
+    (tmp_path / "runs" / "ended" / "run.html").write_text("<p>as it was</p>")
+    with serve(folder=tmp_path, **at) as live:
+        runs = {one["id"]: one for one in live.http.get("/api/v1/runs").json()["runs"]}
+        assert set(runs) == set(OLD["runs"])
+        done = live.http.get("/api/v1/runs/ended").json()
+        assert done == runs["ended"] and done["label"] == "mine" and done["progress"] == 1.0
+        assert done["summary"]["metrics"] == {"m": 1.5} and done["seeds"] == [3, 4, 5]
+        assert live.http.get("/api/v1/runs/ended/report").text == "<p>as it was</p>"
+        begun = live.http.get("/api/v1/runs/begun").json()
+        assert begun["state"] == "aborted" and "another version" in begun["error"]["message"]
+        sweeps = {one["id"]: one for one in live.http.get("/api/v1/sweeps").json()["sweeps"]}
+        assert {key: (one["label"], one["done"], one["runs"]) for key, one in sweeps.items()} == {
+            "named": ("study", 20, 20),
+            "whole": ("", 4, 9),
+        }
+        found = live.http.get("/api/v1/sweeps?scenario=own").json()["sweeps"]
+        assert [one["id"] for one in found] == ["whole"]
+        assert live.http.get("/api/v1/sweeps/named/points").status_code == 409  # of another version, as before
+        assert live.http.post("/api/v1/runs/remove", json={}).json() == {"removed": 3}
+        assert not (tmp_path / "runs" / "ended").exists()
+        assert len(live.http.get("/api/v1/sweeps").json()["sweeps"]) == 2
 
 
 def test_it_says_whether_it_can_be_written(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ import pytest
 
 from core.errors import InputError
 from server.store.database import Database
-from server.store.models import ResultRow, RunRow
+from server.store.models import RequestRow, ResultRow
 from server.store.results import Results
 from tests.server.runs.test_runs import wait
 from tests.server.store.postgres import ROOT, new_database
@@ -82,8 +82,8 @@ def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: 
         assert live.http.post("/api/v1/sweeps/remove", json={"ids": [sweep["id"]]}).json() == {"removed": 1}
         assert live.http.get("/api/v1/sweeps").json()["sweeps"] == []
     database = Database(address)
-    assert database.transact(lambda session: session.query(RunRow).count()) == 1
-    assert database.transact(lambda session: session.query(ResultRow).count()) == 4
+    assert database.transact(lambda session: session.query(RequestRow).count()) == 1
+    assert database.transact(lambda session: session.query(ResultRow).count()) == 5
     database.close()
 
 

@@ -3550,6 +3550,11 @@ export interface components {
              */
             errors?: string[];
             /**
+             * Warnings
+             * @default []
+             */
+            warnings?: string[];
+            /**
              * Metrics
              * @default {}
              */

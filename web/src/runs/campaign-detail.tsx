@@ -19,6 +19,7 @@ import styles from "./runs.module.css";
 
 const BUSY_MS = 2000;
 const MOST_TRENDS = 6;
+const MOST_SAID = 4;
 
 /** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
@@ -64,7 +65,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
               All runs <Downloads href={(format) => `${files}/runs?format=${format}`} formats={["csv", "parquet"]} />
             </span>
           </div>
-          <Errors points={points} />
+          <Said points={points} />
           <MultiSelect
             size="xs"
             label="Figures"
@@ -83,12 +84,14 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
   );
 }
 
-function Errors({ points }: { points: PointTally[] }) {
-  const errors = [...new Set(points.flatMap((point) => point.errors ?? []))];
-  if (errors.length === 0) return null;
+/** What runs could not do, and what they warn of, each text once. */
+function Said({ points }: { points: PointTally[] }) {
+  const errors = [...new Set(points.flatMap((point) => point.errors ?? []))].slice(0, MOST_SAID);
+  const warnings = [...new Set(points.flatMap((point) => point.warnings ?? []))].slice(0, MOST_SAID);
+  if (errors.length + warnings.length === 0) return null;
   return (
     <ul className={styles.refusal}>
-      {errors.slice(0, 4).map((text) => (
+      {[...errors, ...warnings.map((text) => `Warning: ${text}`)].map((text) => (
         <li key={text}>{text}</li>
       ))}
     </ul>

@@ -1,0 +1,64 @@
+"""What a worker process and the one that gave it work tell each other meanwhile: ticks done, and whether to stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from multiprocessing.context import SpawnContext
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+class Cancelled(Exception):
+    """The work was called off."""
+
+
+class Signs:
+    """Two numbers in shared memory for each piece of work that is given out.
+
+    Parameters
+    ----------
+    context : SpawnContext
+        That of the processes.
+    count : int
+        Most pieces at once.
+    """
+
+    def __init__(self, context: SpawnContext, count: int) -> None:
+        self.ticks: Any = context.RawArray("q", count)
+        self.stop: Any = context.RawArray("b", count)
+
+
+_received: tuple[Signs, int] | None = None
+"""In a worker: the signs, and which of them are those of the work in hand."""
+
+
+def receive(signs: Signs) -> None:
+    """Keep the signs; in a worker, when it starts."""
+    global _received
+    _received = signs, 0
+
+
+def watched(place: int, function: Callable[..., T], *arguments: object) -> T:
+    """Call a function that tells where it is; in a worker."""
+    global _received
+    assert _received is not None
+    _received = _received[0], place
+    tell(0)
+    return function(*arguments)
+
+
+def tell(ticks: int) -> None:
+    """Say how many ticks of the work are done; elsewhere than in a worker nobody listens.
+
+    Raises
+    ------
+    Cancelled
+        When the work was called off.
+    """
+    if _received is None:
+        return
+    signs, place = _received
+    signs.ticks[place] = ticks
+    if signs.stop[place]:
+        raise Cancelled

@@ -1,0 +1,116 @@
+"""A run with its seeds: a campaign of one point, the same with other controllers beside it; its summary.
+
+Whoever carries the runs out (command line, server, a point of a campaign), the summary is made here, from outcomes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from core.errors import InputError
+from scenarios.campaign.batch import outcomes
+from scenarios.campaign.outcome import Outcome, outcome_of
+from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import Sums
+from scenarios.counterpart import counterpart, replaced
+from scenarios.run import Result, summarise
+from scenarios.schema import Scenario
+
+OWN = "own"
+"""Name of the scenario among its counterparts."""
+
+
+def single(scenario: Scenario, seeds: Sequence[int]) -> Sweep:
+    """Return a run with its seeds as a campaign: its own point first, then a point for each counterpart."""
+    others = [{"name": kind, "set": replaced(scenario, kind)} for kind in counterparts(scenario)]
+    document = {"scenario": scenario.document, "seeds": f"{seeds[0]}:{seeds[-1]}"}
+    return Sweep({**document, "variants": [{"name": OWN, "set": {}}, *others]} if others else document)
+
+
+def counterparts(scenario: Scenario) -> dict[str, Scenario]:
+    """Return the counterparts that the expectations of a scenario are compared with, by the controller in use."""
+    kinds = ["open_loop"] if scenario.head.expect else []
+    kinds += ["pid"] if any(entry.compare == "pid" for entry in scenario.head.expect) else []
+    found = {}
+    for kind in kinds:
+        try:
+            other = counterpart(scenario, kind)
+        except InputError:  # the plant has none
+            continue
+        if other is not None:
+            found[kind] = other
+    return found
+
+
+def compared(scenario: Scenario, seeds: Sequence[int]) -> dict[str, list[Outcome]]:
+    """Carry out the counterparts of a scenario."""
+    others = counterparts(scenario)
+    return {kind: outcomes([(other, seed) for seed in seeds]) for kind, other in others.items()}
+
+
+def beside(result: Result) -> dict[str, Any]:
+    """Return the summary of a result, what its counterparts give beside each expectation."""
+    return summary(result.scenario, [outcome_of(result)], compared(result.scenario, [result.seed]))
+
+
+def run_seeds(scenario: Scenario, seeds: Sequence[int]) -> dict[str, Any]:
+    """Run a scenario once for each seed and return the summary."""
+    return summary(scenario, outcomes([(scenario, seed) for seed in seeds]))
+
+
+def summary(
+    scenario: Scenario, runs: Sequence[Outcome], others: Mapping[str, Sequence[Outcome]] | None = None
+) -> dict[str, Any]:
+    """Return the summary of the runs of a scenario with one seed or several.
+
+    With several, figures are means, their standard deviations (of a sample) are added, the digest is the SHA-256 over
+    the digests of the runs, and expectations are judged by the means. A figure that some runs lack is the mean over the
+    others.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario.
+    runs : sequence of Outcome
+        One for each seed, in their order.
+    others : mapping, optional
+        Runs of its counterparts, whose figures are put beside each expectation.
+
+    Raises
+    ------
+    InputError
+        If one of the runs could not be carried out.
+    """
+    for run in runs:
+        if run.error:
+            raise InputError(run.error)
+    first, digests = runs[0], [run.digest for run in runs]
+    digest = first.digest if len(runs) == 1 else hashlib.sha256("".join(digests).encode()).hexdigest()
+    told = list(dict.fromkeys(text for run in runs for text in run.warnings))
+    elapsed = sum(run.elapsed_s for run in runs)
+    spread = _spread(runs)
+    means = first.metrics if len(runs) == 1 else {name: mean for name, (mean, _) in spread.items()}
+    found = summarise(scenario, first.seed, first.ticks, elapsed, means, digest, first.stopped, told)
+    if len(runs) > 1:
+        found |= {
+            "seeds": [first.seed, runs[-1].seed],
+            "digests": digests,
+            "tripped_runs": sum(run.stopped is not None for run in runs),
+            "metrics_std": {name: std for name, (_, std) in spread.items()},
+        }
+    if others is not None:
+        figures = {kind: _spread(beside_it) for kind, beside_it in others.items()}
+        for row, entry in zip(found["expectations"], scenario.head.expect, strict=True):
+            row["open_loop"] = figures.get("open_loop", {}).get(entry.metric, (None,))[0]
+            row["pid"] = figures.get("pid", {}).get(entry.metric, (None,))[0] if entry.compare == "pid" else None
+    return found
+
+
+def _spread(runs: Sequence[Outcome]) -> dict[str, tuple[float, float]]:
+    """Return mean and standard deviation of every figure, as a campaign adds them up."""
+    sums = Sums()
+    for run in runs:
+        sums.add(run)
+    return {name: (found.mean, found.std) for name, found in sums.tally({}).metrics.items()}

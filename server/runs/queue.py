@@ -1,0 +1,248 @@
+"""The queue of all that is computed headless: runs with their seeds, and campaigns.
+
+A row says what was asked for and how it ended, the table of results what is done. What the end of the server
+interrupted goes on at the next start with what is missing, and is given up if that happens often.
+
+Everything under way is a campaign, and shares the worker processes batch by batch. Campaigns take their turn one after
+the other, single runs beside them, as many as there are processes: a run waits for the batches that a campaign has
+handed over, and for no more of it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import shutil
+from abc import ABC, abstractmethod
+from collections.abc import Awaitable, Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, ClassVar, Generic, TypeVar
+
+from sqlalchemy.exc import DBAPIError
+
+from core.errors import InputError
+from scenarios.campaign.campaign import ATTEMPTS, Campaign, Stopped
+from scenarios.campaign.executor import Processes
+from scenarios.key import code_version
+from server.errors import ApiError, body_of
+from server.metrics import Metrics
+from server.runs.listing import Kind, Requests, RunFilter, change
+from server.runs.worker import NICE, NotKept
+from server.settings import Settings
+from server.store.database import Database, reason_of
+from server.store.models import RequestRow, now
+from server.store.results import Results
+
+log = logging.getLogger(__name__)
+
+Shown = TypeVar("Shown")
+CANCEL_S = 5.0
+CALM_S = 5.0
+"""Time from the start of the server to that of idle worker processes; a first visitor comes first."""
+
+
+class Requested(ABC, Generic[Shown]):
+    """The requests of one kind: how they become campaigns, and how the interface shows them.
+
+    Parameters
+    ----------
+    queue : Queue
+        Carries them out.
+    settings : Settings
+        Limits.
+    """
+
+    kind: ClassVar[Kind]
+
+    def __init__(self, queue: Queue, settings: Settings) -> None:
+        self._queue, self._requests, self._settings = queue, queue.requests, settings
+        queue.kinds[self.kind] = self
+
+    async def check(self, row: RequestRow) -> None:
+        """Refuse what could not be checked when it was asked for."""
+
+    @abstractmethod
+    async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
+        """Return a request as a campaign."""
+
+    @abstractmethod
+    def shown(self, row: RequestRow) -> Shown:
+        """Return a request as the interface shows it, with its progress while it is under way."""
+
+    async def all(self, wanted: RunFilter) -> list[Shown]:
+        """List those that are asked for, newest first."""
+        return [self.shown(row) for row in await self._requests.all(self.kind, wanted)]
+
+    async def get(self, row_id: str) -> Shown:
+        """Return one, or refuse with 404."""
+        return self.shown(await self._requests.get(self.kind, row_id))
+
+    async def rename(self, row_id: str, label: str) -> Shown:
+        """Give one a name; an empty one takes it away."""
+        return self.shown(await self._requests.rename(self.kind, row_id, label))
+
+    async def remove(self, ids: Sequence[str] | None) -> int:
+        """Remove some that have ended, all of them if none is named, with their files; results stay."""
+        return await self._requests.remove(self.kind, ids)
+
+    async def cancel(self, row_id: str) -> Shown:
+        """End one that waits or is under way; the same can be asked for again, and goes on from there."""
+        await self._queue.cancel(self.kind, row_id)
+        return await self.get(row_id)
+
+
+class Queue:
+    """Carries requests out, each in its turn.
+
+    Parameters
+    ----------
+    database : Database
+        Where requests and results are.
+    settings : Settings
+        Limits, number of processes, folder.
+    metrics : Metrics
+        Where ended requests are counted.
+    """
+
+    def __init__(self, database: Database, settings: Settings, metrics: Metrics) -> None:
+        self._database, self._settings, self._metrics = database, settings, metrics
+        workers = max(1, settings.run_workers)
+        self.kinds: dict[str, Requested[Any]] = {}
+        self.results, self.processes = Results(database), Processes(workers, NICE)
+        self.requests = Requests(database, settings.data / "runs")
+        self._turns = {"run": asyncio.Semaphore(workers), "campaign": asyncio.Semaphore(1)}
+        self._threads = ThreadPoolExecutor(workers + 2, thread_name_prefix="combbench-campaign")  # figures are made too
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self.campaigns: dict[str, Campaign] = {}
+        self._is_closing = False
+
+    async def start(self, row: RequestRow) -> tuple[RequestRow, bool]:
+        """Queue a request, or return the same one if it exists; true when it is new. A name it is given is its name.
+
+        Raises
+        ------
+        ApiError
+            If too many wait.
+        """
+        has_room = len(self._tasks) < self._settings.max_queued_runs
+        known = await self.requests.settle(row, has_room)
+        if known is not None:
+            return known, False
+        if not has_room:
+            text = f"{len(self._tasks)} runs and campaigns wait or run, the limit (max_queued_runs)"
+            raise ApiError(429, "too_many_runs", text)
+        self._tasks[row.id] = asyncio.create_task(self._carry_out(row))
+        return row, True
+
+    async def cancel(self, kind: Kind, row_id: str) -> None:
+        """End a request that waits or is under way; a study under way goes on to its end, and its result is dropped.
+
+        What is in the table of results stays: the same request goes on from there.
+        """
+        row, task = await self.requests.get(kind, row_id), self._tasks.get(row_id)
+        if task is None:
+            raise ApiError(409, "conflict", f"the {kind} is {row.state}; it cannot be cancelled any more")
+        self._cancel(row_id, task)
+        await asyncio.wait([task], timeout=CANCEL_S)
+
+    async def warm(self, ready: Callable[[], Awaitable[None]]) -> None:
+        """Start the worker processes before somebody waits for them, once the server is ready and has calmed down."""
+        await ready()
+        await asyncio.sleep(CALM_S)
+        for _ in range(self._settings.run_workers):
+            self.processes.submit(os.getpid)
+
+    async def recover(self) -> None:
+        """Go on with what the end of the server interrupted; give up what was begun too often."""
+        for row in await self.requests.active():
+            text, has_workers = "", self._settings.run_workers or (row.kind == "campaign" and self._settings.scheduler)
+            if row.version != code_version():
+                text = "was begun by another version of the code; start it again"
+            elif row.attempts >= ATTEMPTS or not has_workers:
+                text = f"the server stopped before this {row.kind} was done, {row.attempts} times"
+            if text:
+                await self._end(row.id, "aborted", error={"code": "aborted", "message": text})
+                continue
+            log.info("%s %s goes on", row.kind, row.id)
+            self._tasks[row.id] = asyncio.create_task(self._carry_out(row))
+
+    async def close(self) -> None:
+        """End the queue and the processes; what is unfinished goes on at the next start."""
+        self._is_closing = True
+        tasks = dict(self._tasks)
+        for row_id, task in tasks.items():
+            self._cancel(row_id, task)
+        self.processes.kill()
+        await asyncio.gather(*tasks.values(), return_exceptions=True)
+        await asyncio.to_thread(self.processes.shutdown)
+        self._threads.shutdown(wait=False)
+
+    def _cancel(self, row_id: str, task: asyncio.Task[None]) -> None:
+        campaign = self.campaigns.get(row_id)
+        if campaign is not None:
+            campaign.cancel()
+        else:
+            task.cancel()
+
+    async def run(self, campaign: Campaign) -> bool:
+        """Carry a campaign out, now; return whether all of it is there."""
+        try:
+            return await asyncio.get_running_loop().run_in_executor(self._threads, campaign.run)
+        except asyncio.CancelledError:
+            campaign.cancel()
+            raise
+
+    async def _carry_out(self, row: RequestRow) -> None:
+        """Wait for the turn, then for the end; write every outcome into the table."""
+        kind = self.kinds[row.kind]
+        state = "done"
+        error: dict[str, Any] | None = None
+        campaign: Campaign | None = None
+        try:
+            await kind.check(row)
+            async with self._turns[row.kind]:
+                await self.requests.update(row.id, state="running", attempts=RequestRow.attempts + 1)
+                campaign = self.campaigns[row.id] = await kind.campaign(row, self._first_result(row.id))
+                if not await self.run(campaign):
+                    state = "cancelled"
+        except asyncio.CancelledError:
+            state = "cancelled"
+        except (InputError, ApiError) as refusal:
+            state, error = "failed", body_of(refusal).model_dump()
+        except Stopped as stopped:
+            state, error = "aborted", {"code": "aborted", "message": str(stopped)}
+        except NotKept as reason:
+            state, error = "failed", {"code": "no_space", "message": f"the disk failed: {reason}"}
+        except DBAPIError as failure:
+            text = f"the database cannot be used: {reason_of(failure)}"
+            state, error = "failed", {"code": "storage", "message": text}
+        except Exception as failure:
+            log.exception("%s %s failed", row.kind, row.id)
+            state, error = "failed", {"code": "internal", "message": str(failure)}
+        finally:
+            self._tasks.pop(row.id, None)
+            self.campaigns.pop(row.id, None)
+        if state == "cancelled":
+            await asyncio.to_thread(shutil.rmtree, self.requests.folder / row.id, ignore_errors=True)
+        if not self._is_closing or state == "done":
+            values: dict[str, Any] = {}
+            if campaign is not None and campaign.total:
+                values = {"done": campaign.done, "runs": campaign.total, "summary": campaign.kept}
+            await self._end(row.id, state, error=error, **values)
+
+    def _first_result(self, row_id: str) -> Callable[[int, int], None]:
+        """Return what notes, in the thread of a campaign, that it gets on: then further starts are no sign of harm."""
+        at_start: list[int] = []
+
+        def told(done: int, _total: int) -> None:
+            at_start.append(done)
+            if len(at_start) == 2:
+                self._database.transact(lambda session: change(session, row_id, attempts=0))
+
+        return told
+
+    async def _end(self, row_id: str, state: str, **values: Any) -> None:
+        """Note how a request ended."""
+        self._metrics.runs.labels(state).inc()
+        await self.requests.update(row_id, state=state, finished=now(), **values)
