@@ -16,6 +16,7 @@ from contextlib import AbstractContextManager, nullcontext
 from statistics import fmean
 from typing import Any, Protocol
 
+from core.lanes.numbers import WIDTH
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.cluster import Cluster, open_cluster
 from scenarios.campaign.executor import LOST, Processes
@@ -229,11 +230,12 @@ class Campaign:
                 executor.stop(future)
 
     def _batch(self, waiting: deque[Waiting], width: int) -> list[Task]:
-        """Take runs worth `BATCH_S` from the queue, fewer if some worker would otherwise get none.
+        """Take runs worth `BATCH_S` from the queue, towards its end ever fewer, so that all workers end together.
 
         Those that another campaign has put into the table meanwhile are done.
         """
-        size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, -(-len(waiting) // width))
+        share = max(-(-len(waiting) // (AHEAD * width)), WIDTH)
+        size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share)
         chosen = [waiting.popleft() for _ in range(min(size, len(waiting)))]
         for key in self._table.have([key for key, _, _ in chosen]):
             self._left.pop(key)
