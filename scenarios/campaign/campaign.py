@@ -15,7 +15,8 @@ from typing import Any, Protocol
 
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.executor import LOST, open_executor, width_of
-from scenarios.campaign.sweep import Point, Sweep
+from scenarios.campaign.points import Point
+from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version
 from scenarios.schema import Scenario
 

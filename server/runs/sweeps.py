@@ -20,14 +20,16 @@ from sqlalchemy.orm import defer
 
 from core.errors import InputError
 from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of, not_found
 from server.metrics import Metrics
-from server.runs.apart import FEW_POINTS, FEW_RUNS, Apart, contents, examine
+from server.runs.apart import FEW_POINTS, Apart, contents, examine
 from server.runs.length import check_length
 from server.runs.listing import ACTIVE, RunFilter, remove, rename
+from server.runs.surveys import Surveys
 from server.runs.worker import NICE
 from server.settings import Settings
 from server.store.database import Database, reason_of
@@ -74,7 +76,8 @@ class Sweeps:
         self._database, self._settings, self._metrics = database, settings, metrics
         self._results = Results(database)
         self._turn = asyncio.Semaphore(1)
-        self._expanding, self._reading = Apart(FEW_POINTS), Apart(FEW_RUNS)
+        self._expanding = Apart(FEW_POINTS)
+        self._surveys = Surveys(database, settings.data / "sweeps")
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._campaigns: dict[str, Campaign] = {}
         self._is_closing = False
@@ -151,7 +154,7 @@ class Sweeps:
 
     async def remove(self, sweep_ids: list[str] | None) -> int:
         """Remove campaigns that have ended, all if none is named; results stay, for campaigns share them."""
-        return await remove(self._database, SweepRow, "campaign", sweep_ids)
+        return await remove(self._database, SweepRow, "campaign", sweep_ids, self._surveys.folder)
 
     async def cancel(self, sweep_id: str) -> SweepRun:
         """Stop a campaign after the runs in hand; its results stay, and the same campaign can go on from there."""
@@ -171,13 +174,27 @@ class Sweeps:
         """Return the document that a campaign was requested with."""
         return (await self._known(sweep_id)).document
 
-    async def read(self, sweep_id: str, reader: Callable[[dict[str, Any], str], T]) -> T:
-        """Call one of the readers of `server.runs.apart` on the results so far."""
+    async def read(self, sweep_id: str, reader: Callable[[Survey], T]) -> T:
+        """Call a reader on the results so far."""
+        row = await self._readable(sweep_id)
+        return await self._surveys.read(sweep_id, row.document, *self._progress(row), reader)
+
+    async def report(self, sweep_id: str) -> str:
+        """Return the report of the results so far."""
+        row = await self._readable(sweep_id)
+        return await self._surveys.report(sweep_id, row.document, *self._progress(row))
+
+    def _progress(self, row: SweepRow) -> tuple[int, bool]:
+        """Return how many runs are done, and whether there may be more soon."""
+        campaign = self._campaigns.get(row.id)
+        return (row.done, False) if campaign is None else (campaign.done, True)
+
+    async def _readable(self, sweep_id: str) -> SweepRow:
         row = await self._known(sweep_id)
         if row.version != code_version():
             text = f"its runs are of version {row.version} of the code, this is {code_version()}"
             raise ApiError(409, "conflict", text)
-        return await self._reading.call(row.runs, reader, row.document, self._database.url)
+        return row
 
     async def recover(self) -> None:
         """Go on with the campaigns that the end of the server interrupted."""
@@ -203,7 +220,7 @@ class Sweeps:
             else:
                 task.cancel()
         self._expanding.close()
-        self._reading.close()
+        self._surveys.close()
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
 
     async def _carry_out(self, sweep_id: str, document: dict[str, Any], points: int, is_checked: bool) -> None:
@@ -226,6 +243,7 @@ class Sweeps:
                     workers=settings.run_workers,
                     scheduler=settings.scheduler,
                     niceness=NICE,
+                    on_progress=self._surveys.follow(sweep_id, document),
                 )
                 self._campaigns[sweep_id] = campaign
                 if not await asyncio.to_thread(campaign.run):
@@ -248,6 +266,8 @@ class Sweeps:
         if not self._is_closing or state == "done":
             done = {"done": campaign.done} if campaign is not None else {}
             await self._end(sweep_id, state, error, **done)
+            if campaign is not None:
+                self._surveys.write(sweep_id, document, campaign.done, False)
 
     async def _end(self, sweep_id: str, state: str, error: dict[str, Any] | None, **values: Any) -> None:
         self._metrics.runs.labels(state).inc()
