@@ -207,7 +207,8 @@ class Survey:
             points = table["point"].to_numpy()[there]
             count += np.bincount(points, minlength=len(count))
             total += np.bincount(points, values[there], len(count))
-        return np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
+        means: FloatArray = np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
+        return means
 
 
 def _files(first: int, end: int) -> IntArray:
