@@ -42,7 +42,7 @@ class Distribution(BaseModel):
     x: Extent
     y: Extent | None
     counts: list[list[int]] = Field(description="Runs in each cell: rows upward, one row for a histogram")
-    dots: list[tuple[float, float]] | None = Field(description="The runs themselves, where they are few")
+    dots: list[list[float]] | None = Field(description="The runs themselves, where they are few")
 
 
 class Profile(BaseModel):

@@ -137,16 +137,21 @@ class Moments:
         """
         there = np.isfinite(values)
         count = np.add.reduceat(there.astype(float), starts)
-        mean = np.add.reduceat(np.where(there, values, 0.0), starts) / np.maximum(count, 1.0)
-        each = np.repeat(mean, np.diff(starts, append=len(values)))
-        square = np.add.reduceat(np.where(there, values - each, 0.0) ** 2, starts)
+        runs = np.diff(starts, append=len(values))
+        low = np.minimum.reduceat(np.where(there, values, np.inf), starts)
+        high = np.maximum.reduceat(np.where(there, values, -np.inf), starts)
+        base = np.where(count > 0.0, low, 0.0)  # from it, values that are all alike are exactly that far: not at all
+        above = np.where(there, values - np.repeat(base, runs), 0.0)
+        rise = np.add.reduceat(above, starts) / np.maximum(count, 1.0)
+        square = np.add.reduceat(np.where(there, above - np.repeat(rise, runs), 0.0) ** 2, starts)
+        mean = base + rise
         total = np.maximum(self.count[at] + count, 1.0)
         step = mean - self.mean[at]
         self._square[at] += np.where(count > 0.0, square + step**2 * self.count[at] * count / total, 0.0)
-        self.mean[at] += step * count / total
+        self.mean[at] += step * (count / total)
         self.count[at] += count
-        self._low[at] = np.minimum(self._low[at], np.minimum.reduceat(np.where(there, values, np.inf), starts))
-        self._high[at] = np.maximum(self._high[at], np.maximum.reduceat(np.where(there, values, -np.inf), starts))
+        self._low[at] = np.minimum(self._low[at], low)
+        self._high[at] = np.maximum(self._high[at], high)
 
     def spread(self, at: int) -> Spread | None:
         """Return the spread at a point, none where no run had the figure."""

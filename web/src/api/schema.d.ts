@@ -2252,10 +2252,7 @@ export interface components {
              * Dots
              * @description The runs themselves, where they are few
              */
-            dots: [
-                number,
-                number
-            ][] | null;
+            dots: number[][] | null;
         };
         /**
          * DriveTone

@@ -1,8 +1,8 @@
 import { MultiSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
-import { useAnswer } from "../api/queries";
-import type { PointTally, SweepRun } from "../api/types";
+import { useAnswer, useLast } from "../api/queries";
+import type { PointQuery, PointTally, SweepRun } from "../api/types";
 import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
@@ -10,28 +10,49 @@ import { formatCount, formatNumber } from "../ui/format";
 import { metricScale, metricTitle, micro } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
+import { DistributionChart } from "./distribution-chart";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { sweepName } from "./jobs";
 import { NameField } from "./name-field";
-import { labelScale, metricsOf, numericAxes, trend, usualMetrics } from "./points";
-import { PointsTable } from "./points-table";
+import { labelScale, numericAxes, trend, usualMetrics } from "./points";
+import { type Order, PAGE, PointsTable } from "./points-table";
 import styles from "./runs.module.css";
 
 const BUSY_MS = 2000;
+/** Until the first result is there. */
+const FIRST_MS = 200;
+/** Runs from which their distribution is worth a plot. */
+const SOME_RUNS = 50;
 const MOST_TRENDS = 6;
 
 /** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
   const active = sweep.state === "queued" || sweep.state === "running";
   // the end of a campaign is worth a question: it is part of this one
-  const { value, error, since, again } = useAnswer(
-    ["sweep points", sweep.id, active],
-    () => api.sweepPoints(sweep.id),
-    () => (active ? BUSY_MS : undefined),
+  const [page, setPage] = useState(1);
+  const [order, setOrder] = useState<Order | undefined>(undefined);
+  // points of one page are sorted here; the answer stays the same
+  const [isLong, setLong] = useState(false);
+  const query: PointQuery = {
+    limit: PAGE,
+    ...(isLong && { offset: (page - 1) * PAGE, sort: order?.id, descending: order?.down }),
+  };
+  const {
+    value: answer,
+    error,
+    since,
+    again,
+  } = useAnswer(
+    ["sweep points", sweep.id, active, query],
+    () => api.sweepPoints(sweep.id, query),
+    (now) => (active ? (now?.found ? BUSY_MS : FIRST_MS) : undefined),
   );
+  const value = useLast(answer);
+  const found = value?.found ?? 0;
+  if (found > PAGE && !isLong) setLong(true);
   const [metrics, setMetrics] = useState<string[] | undefined>(undefined);
   const files = `./api/v1/sweeps/${sweep.id}`;
-  const points = (value?.points ?? []).filter((point) => (point.runs ?? 0) > 0);
+  const points = value?.points ?? [];
   const shown = metrics ?? usualMetrics(points);
 
   return (
@@ -69,13 +90,33 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
             size="xs"
             label="Figures"
             searchable
-            data={metricsOf(points).map((name) => ({ value: name, label: metricTitle(name) }))}
+            data={(value?.figures ?? []).map((name) => ({ value: name, label: metricTitle(name) }))}
             value={shown}
             onChange={setMetrics}
             maxDropdownHeight={300}
           />
-          <PointsTable points={points} metrics={shown} />
-          <Trends points={points} metrics={shown} />
+          <PointsTable
+            points={points}
+            metrics={shown}
+            found={found}
+            page={page}
+            onPage={setPage}
+            order={order}
+            onOrder={(next) => {
+              setOrder(next);
+              setPage(1);
+            }}
+          />
+          {!isLong && <Trends points={points} metrics={shown} />}
+          {(sweep.done ?? 0) >= SOME_RUNS && (
+            <DistributionChart
+              sweep={sweep}
+              quantities={value?.quantities ?? []}
+              figures={value?.figures ?? []}
+              first={shown[0]}
+              every={active ? BUSY_MS : undefined}
+            />
+          )}
           <DiagnosisCharts points={points} />
         </>
       )}
