@@ -16,6 +16,8 @@ from server.store.database import Database
 
 log = logging.getLogger(__name__)
 
+WAIT_S = 0.3
+"""How long a reader waits for the newest results of a campaign under way."""
 T = TypeVar("T")
 Document = dict[str, Any]
 
@@ -39,8 +41,8 @@ class Surveys:
         self._database = database
         self._apart = Apart(FEW_RUNS)
         self._turn = asyncio.Lock()
-        self._done: dict[str, int] = {}
-        self._ended: dict[str, int] = {}
+        self._done: dict[str, tuple[int, int]] = {}  # runs that were done, and files that were whole
+        self._ended: dict[str, tuple[int, int]] = {}
         self._under_way: set[asyncio.Task[None]] = set()
 
     def follow(self, sweep_id: str, document: Document) -> Callable[[int, int], None]:
@@ -57,9 +59,7 @@ class Surveys:
 
     def write(self, sweep_id: str, document: Document, done: int, is_active: bool) -> None:
         """Have the files of a campaign brought up to date, without waiting for it."""
-        task = asyncio.create_task(self._write(sweep_id, document, done, is_active))
-        self._under_way.add(task)
-        task.add_done_callback(self._under_way.discard)
+        self._start(sweep_id, document, done, is_active).add_done_callback(_tell)
 
     async def read(
         self, sweep_id: str, document: Document, done: int, is_active: bool, reader: Callable[[Survey], T]
@@ -73,12 +73,12 @@ class Surveys:
         is_active : bool
             Whether there may be more soon.
         """
-        await self._bring_up(sweep_id, document, done, is_active)
+        await self._ready(sweep_id, document, done, is_active)
         return await asyncio.to_thread(self._call, sweep_id, json.dumps(document), reader)
 
     async def report(self, sweep_id: str, document: Document, done: int, is_active: bool) -> str:
         """Return the report of a campaign; many curves take seconds."""
-        await self._bring_up(sweep_id, document, done, is_active)
+        await self._ready(sweep_id, document, done, is_active)
         return await self._apart.call(done, report, json.dumps(document), self.folder / sweep_id)
 
     def close(self) -> None:
@@ -90,22 +90,36 @@ class Surveys:
     def _call(self, sweep_id: str, text: str, reader: Callable[[Survey], T]) -> T:
         return reader(Survey(*campaign(text, self.folder / sweep_id)))
 
-    async def _write(self, sweep_id: str, document: Document, done: int, is_active: bool) -> None:
-        try:
-            await self._bring_up(sweep_id, document, done, is_active)
-        except Exception:
-            log.exception("the files of campaign %s could not be written", sweep_id)
+    def _start(self, sweep_id: str, document: Document, done: int, is_active: bool) -> asyncio.Task[None]:
+        task = asyncio.create_task(self._bring_up(sweep_id, document, done, is_active))
+        self._under_way.add(task)
+        task.add_done_callback(self._under_way.discard)
+        return task
+
+    async def _ready(self, sweep_id: str, document: Document, done: int, is_active: bool) -> None:
+        """Wait until the files are up to date; of a campaign under way that has some results, not for long."""
+        task = self._start(sweep_id, document, done, is_active)
+        if not (is_active and self._done.get(sweep_id, (0, 0))[0]):
+            await task
+            return
+        task.add_done_callback(_tell)
+        await asyncio.wait({task}, timeout=WAIT_S)
 
     async def _bring_up(self, sweep_id: str, document: Document, done: int, is_active: bool) -> None:
         """Write the results that the files lack; of a campaign that has ended, once."""
         known = self._done if is_active else self._ended
+        text, folder = json.dumps(document), self.folder / sweep_id
         async with self._turn:
-            if known.get(sweep_id) == done:
-                return
-            text, folder = json.dumps(document), self.folder / sweep_id
             _, parts = await asyncio.to_thread(campaign, text, folder)
             whole = await asyncio.to_thread(parts.whole)
-            if whole < len(parts):
+            if whole < len(parts) and known.get(sweep_id) != (done, whole):
                 size = done - PART * whole
                 await self._apart.call(size, keep_up, text, folder, self._database.url, to_end=not is_active)
-            known[sweep_id] = done
+                whole = await asyncio.to_thread(parts.whole)
+            known[sweep_id] = (done, whole)
+
+
+def _tell(task: asyncio.Task[None]) -> None:
+    """Log why files could not be written, where nobody waits for them."""
+    if not task.cancelled() and (error := task.exception()) is not None:
+        log.error("files of a campaign could not be written", exc_info=error)
