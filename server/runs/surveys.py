@@ -41,7 +41,7 @@ class Surveys:
         self._database = database
         self._apart = Apart(FEW_RUNS)
         self._turn = asyncio.Lock()
-        self._done: dict[str, tuple[int, int]] = {}  # runs that were done, and files that were whole
+        self._done: dict[str, tuple[int, int]] = {}  # runs that were done, and rows that the files had
         self._ended: dict[str, tuple[int, int]] = {}
         self._under_way: set[asyncio.Task[None]] = set()
 
@@ -74,12 +74,12 @@ class Surveys:
             Whether there may be more soon.
         """
         await self._ready(sweep_id, document, done, is_active)
-        return await asyncio.to_thread(self._call, sweep_id, json.dumps(document), reader)
+        return await asyncio.to_thread(self._call, sweep_id, json.dumps(document, default=str), reader)
 
     async def report(self, sweep_id: str, document: Document, done: int, is_active: bool) -> str:
         """Return the report of a campaign; many curves take seconds."""
         await self._ready(sweep_id, document, done, is_active)
-        return await self._apart.call(done, report, json.dumps(document), self.folder / sweep_id)
+        return await self._apart.call(done, report, json.dumps(document, default=str), self.folder / sweep_id)
 
     def close(self) -> None:
         """End what is under way; files that are missing are made when somebody asks."""
@@ -108,15 +108,14 @@ class Surveys:
     async def _bring_up(self, sweep_id: str, document: Document, done: int, is_active: bool) -> None:
         """Write the results that the files lack; of a campaign that has ended, once."""
         known = self._done if is_active else self._ended
-        text, folder = json.dumps(document), self.folder / sweep_id
+        text, folder = json.dumps(document, default=str), self.folder / sweep_id
         async with self._turn:
             _, parts = await asyncio.to_thread(campaign, text, folder)
             whole = await asyncio.to_thread(parts.whole)
-            if whole < len(parts) and known.get(sweep_id) != (done, whole):
+            if whole < len(parts) and known.get(sweep_id) != (done, await asyncio.to_thread(parts.rows)):
                 size = done - PART * whole
                 await self._apart.call(size, keep_up, text, folder, self._database.url, to_end=not is_active)
-                whole = await asyncio.to_thread(parts.whole)
-            known[sweep_id] = (done, whole)
+            known[sweep_id] = (done, await asyncio.to_thread(parts.rows))
 
 
 def _tell(task: asyncio.Task[None]) -> None:
