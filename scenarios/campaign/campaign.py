@@ -7,7 +7,6 @@ computed again; the next process that resumes the campaign computes the missing 
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from statistics import fmean
@@ -15,7 +14,7 @@ from typing import Any, Protocol
 
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.executor import LOST, open_executor, width_of
-from scenarios.campaign.points import Point
+from scenarios.campaign.remaining import Remaining
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version
 from scenarios.schema import Scenario
@@ -29,7 +28,6 @@ LOOK_S = 0.2
 PATIENCE = 5
 """Number of losses in a row, without a result in between, after which a campaign gives up."""
 
-Waiting = tuple[str, Point, int]
 Task = tuple[str, dict[str, Any], int]
 Found = list[tuple[str, str]]
 """Outcomes as JSON, by the key of the run."""
@@ -102,13 +100,13 @@ class Campaign:
         self._table, self._on_progress = table, on_progress
         self._workers, self._scheduler, self._niceness = workers, scheduler, niceness
         self._cost = BATCH_S
-        self._left: dict[str, Waiting] = {}
+        self._remaining: Remaining | None = None
         self._is_cancelled = self._is_abandoned = False
 
     @property
     def done(self) -> int:
         """Runs that are in the table."""
-        return self.total - len(self._left)
+        return self.total - len(self._remaining) if self._remaining is not None else 0
 
     def cancel(self) -> None:
         """Stop after the batches under way; finished runs stay."""
@@ -126,17 +124,15 @@ class Campaign:
         Stopped
             If there is no worker or no scheduler left.
         """
-        tasks = {key: (key, point, seed) for key, point, seed in self.sweep.runs()}
-        have = self._table.have(list(tasks))
-        self._left = {key: task for key, task in tasks.items() if key not in have}
-        self.total = len(tasks)  # two points may be the same run
+        remaining = self._remaining = Remaining(self.sweep, self._table.have)
+        self.total = remaining.total
         self._on_progress(self.done, self.total)
         losses = 0
-        while self._left and not self._is_cancelled:
+        while remaining and not self._is_cancelled:
             before = self.done
             try:
                 with open_executor(self._workers, self._scheduler, self._niceness) as executor:
-                    self._work(executor)
+                    self._work(executor, remaining)
             except LOST as error:
                 losses = 1 if self.done > before else losses + 1
                 if losses >= PATIENCE:
@@ -144,24 +140,24 @@ class Campaign:
                     text = f"lost {where} {losses} times in a row; {self.done} of {self.total} runs are done"
                     raise Stopped(text) from error
                 time.sleep(min(2.0**losses, 10.0) / 4)
-        return not self._left
+        return not remaining
 
-    def _work(self, executor: Executor) -> None:
+    def _work(self, executor: Executor, remaining: Remaining) -> None:
         """Keep the workers busy until no run is left, and put results into the table as they arrive."""
-        waiting = deque(self._left.values())
+        remaining.take_back()
         pending: set[Future[tuple[Found, float]]] = set()
         lost: BaseException | None = None
-        while (waiting and not self._is_cancelled) or pending:
+        while (remaining.waiting and not self._is_cancelled) or pending:
             try:
                 width = width_of(executor, self._workers)
-                while waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * width:
-                    pending.add(executor.submit(compute, self._batch(waiting, width), code_version()))
+                while remaining.waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * width:
+                    pending.add(executor.submit(compute, self._batch(remaining, width), code_version()))
             except LOST as error:
                 lost = error
             done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)
             for future in done:
                 try:
-                    self._take(*future.result())
+                    self._take(remaining, *future.result())
                 except LOST as error:
                     lost = error
             if lost is not None and not pending:
@@ -174,18 +170,18 @@ class Campaign:
                     process.kill()
                 return
 
-    def _batch(self, waiting: deque[Waiting], width: int) -> list[Task]:
+    def _batch(self, remaining: Remaining, width: int) -> list[Task]:
         """Take runs worth `BATCH_S` from the queue, fewer if some worker would otherwise get none."""
-        size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, -(-len(waiting) // width))
-        chosen = [waiting.popleft() for _ in range(min(size, len(waiting)))]
+        size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, -(-remaining.waiting // width))
+        chosen = remaining.take(size)
         points = {id(point): point for _, point, _ in chosen}
         documents = {number: point.document for number, point in points.items()}
         return [(key, documents[id(point)], seed) for key, point, seed in chosen]
 
-    def _take(self, outcomes: Found, cost_s: float) -> None:
+    def _take(self, remaining: Remaining, outcomes: Found, cost_s: float) -> None:
         """Put results into the table and update the cost of a run."""
         self._table.put(outcomes)
         self._cost = max(cost_s, 1e-6)
         for key, _ in outcomes:
-            self._left.pop(key, None)
+            remaining.finish(key)
         self._on_progress(self.done, self.total)
