@@ -20,7 +20,7 @@ FIXED = {
     "error": pa.string(),
     "elapsed_s": pa.float64(),
 }
-COUNTS = pa.list_(pa.int64())
+COUNTS = pa.list_(pa.int32())
 NAMES = pa.list_(pa.string())
 DIAGNOSIS = {"names": NAMES, "confusion": COUNTS, "delays": COUNTS, "healthy": COUNTS, "faulty": COUNTS}
 """What each diagnoser said: hypotheses; samples by truth and verdict, row by row; samples until each change of the

@@ -124,7 +124,8 @@ class Survey:
         seeds = len(self._sweep.seeds)
         files = np.unique(np.concatenate([_files(number * seeds, (number + 1) * seeds) for number in wanted.tolist()]))
         tallies = Tallies(wanted)
-        for table in self.parts.tables(numbers=files.tolist()):
+        names = ["point", "ok", "trip", "error", *self.figures, *named(self._schema, "diagnosis")]
+        for table in self.parts.tables(names if len(self._schema) else None, files.tolist()):
             tallies.add(table)
         done = [tallies.tally(place, self._sweep.points[number].labels) for place, number in enumerate(wanted.tolist())]
         return [done[place] for place in places.tolist()]

@@ -202,8 +202,8 @@ class _DiagnosisSums:
 
 def _summed(rows: pa.ListArray, length: int) -> IntArray:
     """Add up rows of one length; a row without numbers adds nothing."""
-    numbers = np.asarray(rows.flatten().to_numpy(zero_copy_only=False), np.int64)
-    return numbers.reshape(-1, length).sum(axis=0) if len(numbers) else np.zeros(length, np.int64)
+    numbers: IntArray = rows.flatten().to_numpy(zero_copy_only=False)
+    return numbers.reshape(-1, length).sum(axis=0, dtype=np.int64) if len(numbers) else np.zeros(length, np.int64)
 
 
 def receiver_operating_characteristic(healthy: FloatArray, faulty: FloatArray) -> Roc:
