@@ -144,6 +144,7 @@ BAD = [
     ("", ["--scheduler", "nope"], "no address of a scheduler"),
     ("", ["--scheduler", "carrier-pigeon://a:1"], "no address of a scheduler"),
     ("", ["--scheduler", "tcp://a:70000"], "there is no port 70000"),
+    ("", ["--scheduler", "tls://127.0.0.1:8786"], "DASK_DISTRIBUTED__COMM__TLS__CA_FILE"),
     ("nonsense = 1\n", [], "nonsense"),
     ("schema = ", [], "malformed"),
     ("x = " + "[" * 500, [], "sweep: nested too deeply, at most 50 levels"),
