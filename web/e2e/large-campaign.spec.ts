@@ -20,17 +20,17 @@ test("a campaign of many points is read page by page, and its runs as a density"
   const result = page.getByRole("region", { name: "Result" });
   await expect(result.getByText("of 2250 runs · done")).toBeVisible();
   const rows = result.getByRole("table").first().locator("tbody tr");
-  await expect(rows).toHaveCount(200);
+  await expect(rows).toHaveCount(50);
   const shown = result.getByText(/^Points/);
-  await expect(shown).toHaveText("Points 1 to 200 of 250");
+  await expect(shown).toHaveText("Points 1 to 50 of 250");
 
-  await result.getByRole("button", { name: "Page 2" }).click();
+  await result.getByRole("button", { name: "Page 5" }).click();
   await expect(shown).toHaveText("Points 201 to 250 of 250");
   await expect(rows).toHaveCount(50);
   // sorted by the server: the noisiest of all comes first, not that of the page
   const noise = result.getByRole("button", { name: /^noise/ });
   await noise.click();
-  await expect(shown).toHaveText("Points 1 to 200 of 250");
+  await expect(shown).toHaveText("Points 1 to 50 of 250");
   await noise.press("Enter");
   await expect(rows.first()).toContainText(/^0\.25/);
   await expect(result.getByRole("columnheader", { name: /^noise/ })).toHaveAttribute("aria-sort", "descending");

@@ -1,8 +1,7 @@
 import { MultiSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
-import { useAnswer, useLast } from "../api/queries";
-import type { PointQuery, PointTally, SweepRun } from "../api/types";
+import type { PointTally, SweepRun } from "../api/types";
 import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
@@ -15,12 +14,10 @@ import { ReportButton, ScriptButton } from "./file-buttons";
 import { sweepName } from "./jobs";
 import { NameField } from "./name-field";
 import { labelScale, numericAxes, trend, usualMetrics } from "./points";
-import { type Order, PAGE, PointsTable } from "./points-table";
+import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
+import { usePoints } from "./use-points";
 
-const BUSY_MS = 2000;
-/** Until the first result is there. */
-const FIRST_MS = 200;
 /** Runs from which their distribution is worth a plot. */
 const SOME_RUNS = 50;
 const MOST_TRENDS = 6;
@@ -28,32 +25,21 @@ const MOST_TRENDS = 6;
 /** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
   const active = sweep.state === "queued" || sweep.state === "running";
-  // the end of a campaign is worth a question: it is part of this one
-  const [page, setPage] = useState(1);
-  const [order, setOrder] = useState<Order | undefined>(undefined);
-  // points of one page are sorted here; the answer stays the same
-  const [isLong, setLong] = useState(false);
-  const query: PointQuery = {
-    limit: PAGE,
-    ...(isLong && { offset: (page - 1) * PAGE, sort: order?.id, descending: order?.down }),
-  };
-  const {
-    value: answer,
-    error,
-    since,
-    again,
-  } = useAnswer(
-    ["sweep points", sweep.id, active, query],
-    () => api.sweepPoints(sweep.id, query),
-    (now) => (active ? (now?.found ? BUSY_MS : FIRST_MS) : undefined),
-  );
-  const value = useLast(answer);
-  const found = value?.found ?? 0;
-  if (found > PAGE && !isLong) setLong(true);
+  const { value, error, since, again, isPage, every, ...paging } = usePoints(sweep);
   const [metrics, setMetrics] = useState<string[] | undefined>(undefined);
   const files = `./api/v1/sweeps/${sweep.id}`;
   const points = value?.points ?? [];
   const shown = metrics ?? usualMetrics(points);
+
+  const spread = (sweep.done ?? 0) >= SOME_RUNS && value && (
+    <DistributionChart
+      sweep={sweep}
+      quantities={value.quantities}
+      figures={value.figures}
+      first={shown[0]}
+      every={every}
+    />
+  );
 
   return (
     <article className={styles.result}>
@@ -95,28 +81,10 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
             onChange={setMetrics}
             maxDropdownHeight={300}
           />
-          <PointsTable
-            points={points}
-            metrics={shown}
-            found={found}
-            page={page}
-            onPage={setPage}
-            order={order}
-            onOrder={(next) => {
-              setOrder(next);
-              setPage(1);
-            }}
-          />
-          {!isLong && <Trends points={points} metrics={shown} />}
-          {(sweep.done ?? 0) >= SOME_RUNS && (
-            <DistributionChart
-              sweep={sweep}
-              quantities={value?.quantities ?? []}
-              figures={value?.figures ?? []}
-              first={shown[0]}
-              every={active ? BUSY_MS : undefined}
-            />
-          )}
+          {isPage && spread}
+          <PointsTable points={points} metrics={shown} found={value?.found ?? 0} isPage={isPage} {...paging} />
+          {!isPage && <Trends points={points} metrics={shown} />}
+          {!isPage && spread}
           <DiagnosisCharts points={points} />
         </>
       )}

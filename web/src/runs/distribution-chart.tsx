@@ -57,8 +57,8 @@ export function DistributionChart({ sweep, quantities, figures, first, every }: 
   }));
   return (
     <section className={styles.diagnosis} aria-label="Distribution of runs">
+      <h3>Distribution of runs</h3>
       <div className={styles.links}>
-        <h3>Distribution of runs</h3>
         <NativeSelect
           size="xs"
           label="Across"

@@ -4,6 +4,7 @@ import { formatNumber, formatSpread } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
 import { labelScale, labelText } from "./points";
 import styles from "./runs.module.css";
+import { type Order, PAGE } from "./use-points";
 
 interface Column {
   id: string;
@@ -12,31 +13,22 @@ interface Column {
   say(point: PointTally): string;
 }
 
-/** What a table of points is sorted by. */
-export interface Order {
-  id: string;
-  down: boolean;
-}
-
-/** Points of one page. */
-export const PAGE = 200;
-
 interface PointsTableProps {
   /** All points, or those of a page in the order asked for. */
   points: PointTally[];
   metrics: string[];
-  /** On all pages. */
+  /** Points on all pages. */
   found: number;
+  isPage: boolean;
   /** The first is 1. */
   page: number;
-  onPage(page: number): void;
+  setPage(page: number): void;
   order: Order | undefined;
-  onOrder(order: Order): void;
+  setOrder(order: Order): void;
 }
 
 /** One row for each point; a click on a heading sorts by it. */
-export function PointsTable({ points, metrics, found, page, onPage, order, onOrder }: PointsTableProps) {
-  const isWhole = found <= PAGE;
+export function PointsTable({ points, metrics, found, isPage, page, setPage, order, setOrder }: PointsTableProps) {
   const axes = [...new Set(points.flatMap((point) => Object.keys(point.labels)))];
   const columns: Column[] = [
     ...axes.map((axis): Column => {
@@ -65,7 +57,7 @@ export function PointsTable({ points, metrics, found, page, onPage, order, onOrd
   ];
   const by = columns.find((column) => column.id === order?.id);
   const rows =
-    by && isWhole ? [...points].sort((a, b) => compare(by.of(a), by.of(b)) * (order?.down ? -1 : 1)) : points;
+    by && !isPage ? [...points].sort((a, b) => compare(by.of(a), by.of(b)) * (order?.down ? -1 : 1)) : points;
   return (
     <>
       <div className={styles.wide}>
@@ -81,7 +73,7 @@ export function PointsTable({ points, metrics, found, page, onPage, order, onOrd
                   <button
                     type="button"
                     title={`Sort by ${column.id}`}
-                    onClick={() => onOrder({ id: column.id, down: order?.id === column.id && !order.down })}
+                    onClick={() => setOrder({ id: column.id, down: order?.id === column.id && !order.down })}
                   >
                     {column.title}
                     {column === by && (order?.down ? " ↓" : " ↑")}
@@ -101,7 +93,7 @@ export function PointsTable({ points, metrics, found, page, onPage, order, onOrd
           </tbody>
         </table>
       </div>
-      {!isWhole && (
+      {isPage && (
         <div className={styles.pages}>
           <p className={styles.note} role="status">
             Points {formatNumber((page - 1) * PAGE + 1, 0)} to {formatNumber(Math.min(page * PAGE, found), 0)} of{" "}
@@ -111,7 +103,7 @@ export function PointsTable({ points, metrics, found, page, onPage, order, onOrd
             size="sm"
             total={Math.ceil(found / PAGE)}
             value={page}
-            onChange={onPage}
+            onChange={setPage}
             getItemProps={(number) => ({ "aria-label": `Page ${number}` })}
             getControlProps={(control) => ({ "aria-label": `${control} page` })}
           />
