@@ -124,9 +124,8 @@ def cluster(workers: int, tls: dict[str, str] | None = None) -> Iterator[str]:
         _wait_for(address, workers)
         yield address
     finally:
-        for process in reversed(processes):
-            process.terminate()
         for process in processes:
+            process.kill()
             process.wait()
         shutil.rmtree(folder, ignore_errors=True)
 
