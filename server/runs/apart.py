@@ -80,14 +80,14 @@ class Apart:
 
 def examine(document: Document) -> tuple[int, Document]:
     """Check every point of a campaign; return the number of different runs, and the longest scenario."""
-    sweep = Sweep(document)
+    sweep = _swept(json.dumps(document, default=str))
     longest = sweep.longest(sweep.points)
     return len(set(sweep.contents)) * len(sweep.seeds), longest.document
 
 
 def contents(document: Document) -> list[str]:
     """Return the hashes of the points of a campaign."""
-    return list(Sweep(document).contents)
+    return list(_swept(json.dumps(document, default=str)).contents)
 
 
 def keep_up(document: str, folder: Path, database_url: str, *, to_end: bool) -> None:
@@ -102,9 +102,15 @@ def keep_up(document: str, folder: Path, database_url: str, *, to_end: bool) -> 
 
 @lru_cache(2)
 def campaign(document: str, folder: Path) -> tuple[Sweep, Parts]:
-    """Return a campaign and its files; the hashes of its points stay known."""
-    sweep = Sweep(json.loads(document))
+    """Return a campaign and its files; which of them are whole stays known."""
+    sweep = _swept(document)
     return sweep, Parts(sweep, folder)
+
+
+@lru_cache(2)
+def _swept(document: str) -> Sweep:
+    """Return a campaign; the hashes of its points stay known."""
+    return Sweep(json.loads(document))
 
 
 def report(document: str, folder: Path) -> str:
