@@ -167,8 +167,9 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     return board
 
 
-WORKER_BYTES, WORKING_COLUMNS = 400_000_000, 16
-"""Memory beside the trace: the process itself, a piece of the trace being written, and the columns worked on."""
+WORKER_BYTES, WORKING_COLUMNS = 460_000_000, 16
+"""Memory beside the trace: the process itself (with pandas, which pyarrow loads where it is installed), a piece of the
+trace being written, and the columns worked on."""
 
 
 def run_bytes(board: Board, samples: int, *, taps: bool = False, figures_only: bool = False) -> int:

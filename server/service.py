@@ -10,6 +10,8 @@ import secrets
 from collections.abc import AsyncIterator
 from typing import TYPE_CHECKING
 
+import pyarrow as pa
+
 from server.bench.benches import Benches
 from server.bench.engine import Engine
 from server.bench.experiment import THIS_VERSION, experiment_of
@@ -90,6 +92,8 @@ class Service:
         tasks.append(asyncio.create_task(self.keeping.run()))
         tasks.append(asyncio.create_task(self._watch_idle()))
         tasks.append(asyncio.create_task(self.queue.warm(self.kernels.compiled)))
+        # where pandas is installed, pyarrow loads it with the first array, which takes longer than a recording may wait
+        tasks.append(asyncio.create_task(asyncio.to_thread(pa.array, [0.0])))
         self.figures.start(self.kernels.compiled)
         self.is_ready = True
         try:

@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
-import pyarrow.csv
-import pyarrow.parquet as pq
 from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.campaign.campaign import Campaign, Stopped
 from scenarios.campaign.cluster import check_address
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.parts import Parts, write_runs
+from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
-from scenarios.campaign.tally import tally
-from scenarios.report.campaign import campaign_report, results_table
+from scenarios.report.campaign import surveyed_report
 from scenarios.report.html import as_toml
-from scenarios.report.traces import write_json, write_text
+from scenarios.report.traces import write_text
 from server.store.database import Database, reason_of
 from server.store.lock import lock
 from server.store.results import Results
@@ -33,6 +31,10 @@ TABLE, CAMPAIGN, REPORT, POINTS, RUNS_PARQUET, RUNS_CSV = (
     "runs.parquet",
     "runs.csv",
 )
+PARTS = "runs"
+"""Folder of the Parquet files that grow while the campaign runs."""
+MOST_LISTED, POINTS_AT_ONCE = 20_000, 500
+"""Points whose tallies are written as JSON, each up to 10 kB; the tables have more."""
 
 
 @dataclass(frozen=True)
@@ -105,14 +107,21 @@ def carry_out(
         raise InputError(f"cannot write to {folder}: {error.strerror}", "--out") from None
     database = Database(database_url or place)
     results = Results(database)
-    campaign = Campaign(sweep, results, workers=workers, scheduler=scheduler, on_progress=on_progress)
+    parts = Parts(sweep, folder / PARTS)
+
+    def follow(done: int, total: int) -> None:
+        parts.follow(done, results.outcomes)
+        on_progress(done, total)
+
+    campaign = Campaign(sweep, results, workers=workers, scheduler=scheduler, on_progress=follow)
     try:
         database.migrate()
         write_text(named, as_toml({**sweep.document, "id": sweep.head.id}))
         try:
             campaign.run()
         finally:
-            failed, warnings = write(sweep, results, folder)
+            parts.keep_up(results.outcomes, to_end=True)
+            failed, warnings = write(sweep, parts, folder)
     except DBAPIError as error:
         text = f"the database cannot be used: {reason_of(error)}"
         raise Stopped(f"{text}; {campaign.done} of {campaign.total} runs are done") from None
@@ -125,7 +134,7 @@ def carry_out(
     return Ended(campaign.done, campaign.total, failed, warnings, folder)
 
 
-def write(sweep: Sweep, results: Results, folder: Path) -> tuple[int, list[str]]:
+def write(sweep: Sweep, parts: Parts, folder: Path) -> tuple[int, list[str]]:
     """Write report and tables, each under a temporary name first.
 
     Returns
@@ -135,18 +144,25 @@ def write(sweep: Sweep, results: Results, folder: Path) -> tuple[int, list[str]]
     list of str
         What the others warn of, once each.
     """
-    keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
-    outcomes = {key: Outcome.model_validate_json(text) for key, text in results.outcomes(keys)}
-    points = tally(sweep, outcomes)
-    table = results_table(sweep, outcomes)
-    write_json(folder / POINTS, [point.model_dump() for point in points])
-    for name, put in (
-        (REPORT, lambda path: path.write_text(campaign_report(sweep, points), "utf-8")),
-        (RUNS_PARQUET, lambda path: pq.write_table(table, path, compression="zstd")),
-        (RUNS_CSV, lambda path: pyarrow.csv.write_csv(table, path)),
-    ):
+    survey = Survey(sweep, parts)
+    files: dict[str, Callable[[BinaryIO], object]] = {
+        REPORT: lambda file: file.write(surveyed_report(sweep, survey).encode()),
+        RUNS_PARQUET: lambda file: write_runs(parts, file, kind="parquet"),
+        RUNS_CSV: lambda file: write_runs(parts, file, kind="csv"),
+    }
+    if len(sweep.points) <= MOST_LISTED:
+        files[POINTS] = lambda file: write_points(survey, len(sweep.points), file)
+    for name, put in files.items():
         part = folder / f"{name}.part"
-        put(part)
+        with part.open("wb") as file:
+            put(file)
         part.rename(folder / name)
-    told = dict.fromkeys(text for outcome in outcomes.values() for text in outcome.warnings)
-    return sum(bool(outcome.error) for outcome in outcomes.values()), list(told)
+    return survey.failed(), survey.warnings()
+
+
+def write_points(survey: Survey, count: int, file: BinaryIO) -> None:
+    """Write the tallies of all points as JSON, some at a time."""
+    for first in range(0, count, POINTS_AT_ONCE):
+        for point in survey.page(range(first, min(first + POINTS_AT_ONCE, count))):
+            file.write((b",\n" if file.tell() else b"[\n") + point.model_dump_json().encode())
+    file.write(b"\n]\n")

@@ -9,7 +9,6 @@ keeps traces otherwise, it is computed for its trace even though the table has i
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, nullcontext
@@ -21,8 +20,9 @@ from scenarios.campaign.batch import outcomes
 from scenarios.campaign.cluster import Cluster, open_cluster
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.remaining import Remaining, Run
 from scenarios.campaign.signs import Cancelled, tell
-from scenarios.campaign.sweep import Point, Sweep
+from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
@@ -37,7 +37,6 @@ PATIENCE, ATTEMPTS = 5, 3
 """Losses in a row, without a result in between, after which a campaign gives up, and one that keeps a trace: where both
 share processes, the single run is the likelier cause."""
 
-Waiting = tuple[str, Point, int]
 Task = tuple[str, dict[str, Any], int]
 Found = list[tuple[str, str]]
 """Outcomes as JSON, by the key of the run."""
@@ -139,14 +138,14 @@ class Campaign:
         self._workers, self._scheduler, self._processes = workers, scheduler, processes
         self._trace = trace
         self._cost = BATCH_S
-        self._left: dict[str, Waiting] = {}
+        self._remaining: Remaining | None = None
         self._pending: tuple[Future[Any], ...] = ()
         self._is_cancelled = False
 
     @property
     def done(self) -> int:
         """Runs that are in the table."""
-        return self.total - len(self._left)
+        return self.total - len(self._remaining) if self._remaining is not None else 0
 
     @property
     def progress(self) -> float:
@@ -167,19 +166,15 @@ class Campaign:
         Stopped
             If there is no worker or no scheduler left.
         """
-        tasks = {key: (key, point, seed) for key, point, seed in self.sweep.runs()}
-        have = self._table.have(list(tasks))
-        if self._trace is not None:
-            have.discard(next(iter(tasks)))
-        self._left = {key: task for key, task in tasks.items() if key not in have}
-        self.total = len(tasks)  # two points may be the same run
+        remaining = self._remaining = Remaining(self.sweep, self._have)
+        self.total = remaining.total
         self._on_progress(self.done, self.total)
         losses = 0
-        while self._left and not self._is_cancelled:
+        while remaining and not self._is_cancelled:
             before = self.done
             try:
                 with self._open() as executor:
-                    self._work(executor)
+                    self._work(executor, remaining)
             except LOST as error:
                 losses = 1 if self.done > before else losses + 1
                 if losses >= (PATIENCE if self._trace is None else ATTEMPTS):
@@ -187,26 +182,32 @@ class Campaign:
                     text = f"{lost} {losses} times in a row; {self.done} of {self.total} runs are done"
                     raise Stopped(text) from error
                 time.sleep(min(2.0**losses, 10.0) / 4)
-        return not self._left
+        return not remaining
 
     def _open(self) -> AbstractContextManager[Processes | Cluster]:
         if self._scheduler:
             return open_cluster(self._scheduler)
         return Processes(self._workers) if self._processes is None else nullcontext(self._processes)
 
-    def _work(self, executor: Processes | Cluster) -> None:
+    def _have(self, keys: Sequence[str]) -> set[str]:
+        """Return what the table has; the run whose trace is kept is computed in any case."""
+        have = self._table.have(keys)
+        return have if self._trace is None else have - {self.sweep.key(0)}
+
+    def _work(self, executor: Processes | Cluster, remaining: Remaining) -> None:
         """Keep the workers busy until no run is left, and put results into the table as they arrive."""
-        waiting = deque(self._left.values())
-        first = waiting.popleft() if self._trace is not None else None
+        remaining.take_back()
+        first = remaining.take(1)[0] if self._trace is not None else None
         pending: set[Future[Any]] = set()
         lost: BaseException | None = None
         try:
-            while ((waiting or first) and not self._is_cancelled) or pending:
+            while ((remaining.waiting or first) and not self._is_cancelled) or pending:
                 try:
-                    while waiting and not self._is_cancelled and lost is None and len(pending) < AHEAD * executor.width:
-                        if batch := self._batch(waiting, executor.width):
+                    room = AHEAD * executor.width
+                    while remaining.waiting and not self._is_cancelled and lost is None and len(pending) < room:
+                        if batch := self._batch(remaining, executor.width):
                             pending.add(executor.submit(compute, batch, code_version()))
-                    if first and not (waiting or pending or self._is_cancelled) and lost is None:
+                    if first and not (remaining.waiting or pending or self._is_cancelled) and lost is None:
                         pending.add(self._submit_traced(executor, first))
                         first = None
                 except LOST as error:
@@ -215,7 +216,7 @@ class Campaign:
                 done, pending = wait(pending, LOOK_S, FIRST_COMPLETED)
                 for future in done:
                     try:
-                        self._take(*future.result())
+                        self._take(remaining, *future.result())
                     except LOST as error:
                         lost = error
                     except Cancelled:
@@ -229,35 +230,35 @@ class Campaign:
             for future in pending:
                 executor.stop(future)
 
-    def _batch(self, waiting: deque[Waiting], width: int) -> list[Task]:
+    def _batch(self, remaining: Remaining, width: int) -> list[Task]:
         """Take runs worth `BATCH_S` from the queue, towards its end ever fewer, so that all workers end together.
 
         Those that another campaign has put into the table meanwhile are done.
         """
-        share = max(-(-len(waiting) // (AHEAD * width)), WIDTH)
-        size = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share)
-        chosen = [waiting.popleft() for _ in range(min(size, len(waiting)))]
-        for key in self._table.have([key for key, _, _ in chosen]):
-            self._left.pop(key)
-        points = {id(point): point for key, point, _ in chosen if key in self._left}
+        share = max(-(-remaining.waiting // (AHEAD * width)), WIDTH)
+        chosen = remaining.take(min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share))
+        done = self._table.have([key for key, _, _ in chosen])
+        for key in done:
+            remaining.finish(key)
+        points = {id(point): point for key, point, _ in chosen if key not in done}
         documents = {number: point.document for number, point in points.items()}
-        return [(key, documents[id(point)], seed) for key, point, seed in chosen if key in self._left]
+        return [(key, documents[id(point)], seed) for key, point, seed in chosen if key not in done]
 
-    def _submit_traced(self, executor: Processes | Cluster, first: Waiting) -> Future[tuple[Found, float, Any]]:
+    def _submit_traced(self, executor: Processes | Cluster, first: Run) -> Future[tuple[Found, float, Any]]:
         """Hand over the run whose trace is kept, with the outcomes of the others."""
         key, point, seed = first
         assert self._trace is not None
-        keys = [one for one, _, _ in self.sweep.runs()]
+        keys = [self.sweep.key(number) for number in range(len(self.sweep))]
         texts = dict(self._table.outcomes(keys))
         count = len(self.sweep.seeds)
         others = [[texts[one] for one in keys[at : at + count] if one != key] for at in range(0, len(keys), count)]
         return executor.submit(compute_traced, self._trace, (key, point.document, seed), others, code_version())
 
-    def _take(self, outcomes: Found, cost_s: float, kept: Any = None) -> None:
+    def _take(self, remaining: Remaining, outcomes: Found, cost_s: float, kept: Any = None) -> None:
         """Put results into the table and update the cost of a run."""
         self._table.put(outcomes)
         self._cost = max(cost_s, 1e-6)
         self.kept = kept
         for key, _ in outcomes:
-            self._left.pop(key, None)
+            remaining.finish(key)
         self._on_progress(self.done, self.total)

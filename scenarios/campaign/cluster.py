@@ -87,8 +87,9 @@ def check_address(address: str) -> None:
     Raises
     ------
     InputError
-        If it is not an address.
+        If it is not an address, or if there are no certificates for one that needs them.
     """
+    from dask import config
     from distributed.comm.addressing import get_address_host_port
 
     try:
@@ -97,6 +98,9 @@ def check_address(address: str) -> None:
             raise ValueError(f"there is no port {port}")
     except ValueError as error:
         raise InputError(f"is no address of a scheduler: {error}", "--scheduler") from None
+    if address.startswith("tls://") and not config.get("distributed.comm.tls.ca-file", None):
+        text = "needs certificates: DASK_DISTRIBUTED__COMM__TLS__CA_FILE, __CLIENT__CERT and __CLIENT__KEY are not set"
+        raise InputError(text, "--scheduler", "docs/scaling.md says how they are made")
 
 
 @contextmanager

@@ -9,11 +9,13 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from core.errors import InputError
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.outcome import Outcome, outcome_of
 from scenarios.campaign.sweep import Sweep
-from scenarios.campaign.tally import Sums
+from scenarios.campaign.tally import Moments
 from scenarios.counterpart import counterpart, replaced
 from scenarios.run import Result, summarise
 from scenarios.schema import Scenario
@@ -110,7 +112,10 @@ def summary(
 
 def _spread(runs: Sequence[Outcome]) -> dict[str, tuple[float, float]]:
     """Return mean and standard deviation of every figure, as a campaign adds them up."""
-    sums = Sums()
-    for run in runs:
-        sums.add(run)
-    return {name: (found.mean, found.std) for name, found in sums.tally({}).metrics.items()}
+    found = {}
+    for name in sorted({name for run in runs for name in run.metrics}):
+        moments, start = Moments(1), np.zeros(1, np.int64)
+        moments.add(np.array([run.metrics[name] for run in runs if name in run.metrics]), start, start)
+        if (spread := moments.spread(0)) is not None:
+            found[name] = spread.mean, spread.std
+    return found

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal, Self
 
 import numpy as np
@@ -17,17 +14,17 @@ from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
 from core.nesting import read_toml
 from core.table import Table
-from scenarios.edit import with_values, written
-from scenarios.key import content_hash, run_key
+from scenarios.campaign.points import Axis, Contents, Point, Points, Rows, Step, Values
+from scenarios.edit import with_values
+from scenarios.key import run_key
 from scenarios.library import get
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from scenarios.seeds import MAX_RUNS, Seeds
 
-MAX_POINTS = 20_000
+MAX_POINTS = 100_000
 MAX_RANGES = 50
 """Values that vary at once."""
-Values = dict[str, Any]
 
 
 class Range(Table):
@@ -59,14 +56,14 @@ class LatinHypercube(Table):
     seed: int = Field(1, ge=0)
     ranges: dict[str, Range] = Field(min_length=1, max_length=MAX_RANGES)
 
-    def values(self) -> list[Values]:
-        """Return the points: each value has one point in every stratum, in an order of its own."""
+    def values(self) -> FloatArray:
+        """Return a row for each point: each value has one point in every stratum, in an order of its own."""
         generator = np.random.default_rng(self.seed)
         columns = [
             entry.at((generator.permutation(self.points) + generator.random(self.points)) / self.points)
             for entry in self.ranges.values()
         ]
-        return [dict(zip(self.ranges, row, strict=True)) for row in np.array(columns).T.tolist()]
+        return np.array(columns).T
 
 
 class ProcessSpread(Table):
@@ -80,15 +77,15 @@ class ProcessSpread(Table):
     film_gap_um: float = Field(Tolerances.film_gap_um, ge=0)
     youngs_modulus_gpa: float = Field(Tolerances.youngs_modulus_gpa, ge=0)
 
-    def values(self, base: Scenario) -> list[Values]:
+    def steps(self, base: Scenario) -> Rows:
         """Return the numbers of each drawn device."""
         geometry = base.spec.device.geometry
         if geometry is None:
             raise InputError("has no drawing to vary; choose lcr-350", "device.id")
         tolerances = Tolerances(**self.model_dump(exclude={"devices", "seed"}))
         drawn = draw(geometry, tolerances, self.devices, self.seed).drawn
-        rows = np.array(list(drawn.values())).T.tolist()
-        return [{f"device.geometry.{name}": value for name, value in zip(drawn, row, strict=True)} for row in rows]
+        paths = [f"device.geometry.{name}" for name in drawn]
+        return Rows(paths, np.array(list(drawn.values())).T, "device")
 
 
 class Variant(Table):
@@ -113,20 +110,6 @@ class Head(Table):
     process_spread: ProcessSpread | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Point:
-    """One set of values: what it is called in tables, and what it writes over a scenario."""
-
-    labels: dict[str, str | float]
-    values: Values
-    base: dict[str, Any]
-
-    @property
-    def document(self) -> dict[str, Any]:
-        """The scenario with its values; built anew at each call, because thousands of them take much memory."""
-        return written(self.base, self.values) if self.values else self.base
-
-
 class Sweep:
     """A campaign, checked except for its points.
 
@@ -136,8 +119,10 @@ class Sweep:
         The document it was read from.
     head : Head
         Its tables.
-    points : list of Point
+    points : sequence of Point
         Every combination of variant, grid, hypercube and device.
+    contents : sequence of str
+        The hash of every point.
     """
 
     def __init__(self, document: dict[str, Any]) -> None:
@@ -155,7 +140,8 @@ class Sweep:
         if count > MAX_POINTS or count * self.head.seeds.count > MAX_RUNS:
             text = f"{count} points with {self.head.seeds.count} seeds each; at most {MAX_POINTS} points"
             raise InputError(f"{text} and {MAX_RUNS} runs", "grid", code="too_long")
-        self.points = [self._point(chosen) for chosen in itertools.product(*axes)]
+        self.points = Points(axes, self.base.document)
+        self.contents: Sequence[str] = Contents(self.points)
 
     @classmethod
     def load(cls, text: str | dict[str, Any]) -> Sweep:
@@ -171,23 +157,21 @@ class Sweep:
         return sweep
 
     @staticmethod
-    def longest(points: Sequence[Point]) -> Scenario:
-        """Check some points, one millisecond each; return the longest of them.
+    def longest(points: Iterable[Point]) -> Scenario:
+        """Check some points, a third of a millisecond each; return the longest of them.
 
         Raises
         ------
         InputError
             For the first point that is not a valid scenario.
         """
-        return max(
-            (Scenario.load(point.document) for point in points),
-            key=lambda scenario: scenario.samples or DEFAULT_SAMPLES,
-        )
-
-    @cached_property
-    def contents(self) -> list[str]:
-        """The hash of every point, from which the keys of its runs are built; a tenth of a millisecond each."""
-        return [content_hash(point.document) for point in self.points]
+        longest = scenario = None
+        for point in points:
+            scenario = Scenario.load(point.document, like=scenario)
+            if longest is None or (scenario.samples or DEFAULT_SAMPLES) > (longest.samples or DEFAULT_SAMPLES):
+                longest = scenario
+        assert longest is not None
+        return longest
 
     @property
     def seeds(self) -> range:
@@ -198,19 +182,25 @@ class Sweep:
         """Return the number of runs."""
         return len(self.points) * len(self.seeds)
 
+    def key(self, number: int) -> str:
+        """Return the key of a run; the seeds of the first point come first."""
+        point, seed = divmod(number, len(self.seeds))
+        return run_key(self.contents[point], self.seeds[seed])
+
     def runs(self) -> Iterator[tuple[str, Point, int]]:
         """Yield every run: its key, point and seed."""
         for point, content in zip(self.points, self.contents, strict=True):
             for seed in self.seeds:
                 yield run_key(content, seed), point, seed
 
-    def _axes(self) -> list[list[tuple[Values, Values]]]:
+    def _axes(self) -> list[Axis]:
         """Return the axes to combine: the steps of each, with their labels and values."""
         head = self.head
-        axes: list[list[tuple[Values, Values]]] = []
+        axes: list[Axis] = []
         if head.variants:
             _distinct([variant.name for variant in head.variants], "variants", "variants of one name")
-            axes.append([({"variant": variant.name}, variant.set) for variant in head.variants])
+            steps: list[Step] = [({"variant": variant.name}, variant.set) for variant in head.variants]
+            axes.append(steps)
         for path, choices in head.grid.items():
             if not choices:
                 raise InputError("needs at least one value", f"grid.{path}")
@@ -218,13 +208,12 @@ class Sweep:
             _distinct(labels, f"grid.{path}", "points of one value")
             axes.append([({path: label}, {path: value}) for label, value in zip(labels, choices, strict=True)])
         if head.latin_hypercube is not None:
-            axes.append([(values, values) for values in head.latin_hypercube.values()])
+            axes.append(Rows([*head.latin_hypercube.ranges], head.latin_hypercube.values()))
         if head.process_spread is not None:
-            drawn = head.process_spread.values(self.base)
-            axes.append([({"device": float(number)}, values) for number, values in enumerate(drawn, 1)])
+            axes.append(head.process_spread.steps(self.base))
         return axes
 
-    def _check_paths(self, axes: list[list[tuple[Values, Values]]]) -> None:
+    def _check_paths(self, axes: list[Axis]) -> None:
         """Refuse settings that make the labels of points wrong: seeds that are not used, values written over."""
         head = self.head
         ranges = head.latin_hypercube.ranges if head.latin_hypercube is not None else {}
@@ -235,19 +224,12 @@ class Sweep:
                 raise InputError("the noise seeds of a campaign are those of [seeds]", f"{where}.seed", "set [seeds]")
         taken: set[str] = set()
         for axis in axes:
-            paths = {path for _, values in axis for path in values}
+            some = 1 if isinstance(axis, Rows) else len(axis)  # all rows set the same
+            paths = {path for number in range(some) for path in axis[number][1]}
             for path in sorted(paths & taken):
                 text = "has values in two of variants, grid, latin_hypercube and process_spread"
                 raise InputError(text, path, "give them in one")
             taken |= paths
-
-    def _point(self, chosen: tuple[tuple[Values, Values], ...]) -> Point:
-        labels: dict[str, str | float] = {}
-        values: Values = {}
-        for names, steps in chosen:
-            labels |= names
-            values |= steps
-        return Point(labels, values, self.base.document)
 
 
 FIELDS = tuple("schema" if name == "schema_" else name for name in Head.model_fields)

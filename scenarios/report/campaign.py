@@ -1,14 +1,12 @@
-"""The report of a campaign: one HTML file that needs nothing else, and a table of all runs."""
+"""The report of a campaign: one HTML file that needs nothing else."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-import pyarrow as pa
-
 from core.format import format_count, format_share, format_spread
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import DiagnosisTally, PointTally
 from scenarios.report.axis import Axis
@@ -18,6 +16,8 @@ from scenarios.report.svg import Chart, Series
 
 USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
 MOST_CURVES = 16
+MOST_POINTS = 1000
+"""Points of the table; of a campaign with more, the curves are made of slices of the axis."""
 SHARE = (0.0, 1.0)
 
 
@@ -39,7 +39,15 @@ def _label(scale: MetricScale, value: str | float) -> str:
     return value if isinstance(value, str) else say(scale.shown(value))
 
 
-def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
+def surveyed_report(sweep: Sweep, survey: Survey) -> str:
+    """Return the report of a campaign of any size: of many points, the first that have runs."""
+    order = survey.order()
+    if len(sweep.points) <= MOST_POINTS:
+        return campaign_report(sweep, survey.page(range(len(sweep.points))))
+    return campaign_report(sweep, survey.page(order[:MOST_POINTS]), survey if len(order) > MOST_POINTS else None)
+
+
+def campaign_report(sweep: Sweep, points: Sequence[PointTally], survey: Survey | None = None) -> str:
     """Return the report of a campaign as one HTML file.
 
     Parameters
@@ -48,9 +56,11 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
         The campaign.
     points : sequence of PointTally
         Its results, those that are there.
+    survey : Survey, optional
+        All results, where the points are only some of them.
     """
     head = sweep.base.head
-    done = sum(point.runs for point in points)
+    done = sum(point.runs for point in points) if survey is None else survey.runs()
     measured = {name for point in points for name in point.metrics}
     shown = [entry.metric for entry in head.expect if entry.metric in measured]
     shown += [name for name in sorted(measured) if name.endswith(USUAL) and name not in shown]
@@ -79,7 +89,8 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally]) -> str:
         ],
         errors=[f"{name_of(point.labels)}: {text}" for point in points for text in point.errors],
         warnings=[f"{name_of(point.labels)}: {text}" for point in points for text in point.warnings],
-        trends=_trends(points, axes, shown),
+        left_out=0 if survey is None else len(sweep.points) - len(points),
+        trends=_trends(points, axes, shown) if survey is None else _profiles(survey, across, up),
         diagnosers=[
             _diagnoser(name, points) for name in dict.fromkeys(name for point in points for name in point.diagnosis)
         ],
@@ -122,6 +133,23 @@ def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[s
     return charts
 
 
+def _profiles(survey: Survey, across: dict[str, MetricScale], up: dict[str, MetricScale]) -> list[Chart]:
+    """Draw every figure shown over every number that was varied, the runs of a slice together."""
+    charts = []
+    for axis in [axis for axis in across if axis in survey.quantities]:
+        for name, y in up.items():
+            found = survey.profile(axis, name)
+            x = _scale(axis, found.x)
+            line = Series(
+                "",
+                [x.shown(value) for value in found.x],
+                [y.shown(value) for value in found.mean],
+                [y.shown(value) for value in found.std],
+            )
+            charts.append(Chart(y.title, Axis(x.title), Axis("mean ± std of the runs of a slice"), [line]))
+    return charts
+
+
 def _diagnoser(name: str, points: Sequence[PointTally]) -> dict[str, Any]:
     """Return one diagnoser: curves of all points, then confusion point by point."""
     entries = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
@@ -159,20 +187,3 @@ def _delay_curve(label: str, entry: DiagnosisTally) -> Series:
         x.append(float(delay))
         y.append(sofar / total)
     return Series(label, x, y, is_stepped=True)
-
-
-def results_table(sweep: Sweep, outcomes: dict[str, Outcome]) -> pa.Table:
-    """Return one row for each run that is there: key, point, seed, digest and every figure."""
-    rows = [(key, point, outcomes[key]) for key, point, _ in sweep.runs() if key in outcomes]
-    labels = list(dict.fromkeys(name for _, point, _ in rows for name in point.labels))
-    metrics = sorted({name for _, _, outcome in rows for name in outcome.metrics})
-    columns: dict[str, list[Any]] = {"key": [key for key, _, _ in rows]}
-    for name in labels:
-        values = [point.labels.get(name) for _, point, _ in rows]
-        is_text = any(isinstance(value, str) for value in values)
-        columns[name] = [str(value) for value in values] if is_text else values
-    for name in ("seed", "digest", "ticks", "ok", "trip", "error", "elapsed_s"):
-        columns[name] = [getattr(outcome, name) for _, _, outcome in rows]
-    for name in metrics:
-        columns[name] = [outcome.metrics.get(name) for _, _, outcome in rows]
-    return pa.table(columns)

@@ -8,9 +8,9 @@ import io
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO
+from typing import Annotated, Any, BinaryIO, cast
 
 import pyarrow as pa
 from fastapi import Depends, Query
@@ -34,13 +34,20 @@ def file_name(name: str, kind: str) -> str:
 
 async def table_response(service: Service, table: pa.Table, name: str, kind: Format) -> StreamingResponse:
     """Send a table in the format asked for."""
+    return await written_response(service, lambda file: write(table, file, kind), name, kind)
+
+
+async def written_response(
+    service: Service, put: Callable[[BinaryIO], None], name: str, kind: Format
+) -> StreamingResponse:
+    """Send what is written into a file."""
     try:
         file = tempfile.TemporaryFile(prefix="combbench-")
     except FileNotFoundError as error:  # Python raises this if no temporary folder has room
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)) from error
     try:
         async with service.file_turn:
-            await asyncio.to_thread(write, table, file, kind)
+            await asyncio.to_thread(put, cast(BinaryIO, file))
         size = file.seek(0, io.SEEK_END)
         file.seek(0)
     except BaseException:

@@ -9,17 +9,21 @@ from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from core.nesting import read_toml
+from scenarios.campaign.parts import write_runs
+from scenarios.campaign.survey import Distribution, Survey
 from scenarios.campaign.tally import PointTally
 from scenarios.report.script import campaign_script
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
-from server.api.files import HTML, PYTHON, file_name, report_response, table_response
+from server.api.files import HTML, PYTHON, file_name, report_response, written_response
 from server.api.runs import Ended, FilterDep, NewLabel, Removed
 from server.errors import ApiError
-from server.runs import apart
 from server.runs.listing import clean_label
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
+
+MOST_POINTS, MOST_AT_ONCE = 1000, 20_000
+"""Points of a page, and of an answer that is not asked for by pages."""
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=StrictRoute)
 
@@ -42,6 +46,9 @@ class SweepPoints(BaseModel):
 
     sweep: SweepRun
     points: list[PointTally]
+    found: int = Field(description="Points that have runs, on all pages")
+    figures: list[str] = Field(description="Figures that a run has")
+    quantities: list[str] = Field(description="What runs can be counted over: axes that are numbers, seed, figures")
 
 
 @router.post(
@@ -91,12 +98,42 @@ async def cancel_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
     return await service.sweeps.cancel(sweep_id)
 
 
-@router.get("/{sweep_id}/points", response_model=SweepPoints)
-async def get_sweep_points(sweep_id: str, service: ServiceDep) -> Response:
+@router.get("/{sweep_id}/points")
+async def get_sweep_points(
+    sweep_id: str,
+    service: ServiceDep,
+    offset: Annotated[int, Query(ge=0, description="Points to pass over")] = 0,
+    limit: Annotated[
+        int | None, Query(ge=1, le=MOST_POINTS, description="Points at most: those that have runs. All if left out")
+    ] = None,
+    sort: Annotated[str, Query(max_length=200, description="An axis, a figure, runs, ok or tripped")] = "",
+    descending: bool = False,
+) -> SweepPoints:
     """Return figures, confusion, delays and receiver operating characteristics of the runs done so far."""
-    points = await service.sweeps.read(sweep_id, apart.points)
-    sweep = (await service.sweeps.get(sweep_id)).model_dump_json().encode()
-    return Response(b'{"sweep":%b,"points":%b}' % (sweep, points), media_type="application/json")
+
+    def read(survey: Survey) -> dict[str, Any]:
+        order = survey.order(sort, descending=descending)
+        if limit is None and not sort and survey.points > MOST_AT_ONCE:
+            text = f"this campaign has {survey.points} points, at most {MOST_AT_ONCE} are sent at once"
+            raise ApiError(422, "too_long", text, "limit", f"ask page by page, up to {MOST_POINTS} points each")
+        is_page = limit is not None or sort or offset
+        chosen = order[offset : None if limit is None else offset + limit] if is_page else range(survey.points)
+        about = {"found": len(order), "quantities": survey.quantities, "figures": survey.figures}
+        return {"points": survey.page(chosen), **about}
+
+    found = await service.sweeps.read(sweep_id, read)
+    return SweepPoints(sweep=await service.sweeps.get(sweep_id), **found)
+
+
+@router.get("/{sweep_id}/distribution")
+async def get_sweep_distribution(
+    sweep_id: str,
+    service: ServiceDep,
+    x: Annotated[str, Query(max_length=200, description="An axis that is a number, the seed, or a figure")],
+    y: Annotated[str, Query(max_length=200, description="Another one; none for a histogram")] = "",
+) -> Distribution:
+    """Count the runs done so far over one quantity or two; few runs are listed as well."""
+    return await service.sweeps.read(sweep_id, lambda survey: survey.distribution(x, y))
 
 
 @router.get(
@@ -108,16 +145,17 @@ async def get_sweep_runs(
     sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"
 ) -> Response:
     """Download one row for each run that is done: point, seed, digest and every figure."""
-    table = await service.sweeps.read(sweep_id, apart.table)
-    if not table.num_rows:
+    parts = await service.sweeps.read(sweep_id, lambda survey: survey.parts if survey.runs() else None)
+    if parts is None:
         raise ApiError(409, "conflict", "no run of this campaign is done yet")
-    return await table_response(service, table, f"{(await service.sweeps.get(sweep_id)).name}-runs", kind)
+    name = f"{(await service.sweeps.get(sweep_id)).name}-runs"
+    return await written_response(service, lambda file: write_runs(parts, file, kind=kind), name, kind)
 
 
 @router.get("/{sweep_id}/report", response_class=Response, responses={200: {"content": {HTML: {}}}})
 async def get_sweep_report(sweep_id: str, service: ServiceDep) -> Response:
     """Download the report, one HTML file that needs nothing else."""
-    text = await service.sweeps.read(sweep_id, apart.report)
+    text = await service.sweeps.report(sweep_id)
     return report_response(text, (await service.sweeps.get(sweep_id)).name)
 
 

@@ -6,26 +6,26 @@ In a thread of the server they would hold the interpreter's lock against the liv
 from __future__ import annotations
 
 import asyncio
+import json
 import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import lru_cache, partial
+from pathlib import Path
 from typing import Any, TypeVar
 
-import pyarrow as pa
-from pydantic import TypeAdapter
-
 from scenarios.campaign.executor import prepare
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.parts import Parts
+from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
-from scenarios.campaign.tally import PointTally, tally
-from scenarios.report.campaign import campaign_report, results_table
+from scenarios.report.campaign import surveyed_report
 from server.runs.worker import NICE
 from server.store.database import Database
 from server.store.results import Results
 
 FEW_POINTS, FEW_RUNS = 20, 300
-"""Campaigns up to this size are handled in this process; they do not slow the live benches."""
+"""So many points or runs are handled in this process; they do not slow the live benches."""
 IDLE_S = 60.0
 """A process without work for so long is ended; starting one takes seconds."""
 
@@ -48,8 +48,9 @@ class Apart:
         self._waiting = 0
         self._end: asyncio.TimerHandle | None = None
 
-    async def call(self, size: int, function: Callable[..., T], *arguments: object) -> T:
-        """Call a function on a campaign of ``size`` points, in a thread or in the process."""
+    async def call(self, size: int, function: Callable[..., T], *arguments: object, **named: object) -> T:
+        """Call a function on so many points or runs of a campaign, in a thread or in the process."""
+        function = partial(function, **named)
         if size <= self._few:
             return await asyncio.to_thread(function, *arguments)
         if self._end is not None:
@@ -79,38 +80,40 @@ class Apart:
 
 def examine(document: Document) -> tuple[int, Document]:
     """Check every point of a campaign; return the number of different runs, and the longest scenario."""
-    sweep = Sweep(document)
+    sweep = _swept(json.dumps(document, default=str))
     longest = sweep.longest(sweep.points)
     return len(set(sweep.contents)) * len(sweep.seeds), longest.document
 
 
 def contents(document: Document) -> list[str]:
     """Return the hashes of the points of a campaign."""
-    return Sweep(document).contents
+    return list(_swept(json.dumps(document, default=str)).contents)
 
 
-def points(document: Document, database_url: str) -> bytes:
-    """Return the results of a campaign, added up point by point, as JSON."""
-    sweep, outcomes = _read(document, database_url)
-    return TypeAdapter(list[PointTally]).dump_json(tally(sweep, outcomes))
-
-
-def table(document: Document, database_url: str) -> pa.Table:
-    """Return the results of a campaign, one row for each run."""
-    return results_table(*_read(document, database_url))
-
-
-def report(document: Document, database_url: str) -> str:
-    """Return the report of a campaign."""
-    sweep, outcomes = _read(document, database_url)
-    return campaign_report(sweep, tally(sweep, outcomes))
-
-
-def _read(document: Document, database_url: str) -> tuple[Sweep, dict[str, Outcome]]:
-    sweep = Sweep(document)
-    keys = list(dict.fromkeys(key for key, _, _ in sweep.runs()))
+def keep_up(document: str, folder: Path, database_url: str, *, to_end: bool) -> None:
+    """Write the results of a campaign that its files lack."""
+    _, parts = campaign(document, folder)
     database = Database(database_url)
     try:
-        return sweep, {key: Outcome.model_validate_json(text) for key, text in Results(database).outcomes(keys)}
+        parts.keep_up(Results(database).outcomes, to_end=to_end)
     finally:
         database.close()
+
+
+@lru_cache(2)
+def campaign(document: str, folder: Path) -> tuple[Sweep, Parts]:
+    """Return a campaign and its files; which of them are whole stays known."""
+    sweep = _swept(document)
+    return sweep, Parts(sweep, folder)
+
+
+@lru_cache(2)
+def _swept(document: str) -> Sweep:
+    """Return a campaign; the hashes of its points stay known."""
+    return Sweep(json.loads(document))
+
+
+def report(document: str, folder: Path) -> str:
+    """Return the report of a campaign."""
+    sweep, parts = campaign(document, folder)
+    return surveyed_report(sweep, Survey(sweep, parts))

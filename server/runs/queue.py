@@ -66,6 +66,9 @@ class Requested(ABC, Generic[Shown]):
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a request as a campaign."""
 
+    async def ended(self, row: RequestRow, done: int) -> None:
+        """Look after what is kept of a request that has ended, so many of its runs done."""
+
     @abstractmethod
     def shown(self, row: RequestRow) -> Shown:
         """Return a request as the interface shows it, with its progress while it is under way."""
@@ -230,6 +233,8 @@ class Queue:
             if campaign is not None and campaign.total:
                 values = {"done": campaign.done, "runs": campaign.total, "summary": campaign.kept}
             await self._end(row.id, state, error=error, **values)
+            if campaign is not None:
+                await kind.ended(row, campaign.done)
 
     def _first_result(self, row_id: str) -> Callable[[int, int], None]:
         """Return what notes, in the thread of a campaign, that it gets on: then further starts are no sign of harm."""

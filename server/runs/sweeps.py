@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from scenarios.campaign.campaign import Campaign
+from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import ApiError
-from server.runs.apart import FEW_POINTS, FEW_RUNS, Apart, contents, examine
+from server.runs.apart import FEW_POINTS, Apart, contents, examine
 from server.runs.length import check_length
 from server.runs.listing import fresh
 from server.runs.queue import Queue, Requested
+from server.runs.surveys import Surveys
 from server.settings import Settings
 from server.store.database import Database
 from server.store.models import RequestRow
@@ -61,8 +64,8 @@ class Sweeps(Requested[SweepRun]):
 
     def __init__(self, queue: Queue, settings: Settings, database: Database) -> None:
         super().__init__(queue, settings)
-        self._database = database
-        self._expanding, self._reading = Apart(FEW_POINTS), Apart(FEW_RUNS)
+        self._expanding = Apart(FEW_POINTS)
+        self._surveys = Surveys(database, settings.data / "sweeps")
 
     async def start(self, document: dict[str, Any], label: str = "") -> tuple[SweepRun, bool]:
         """Queue a campaign, or return the same one if it exists; true when it is new. A name it is given is its name.
@@ -115,24 +118,57 @@ class Sweeps(Requested[SweepRun]):
         sweep.contents = await self._expanding.call(len(sweep.points), contents, row.document)
         scheduler = self._settings.scheduler
         processes = None if scheduler else self._queue.processes
-        return Campaign(sweep, self._queue.results, scheduler=scheduler, processes=processes, on_progress=on_progress)
+        follow = self._surveys.follow(row.id, row.document)
+
+        def progress(done: int, total: int) -> None:
+            on_progress(done, total)
+            follow(done, total)
+
+        return Campaign(sweep, self._queue.results, scheduler=scheduler, processes=processes, on_progress=progress)
+
+    async def ended(self, row: RequestRow, done: int) -> None:
+        """Have the files of a campaign written to the end."""
+        self._surveys.write(row.id, row.document, done, False)
+
+    async def remove(self, ids: Sequence[str] | None) -> int:
+        """Remove some that have ended, all of them if none is named, with their files; results stay."""
+        before = {row.name for row in self._surveys.folder.glob("*")}
+        removed = await super().remove(ids)
+        there = {row.id for row in await self._requests.some(self.kind, list(before))}
+        for sweep_id in before - there:
+            await asyncio.to_thread(shutil.rmtree, self._surveys.folder / sweep_id, ignore_errors=True)
+        return removed
 
     async def document(self, sweep_id: str) -> dict[str, Any]:
         """Return the document that a campaign was requested with."""
         return (await self._requests.get(self.kind, sweep_id)).document
 
-    async def read(self, sweep_id: str, reader: Callable[[dict[str, Any], str], T]) -> T:
-        """Call one of the readers of `server.runs.apart` on the results so far."""
+    async def read(self, sweep_id: str, reader: Callable[[Survey], T]) -> T:
+        """Call a reader on the results so far."""
+        row = await self._readable(sweep_id)
+        return await self._surveys.read(sweep_id, row.document, *self._progress(row), reader)
+
+    async def report(self, sweep_id: str) -> str:
+        """Return the report of the results so far."""
+        row = await self._readable(sweep_id)
+        return await self._surveys.report(sweep_id, row.document, *self._progress(row))
+
+    def _progress(self, row: RequestRow) -> tuple[int, bool]:
+        """Return how many runs are done, and whether there may be more soon."""
+        campaign = self._queue.campaigns.get(row.id)
+        return (row.done, False) if campaign is None else (campaign.done, True)
+
+    async def _readable(self, sweep_id: str) -> RequestRow:
         row = await self._requests.get(self.kind, sweep_id)
         if row.version != code_version():
             text = f"its runs are of version {row.version} of the code, this is {code_version()}"
             raise ApiError(409, "conflict", text)
-        return await self._reading.call(row.runs, reader, row.document, self._database.url)
+        return row
 
     def close(self) -> None:
         """End the processes that check and read."""
         self._expanding.close()
-        self._reading.close()
+        self._surveys.close()
 
     async def _check_length(self, longest: Scenario) -> None:
         """Refuse a campaign whose longest run is too long."""

@@ -19,7 +19,7 @@ from server.store.recording import free_bytes
 log = logging.getLogger(__name__)
 
 EVERY_S = 3600.0
-FOLDERS = ("recordings", "runs")
+FOLDERS = ("recordings", "runs", "sweeps")
 
 
 class Keeping:

@@ -57,6 +57,10 @@ def made(folder: Path) -> dict[str, str]:
     return found
 
 
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
 def test_a_campaign_leaves_report_and_tables(sweep: Any, tmp_path: Path) -> None:
     ended = sweep("--workers", "1")
     assert ended.exit_code == 0 and "12 of 12 runs, 0 could not be carried out" in ended.stdout, ended.stderr
@@ -82,18 +86,20 @@ def test_a_campaign_leaves_report_and_tables(sweep: Any, tmp_path: Path) -> None
     (tmp_path / "mine.toml").write_text(CAMPAIGN.replace("5:7", "5:8"))
     assert "16 of 16 runs" in sweep("--resume", "--workers", "1").stdout
     assert before.items() <= made(folder).items() and len(made(folder)) == 16
+    for name in ("runs.parquet", "runs"):
+        assert sorted(pq.read_table(folder / name)["key"].to_pylist()) == sorted(made(folder))
 
 
 def test_the_results_of_another_campaign_are_left_alone(sweep: Any, tmp_path: Path) -> None:
     short = 'schema = 1\nscenario = "ch5-seven-step"\nset.samples = 50\n'
     (tmp_path / "mine.toml").write_text(short + 'id = "one"\n')
     assert sweep("--out", "here", "--workers", "1").exit_code == 0
-    before = {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()}
+    before = files(tmp_path / "here")
     (tmp_path / "mine.toml").write_text(short + 'id = "two"\n')
     refused = sweep("--out", "here", "--workers", "1", "--resume")
     assert refused.exit_code == 2 and "here holds the campaign one, not two" in refused.stderr
     assert len(refused.stderr.strip().splitlines()) == 1
-    assert {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()} == before
+    assert files(tmp_path / "here") == before
     (tmp_path / "mine.toml").write_text((tmp_path / "here" / "campaign.toml").read_text())  # it says what was run
     assert sweep("--out", "here", "--resume").exit_code == 0
 
@@ -138,6 +144,7 @@ BAD = [
     ("", ["--scheduler", "nope"], "no address of a scheduler"),
     ("", ["--scheduler", "carrier-pigeon://a:1"], "no address of a scheduler"),
     ("", ["--scheduler", "tcp://a:70000"], "there is no port 70000"),
+    ("", ["--scheduler", "tls://127.0.0.1:8786"], "DASK_DISTRIBUTED__COMM__TLS__CA_FILE"),
     ("nonsense = 1\n", [], "nonsense"),
     ("schema = ", [], "malformed"),
     ("x = " + "[" * 500, [], "sweep: nested too deeply, at most 50 levels"),

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from server.runs import apart, sweeps
+from scenarios.campaign import points
+from server.runs import sweeps
 from server.runs.apart import FEW_POINTS
 from tests.server.test_bad_input import check
 
@@ -34,10 +35,10 @@ def test_its_points_are_checked_after_it_is_accepted(live: Any) -> None:
     assert made.status_code == 202 and made.json()["runs"] == FEW_POINTS + 5
     found = ended(live, made.json()["id"])
     assert found["state"] == "done" and found["done"] == FEW_POINTS + 5
-    points = live.http.get(f"/api/v1/sweeps/{found['id']}/points").json()
-    assert points["sweep"]["id"] == found["id"]
-    assert [point["labels"]["sensor.noise_um"] for point in points["points"]] == MANY["grid"]["sensor.noise_um"]
-    assert all(point["runs"] == 1 for point in points["points"])
+    answer = live.http.get(f"/api/v1/sweeps/{found['id']}/points").json()
+    assert answer["sweep"]["id"] == found["id"]
+    assert [point["labels"]["sensor.noise_um"] for point in answer["points"]] == MANY["grid"]["sensor.noise_um"]
+    assert all(point["runs"] == 1 for point in answer["points"])
 
 
 def test_a_wrong_point_among_many_fails_the_campaign_and_says_which_field(live: Any) -> None:
@@ -65,7 +66,7 @@ def test_the_expansion_of_the_largest_campaign_is_left_to_another_process(
     monkeypatch.setattr(
         sweeps.Sweep, "longest", staticmethod(lambda points: (read.append(len(points)), longest(points))[1])
     )
-    monkeypatch.setattr(apart.Sweep, "contents", property(lambda _: pytest.fail("hashed in this process")))
+    monkeypatch.setattr(points, "content_hash", lambda _: pytest.fail("hashed in this process"))
     hypercube = {"points": 20_000, "ranges": {"sensor.noise_um": {"min": 0.01, "max": 0.2}}}
     large = {**MANY, "grid": {}, "latin_hypercube": hypercube}
     made = live.http.post("/api/v1/sweeps", json={"sweep": large})

@@ -136,7 +136,7 @@ def test_the_queue_is_bounded_and_any_run_can_be_cancelled(serve: Any) -> None:
 
 def test_a_trace_without_room_for_taps_holds_the_outputs(serve: Any) -> None:
     body = {"scenario": "ch5-seven-step", "set": {"samples": 1500}}
-    with serve(max_run_mb=401) as live:
+    with serve(max_run_mb=461) as live:
         found = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
         assert found["state"] == "done", found["error"]
         assert found["summary"]["digest"] == run(with_values(get("ch5-seven-step"), body["set"])).digest

@@ -11,6 +11,7 @@ import type {
   NewBench,
   NewLink,
   NewRun,
+  PointQuery,
   RunFilter,
   SweptSine,
   Trace,
@@ -82,7 +83,10 @@ export const api = {
     data(client.PATCH("/api/v1/sweeps/{sweep_id}", { ...sweep(id), body: { label } })),
   removeSweeps: (ids?: string[]) => data(client.POST("/api/v1/sweeps/remove", { body: { ids } })),
   cancelSweep: (id: string) => data(client.DELETE("/api/v1/sweeps/{sweep_id}", sweep(id))),
-  sweepPoints: (id: string) => data(client.GET("/api/v1/sweeps/{sweep_id}/points", sweep(id))),
+  sweepPoints: (id: string, query: PointQuery) =>
+    data(client.GET("/api/v1/sweeps/{sweep_id}/points", { params: { ...sweep(id).params, query } })),
+  sweepDistribution: (id: string, query: { x: string; y?: string }) =>
+    data(client.GET("/api/v1/sweeps/{sweep_id}/distribution", { params: { ...sweep(id).params, query } })),
   scenario: (scenario_id: string) =>
     data(client.GET("/api/v1/scenarios/{scenario_id}", { params: { path: { scenario_id } } })),
   trace: (bench_id: string, signals: string, start_tick: number, end_tick: number, columns: number) =>

@@ -74,4 +74,13 @@ export function useAsked<T>(question: Question, ask: () => Promise<T>): Asked<T>
   return { answer: data ?? last, refusal: refusal(error), waiting: isFetching };
 }
 
+/** The last answer, while the one to another question of the same kind is under way. */
+export function useLast<T>(value: T | undefined): T | undefined {
+  const [last, keep] = useState(value);
+  useEffect(() => {
+    if (value !== undefined) keep(value);
+  }, [value]);
+  return value ?? last;
+}
+
 const refusal = (error: Error | null): ApiError | undefined => (error instanceof ApiError ? error : undefined);

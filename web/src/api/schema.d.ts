@@ -1145,6 +1145,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sweeps/{sweep_id}/distribution": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sweep Distribution
+         * @description Count the runs done so far over one quantity or two; few runs are listed as well.
+         */
+        get: operations["get_sweep_distribution_api_v1_sweeps__sweep_id__distribution_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sweeps/{sweep_id}/runs": {
         parameters: {
             query?: never;
@@ -2212,6 +2232,29 @@ export interface components {
             digest: string;
         };
         /**
+         * Distribution
+         * @description How the runs of a campaign are spread over one quantity, or over two.
+         */
+        Distribution: {
+            /**
+             * Runs
+             * @description Runs that have the quantities
+             */
+            runs: number;
+            x: components["schemas"]["Extent"];
+            y: components["schemas"]["Extent"] | null;
+            /**
+             * Counts
+             * @description Runs in each cell: rows upward, one row for a histogram
+             */
+            counts: number[][];
+            /**
+             * Dots
+             * @description The runs themselves, where they are few
+             */
+            dots: number[][] | null;
+        };
+        /**
          * DriveTone
          * @description One tone of a drive.
          */
@@ -2461,6 +2504,20 @@ export interface components {
             running: boolean;
             /** Time Scale */
             time_scale: number | null;
+        };
+        /**
+         * Extent
+         * @description The range of an axis that is cut into equal cells.
+         */
+        Extent: {
+            /** Name */
+            name: string;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
+            /** Cells */
+            cells: number;
         };
         /**
          * Extremes
@@ -4373,6 +4430,21 @@ export interface components {
             sweep: components["schemas"]["SweepRun"];
             /** Points */
             points: components["schemas"]["PointTally"][];
+            /**
+             * Found
+             * @description Points that have runs, on all pages
+             */
+            found: number;
+            /**
+             * Figures
+             * @description Figures that a run has
+             */
+            figures: string[];
+            /**
+             * Quantities
+             * @description What runs can be counted over: axes that are numbers, seed, figures
+             */
+            quantities: string[];
         };
         /**
          * SweepRun
@@ -7314,7 +7386,15 @@ export interface operations {
     };
     get_sweep_points_api_v1_sweeps__sweep_id__points_get: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Points to pass over */
+                offset?: number;
+                /** @description Points at most: those that have runs. All if left out */
+                limit?: number | null;
+                /** @description An axis, a figure, runs, ok or tripped */
+                sort?: string;
+                descending?: boolean;
+            };
             header?: never;
             path: {
                 sweep_id: string;
@@ -7330,6 +7410,42 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SweepPoints"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sweep_distribution_api_v1_sweeps__sweep_id__distribution_get: {
+        parameters: {
+            query: {
+                /** @description An axis that is a number, the seed, or a figure */
+                x: string;
+                /** @description Another one; none for a histogram */
+                y?: string;
+            };
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Distribution"];
                 };
             };
             /** @description Refused or failed */

@@ -19,6 +19,7 @@ export type Device = Schemas["DeviceCard"];
 export type DeviceCatalogue = Schemas["Devices"];
 export type Equation = Schemas["EquationCard"];
 export type Evaluation = Schemas["Evaluation"];
+export type Distribution = Schemas["Distribution"];
 export type DiagnosisTally = Schemas["DiagnosisTally"];
 export type FaultProfile = Schemas["Profile"];
 export type Gallery = Schemas["Gallery"];
@@ -38,6 +39,10 @@ export type NewLink = Schemas["NewLink"];
 export type NewRun = Schemas["NewRun"];
 export type Parameter = Schemas["ParameterCard"];
 export type ParameterSet = Schemas["ParameterSet"];
+/** Which points of a campaign are wanted, and in which order. */
+export type PointQuery = NonNullable<
+  operations["get_sweep_points_api_v1_sweeps__sweep_id__points_get"]["parameters"]["query"]
+>;
 export type PointTally = Schemas["PointTally"];
 export type PositiveReal = Schemas["PositiveRealReport"];
 export type ProcessSpread = Schemas["ProcessSpread"];

@@ -1,7 +1,6 @@
 import { MultiSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
-import { useAnswer } from "../api/queries";
 import type { PointTally, SweepRun } from "../api/types";
 import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
@@ -10,30 +9,38 @@ import { formatCount, formatNumber } from "../ui/format";
 import { metricScale, metricTitle, micro } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
+import { DistributionChart } from "./distribution-chart";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { sweepName } from "./jobs";
 import { NameField } from "./name-field";
-import { labelScale, metricsOf, numericAxes, trend, usualMetrics } from "./points";
+import { labelScale, numericAxes, trend, usualMetrics } from "./points";
 import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
+import { usePoints } from "./use-points";
 
-const BUSY_MS = 2000;
+/** Runs from which their distribution is worth a plot. */
+const SOME_RUNS = 50;
 const MOST_TRENDS = 6;
 const MOST_SAID = 4;
 
 /** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
   const active = sweep.state === "queued" || sweep.state === "running";
-  // the end of a campaign is worth a question: it is part of this one
-  const { value, error, since, again } = useAnswer(
-    ["sweep points", sweep.id, active],
-    () => api.sweepPoints(sweep.id),
-    () => (active ? BUSY_MS : undefined),
-  );
+  const { value, error, since, again, isPage, every, ...paging } = usePoints(sweep);
   const [metrics, setMetrics] = useState<string[] | undefined>(undefined);
   const files = `./api/v1/sweeps/${sweep.id}`;
-  const points = (value?.points ?? []).filter((point) => (point.runs ?? 0) > 0);
+  const points = value?.points ?? [];
   const shown = metrics ?? usualMetrics(points);
+
+  const spread = (sweep.done ?? 0) >= SOME_RUNS && value && (
+    <DistributionChart
+      sweep={sweep}
+      quantities={value.quantities}
+      figures={value.figures}
+      first={shown[0]}
+      every={every}
+    />
+  );
 
   return (
     <article className={styles.result}>
@@ -70,13 +77,15 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
             size="xs"
             label="Figures"
             searchable
-            data={metricsOf(points).map((name) => ({ value: name, label: metricTitle(name) }))}
+            data={(value?.figures ?? []).map((name) => ({ value: name, label: metricTitle(name) }))}
             value={shown}
             onChange={setMetrics}
             maxDropdownHeight={300}
           />
-          <PointsTable points={points} metrics={shown} />
-          <Trends points={points} metrics={shown} />
+          {isPage && spread}
+          <PointsTable points={points} metrics={shown} found={value?.found ?? 0} isPage={isPage} {...paging} />
+          {!isPage && <Trends points={points} metrics={shown} />}
+          {!isPage && spread}
           <DiagnosisCharts points={points} />
         </>
       )}

@@ -1,9 +1,10 @@
-import { useState } from "react";
+import { Pagination } from "@mantine/core";
 import type { PointTally } from "../api/types";
-import { formatCount, formatNumber, formatSpread } from "../ui/format";
+import { formatNumber, formatSpread } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
 import { labelScale, labelText } from "./points";
 import styles from "./runs.module.css";
+import { type Order, PAGE } from "./use-points";
 
 interface Column {
   id: string;
@@ -12,11 +13,22 @@ interface Column {
   say(point: PointTally): string;
 }
 
-const SHOWN = 200;
+interface PointsTableProps {
+  /** All points, or those of a page in the order asked for. */
+  points: PointTally[];
+  metrics: string[];
+  /** Points on all pages. */
+  found: number;
+  isPage: boolean;
+  /** The first is 1. */
+  page: number;
+  setPage(page: number): void;
+  order: Order | undefined;
+  setOrder(order: Order): void;
+}
 
 /** One row for each point; a click on a heading sorts by it. */
-export function PointsTable({ points, metrics }: { points: PointTally[]; metrics: string[] }) {
-  const [order, setOrder] = useState<{ id: string; down: boolean } | undefined>(undefined);
+export function PointsTable({ points, metrics, found, isPage, page, setPage, order, setOrder }: PointsTableProps) {
   const axes = [...new Set(points.flatMap((point) => Object.keys(point.labels)))];
   const columns: Column[] = [
     ...axes.map((axis): Column => {
@@ -44,46 +56,60 @@ export function PointsTable({ points, metrics }: { points: PointTally[]; metrics
     }),
   ];
   const by = columns.find((column) => column.id === order?.id);
-  const rows = by ? [...points].sort((a, b) => compare(by.of(a), by.of(b)) * (order?.down ? -1 : 1)) : points;
+  const rows =
+    by && !isPage ? [...points].sort((a, b) => compare(by.of(a), by.of(b)) * (order?.down ? -1 : 1)) : points;
   return (
-    <div className={styles.wide}>
-      <table className={styles.table}>
-        <thead>
-          <tr>
-            {columns.map((column) => (
-              <th
-                key={column.id}
-                scope="col"
-                aria-sort={column === by ? (order?.down ? "descending" : "ascending") : undefined}
-              >
-                <button
-                  type="button"
-                  title={`Sort by ${column.id}`}
-                  onClick={() => setOrder({ id: column.id, down: order?.id === column.id && !order.down })}
-                >
-                  {column.title}
-                  {column === by && (order?.down ? " ↓" : " ↑")}
-                </button>
-              </th>
-            ))}
-          </tr>
-        </thead>
-        <tbody>
-          {rows.slice(0, SHOWN).map((point) => (
-            <tr key={JSON.stringify(point.labels)}>
+    <>
+      <div className={styles.wide}>
+        <table className={styles.table}>
+          <thead>
+            <tr>
               {columns.map((column) => (
-                <td key={column.id}>{column.say(point)}</td>
+                <th
+                  key={column.id}
+                  scope="col"
+                  aria-sort={column === by ? (order?.down ? "descending" : "ascending") : undefined}
+                >
+                  <button
+                    type="button"
+                    title={`Sort by ${column.id}`}
+                    onClick={() => setOrder({ id: column.id, down: order?.id === column.id && !order.down })}
+                  >
+                    {column.title}
+                    {column === by && (order?.down ? " ↓" : " ↑")}
+                  </button>
+                </th>
               ))}
             </tr>
-          ))}
-        </tbody>
-      </table>
-      {rows.length > SHOWN && (
-        <p className={styles.note}>
-          The first {SHOWN} of {formatCount(rows.length, "point")}; the downloads hold all.
-        </p>
+          </thead>
+          <tbody>
+            {rows.map((point) => (
+              <tr key={JSON.stringify(point.labels)}>
+                {columns.map((column) => (
+                  <td key={column.id}>{column.say(point)}</td>
+                ))}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+      {isPage && (
+        <div className={styles.pages}>
+          <p className={styles.note} role="status">
+            Points {formatNumber((page - 1) * PAGE + 1, 0)} to {formatNumber(Math.min(page * PAGE, found), 0)} of{" "}
+            {formatNumber(found, 0)}
+          </p>
+          <Pagination
+            size="sm"
+            total={Math.ceil(found / PAGE)}
+            value={page}
+            onChange={setPage}
+            getItemProps={(number) => ({ "aria-label": `Page ${number}` })}
+            getControlProps={(control) => ({ "aria-label": `${control} page` })}
+          />
+        </div>
       )}
-    </div>
+    </>
   );
 }
 

@@ -125,7 +125,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
             label="Devices drawn from the process"
             description="0: the scenario's own. Needs a device with a drawing, such as lcr-350."
             min={0}
-            max={20000}
+            max={100_000}
             value={draft.devices}
             onChange={(n) => set({ devices: Number(n) || 0 })}
           />
@@ -211,7 +211,7 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
           allowDecimal={false}
           label="Points"
           min={1}
-          max={20000}
+          max={100_000}
           value={draft.points}
           onChange={(n) => set({ points: Math.max(1, Number(n) || 1) })}
         />

@@ -1,0 +1,111 @@
+"""Results of a campaign as columns: a row for each run, in the order of points and seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import pyarrow as pa
+
+from scenarios.campaign.outcome import Diagnosis, Outcome
+from scenarios.campaign.sweep import Sweep
+
+FIXED = {
+    "seed": pa.int64(),
+    "key": pa.string(),
+    "digest": pa.string(),
+    "ticks": pa.int64(),
+    "ok": pa.bool_(),
+    "trip": pa.string(),
+    "error": pa.string(),
+    "warnings": pa.string(),
+    "elapsed_s": pa.float64(),
+}
+COUNTS = pa.list_(pa.int32())
+NAMES = pa.list_(pa.string())
+DIAGNOSIS = {"names": NAMES, "confusion": COUNTS, "delays": COUNTS, "healthy": COUNTS, "faulty": COUNTS}
+"""What each diagnoser said: hypotheses; samples by truth and verdict, row by row; samples until each change of the
+truth was found, null for one that never was; samples by evidence (`scenarios.campaign.outcome.EVIDENCE`)."""
+ABOUT = b"combbench"
+"""What a column holds, beside its name: an axis, a figure, or what a diagnoser said."""
+
+Row = tuple[int, str, Outcome]
+"""The number of a run, its key, and what came out."""
+
+
+def columns(sweep: Sweep, rows: Iterable[Row]) -> pa.Table:
+    """Return runs that are there as a table.
+
+    Columns are the number of the point, every axis by its path, what is `FIXED` (a warning a line), every figure, and
+    for each diagnoser `DIAGNOSIS`; a cell is null where a run has no such figure.
+    """
+    rows = list(rows)
+    seeds = len(sweep.seeds)
+    numbers = [number // seeds for number, _, _ in rows]
+    points = {number: sweep.points[number].labels for number in set(numbers)}
+    outcomes = [outcome for _, _, outcome in rows]
+    found: dict[str, tuple[str, pa.Array]] = {"point": ("", pa.array(numbers, pa.int32()))}
+    for name, kind in axes(sweep).items():
+        values = [points[number].get(name) for number in numbers]
+        found[name] = ("axis", pa.array([_cell(value, kind) for value in values], kind))
+    special = {"key": [key for _, key, _ in rows], "warnings": ["\n".join(one.warnings) for one in outcomes]}
+    for name, kind in FIXED.items():
+        cells = special[name] if name in special else [getattr(outcome, name) for outcome in outcomes]
+        found[name] = ("", pa.array(cells, kind))
+    for name in sorted({name for outcome in outcomes for name in outcome.metrics}):
+        found[name] = ("figure", pa.array([outcome.metrics.get(name) for outcome in outcomes], pa.float64()))
+    for name in sorted({name for outcome in outcomes for name in outcome.diagnosis}):
+        said = [outcome.diagnosis.get(name) for outcome in outcomes]
+        for part, kind in DIAGNOSIS.items():
+            found[f"diagnosis.{name}.{part}"] = ("diagnosis", pa.array([_part(one, part) for one in said], kind))
+    schema = pa.schema([pa.field(name, array.type, metadata={ABOUT: about}) for name, (about, array) in found.items()])
+    return pa.table([array for _, array in found.values()], schema=schema)
+
+
+def axes(sweep: Sweep) -> dict[str, pa.DataType]:
+    """Return what the points of a campaign are labelled with: numbers, or texts where one of them is a text."""
+    return {name: pa.string() if is_text else pa.float64() for name, is_text in sweep.points.axes().items()}
+
+
+def _cell(value: str | float | None, kind: pa.DataType) -> str | float | None:
+    return value if value is None else str(value) if pa.types.is_string(kind) else float(value)
+
+
+def _part(said: Diagnosis | None, part: str) -> Any:
+    if said is None:
+        return None
+    value = getattr(said, part)
+    return [count for row in value for count in row] if part == "confusion" else value
+
+
+def diagnosers(schema: pa.Schema) -> list[str]:
+    """Return the diagnosers that said something."""
+    return list(dict.fromkeys(name.split(".", 1)[1].rsplit(".", 1)[0] for name in named(schema, "diagnosis")))
+
+
+def about(field: pa.Field) -> str:
+    """Return what a column holds."""
+    return str((field.metadata or {}).get(ABOUT, b""), "utf-8")
+
+
+def named(schema: pa.Schema, what: str) -> list[str]:
+    """Return the columns that hold axes, figures, or what diagnosers said."""
+    return [field.name for field in schema if about(field) == what]
+
+
+def union(schemas: Sequence[pa.Schema]) -> pa.Schema:
+    """Return one schema with the columns of all, in the usual order."""
+    order = {"": 0, "axis": 1, "figure": 3, "diagnosis": 4}
+    fields = {field.name: field for schema in schemas for field in schema}
+    fixed = ["point", *named(schemas[0], "axis"), *FIXED]
+    rest = sorted(fields.keys() - set(fixed), key=lambda name: (order[about(fields[name])], name))
+    return pa.schema([fields[name] for name in (*fixed, *rest)])
+
+
+def fitted(table: pa.Table, schema: pa.Schema) -> pa.Table:
+    """Return a table with the columns of a schema, null where it has none."""
+    have = set(table.column_names)
+    return pa.table(
+        [table[field.name] if field.name in have else pa.nulls(table.num_rows, field.type) for field in schema],
+        schema=schema,
+    )

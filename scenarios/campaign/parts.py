@@ -1,0 +1,179 @@
+"""Results of a campaign as Parquet files that others read in place: each file some thousand runs, in order.
+
+The table of results is the truth. A file is written once all its runs are in the table, or with those that are there
+when somebody looks; one that is missing or incomplete is made anew from the table. All files of a campaign have the
+same columns, so that a folder of them is one table.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import BinaryIO, Literal
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from pyarrow.csv import CSVWriter
+
+from scenarios.campaign.columns import ABOUT, Row, about, columns, fitted, union
+from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sweep import Sweep
+from scenarios.key import content_hash, run_key
+
+PART = 5000
+"""Runs of a file."""
+AT_ONCE = 500
+"""Outcomes that are read together: each takes 10 kB of memory before it is a row."""
+Read = Callable[[list[str]], Iterable[tuple[str, str]]]
+"""Reads outcomes, JSON texts, from the table of results by their keys."""
+
+
+class Parts:
+    """The files of a campaign.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        The campaign.
+    folder : Path
+        Where the files are; made when there is something to write.
+    """
+
+    def __init__(self, sweep: Sweep, folder: Path) -> None:
+        self._sweep, self._folder = sweep, folder
+        self._mark = run_key(content_hash({"sweep": sweep.document})).encode()
+        self._complete: set[int] = set()
+        self._is_cleared = False
+        self._followed = 0
+
+    def __len__(self) -> int:
+        """Return how many files all runs make."""
+        return -(-len(self._sweep) // PART)
+
+    def path(self, number: int) -> Path:
+        """Return the name of a file."""
+        return self._folder / f"part-{number:05d}.parquet"
+
+    def paths(self) -> list[Path]:
+        """Return the files that are there, in order."""
+        return [path for path in map(self.path, range(len(self))) if path.exists()]
+
+    def whole(self) -> int:
+        """Return how many files have all their runs."""
+        return sum(self._rows(number) == self._whole(number) for number in range(len(self)))
+
+    def rows(self) -> int:
+        """Return how many runs the files have."""
+        return sum(self._rows(number) for number in range(len(self)))
+
+    def schema(self) -> pa.Schema | None:
+        """Return the columns, the same in all files."""
+        return next((pq.read_schema(path) for path in self.paths()), None)
+
+    def tables(self, names: list[str] | None = None, numbers: Iterable[int] | None = None) -> Iterator[pa.Table]:
+        """Read some columns of the files, or of those with such numbers, one file after the other."""
+        schema = self.schema()
+        for path in self.paths() if numbers is None else map(self.path, numbers):
+            if path.exists():
+                yield pq.read_table(path, columns=names, schema=schema, partitioning=None)
+
+    def follow(self, done: int, read: Read) -> None:
+        """Write what has become complete, as soon as so many runs have been done since that there may be a file."""
+        if done - self._followed >= PART:
+            self.keep_up(read)
+            self._followed = done
+
+    def keep_up(self, read: Read, *, to_end: bool = False) -> int:
+        """Write the files that have become more complete; return how many runs the files have.
+
+        Runs are made in order: without ``to_end`` nothing is looked for behind the first runs that are missing.
+        """
+        self._clear()
+        for number in range(len(self)):
+            had, whole = self._rows(number), self._whole(number)
+            if had == whole:
+                continue
+            table = self._made(number, read, to_end)
+            rows = 0 if table is None else table.num_rows
+            if table is not None and rows > had:
+                self._write(number, table)
+            if not rows and not to_end:
+                break
+        return self.rows()
+
+    def _whole(self, number: int) -> int:
+        return min(PART, len(self._sweep) - number * PART)
+
+    def _rows(self, number: int) -> int:
+        if number in self._complete and self.path(number).exists():
+            return self._whole(number)
+        rows = self._rows_in(self.path(number))
+        if rows == self._whole(number):
+            self._complete.add(number)
+        return rows
+
+    def _rows_in(self, path: Path) -> int:
+        """Return how many runs of this campaign a file has: none if somebody else wrote it, or if it is not there."""
+        try:
+            metadata = pq.read_metadata(path)
+        except (FileNotFoundError, pa.ArrowInvalid):
+            return 0
+        return metadata.num_rows if (metadata.metadata or {}).get(ABOUT) == self._mark else 0
+
+    def _clear(self) -> None:
+        """Remove the files of what the campaign was before it was changed, once."""
+        if not self._is_cleared:
+            for path in self._folder.glob("part-*.parquet"):
+                if not self._rows_in(path):
+                    path.unlink()
+            self._is_cleared = True
+
+    def _made(self, number: int, read: Read, to_end: bool) -> pa.Table | None:
+        """Return the runs of a file that are in the table of results."""
+        tables = []
+        for first in range(number * PART, number * PART + self._whole(number), AT_ONCE):
+            last = min(first + AT_ONCE, number * PART + self._whole(number))
+            keys = [self._sweep.key(run) for run in range(first, last)]
+            texts = dict(read(list(dict.fromkeys(keys))))
+            rows: list[Row] = [
+                (run, key, Outcome.model_validate_json(texts[key]))
+                for run, key in zip(range(first, last), keys, strict=True)
+                if key in texts
+            ]
+            if rows:
+                tables.append(columns(self._sweep, rows))
+            elif not to_end:
+                break
+        if not tables:
+            return None
+        schema = union([table.schema for table in tables])
+        return pa.concat_tables(fitted(table, schema) for table in tables)
+
+    def _write(self, number: int, table: pa.Table) -> None:
+        """Write a file; when it brings columns that the others lack, they are written anew."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        known = self.schema()
+        schema = (table.schema if known is None else union([known, table.schema])).with_metadata({ABOUT: self._mark})
+        if known is not None and len(schema) > len(known):
+            for path in self.paths():
+                _put(path, fitted(pq.read_table(path, partitioning=None), schema))
+        _put(self.path(number), fitted(table, schema))
+
+
+def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"]) -> None:
+    """Write a row for each run that is there, file after file, without what the diagnosers said sample by sample."""
+    schema = parts.schema() or pa.schema([])
+    names = [name for name in schema.names if about(schema.field(name)) != "diagnosis" and name != "key"]
+    names = ["key", *names] if "key" in schema.names else names
+    chosen = pa.schema([schema.field(name).remove_metadata() for name in names])
+    with pq.ParquetWriter(file, chosen, compression="zstd") if kind == "parquet" else CSVWriter(file, chosen) as writer:
+        for table in parts.tables(names):
+            writer.write_table(table.select(names).replace_schema_metadata().cast(chosen))
+
+
+def _put(path: Path, table: pa.Table) -> None:
+    """Write a file under a name that no reader of the folder takes for one of its own, then rename it."""
+    temporary = path.with_name(f".{path.name}.part")
+    pq.write_table(table, temporary, compression="zstd")
+    os.replace(temporary, path)

@@ -1,0 +1,140 @@
+"""Points of a campaign: every combination of its axes, each made when it is asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol, overload
+
+from core.block import FloatArray
+from scenarios.edit import written
+from scenarios.key import content_hash
+
+Values = dict[str, Any]
+Labels = dict[str, str | float]
+Step = tuple[Labels, Values]
+"""One step of an axis: what it is called in tables, and what it writes over a scenario."""
+
+
+class Axis(Protocol):
+    """Steps to combine with those of other axes."""
+
+    def __len__(self) -> int:
+        """Return the number of steps."""
+
+    def __getitem__(self, at: int, /) -> Step:
+        """Return a step."""
+
+
+class Rows:
+    """An axis whose steps are rows of an array: a step as a dictionary takes hundreds of bytes.
+
+    Parameters
+    ----------
+    paths : sequence of str
+        What the columns set.
+    rows : ndarray
+        The values, a row for each step.
+    number : str
+        What the number of a row is called, which names the step then; without it its values do.
+    """
+
+    def __init__(self, paths: Sequence[str], rows: FloatArray, number: str = "") -> None:
+        self._paths, self._rows, self._number = tuple(paths), rows, number
+
+    def __len__(self) -> int:
+        """Return the number of steps."""
+        return len(self._rows)
+
+    def __getitem__(self, at: int) -> Step:
+        """Return a step."""
+        values = dict(zip(self._paths, self._rows[at].tolist(), strict=True))
+        return ({self._number: float(at + 1)} if self._number else {**values}), values
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One set of values: what it is called in tables, and what it writes over a scenario."""
+
+    labels: Labels
+    values: Values
+    base: dict[str, Any]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The scenario with its values; built anew at each call, because thousands of them take much memory."""
+        return written(self.base, self.values) if self.values else self.base
+
+
+class Points(Sequence[Point]):
+    """Every combination of the steps of some axes; the last axis changes fastest.
+
+    Parameters
+    ----------
+    axes : list of Axis
+        What varies.
+    base : dict
+        The scenario that the points differ from.
+    """
+
+    def __init__(self, axes: list[Axis], base: dict[str, Any]) -> None:
+        self._axes, self._base = axes, base
+        self._count = math.prod(len(axis) for axis in axes)
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return self._count
+
+    @overload
+    def __getitem__(self, at: int) -> Point: ...
+    @overload
+    def __getitem__(self, at: slice) -> list[Point]: ...
+    def __getitem__(self, at: int | slice) -> Point | list[Point]:
+        """Return a point, or some."""
+        if isinstance(at, slice):
+            return [self[number] for number in range(*at.indices(self._count))]
+        if not 0 <= at < self._count:
+            raise IndexError(at)
+        steps = []
+        for axis in reversed(self._axes):
+            at, step = divmod(at, len(axis))
+            steps.append(axis[step])
+        labels: Labels = {}
+        values: Values = {}
+        for names, written_over in reversed(steps):
+            labels |= names
+            values |= written_over
+        return Point(labels, values, self._base)
+
+    def axes(self) -> dict[str, bool]:
+        """Return the names of labels, in their order, and whether one of the values is a text."""
+        found: dict[str, bool] = {}
+        for axis in self._axes:
+            for number in range(1 if isinstance(axis, Rows) else len(axis)):  # the rows of an array are numbers
+                for name, value in axis[number][0].items():
+                    found[name] = found.get(name, False) or isinstance(value, str)
+        return found
+
+
+class Contents(Sequence[str]):
+    """The hashes of points, from which the keys of their runs are built; each worked out once, in 0.1 ms."""
+
+    def __init__(self, points: Points) -> None:
+        self._points, self._known = points, [""] * len(points)
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self._known)
+
+    @overload
+    def __getitem__(self, at: int) -> str: ...
+    @overload
+    def __getitem__(self, at: slice) -> list[str]: ...
+    def __getitem__(self, at: int | slice) -> str | list[str]:
+        """Return a hash, or some."""
+        if isinstance(at, slice):
+            return [self[number] for number in range(*at.indices(len(self)))]
+        if not self._known[at]:
+            self._known[at] = content_hash(self._points[at].document)
+        return self._known[at]

@@ -1,0 +1,120 @@
+import { NativeSelect } from "@mantine/core";
+import { useCallback, useMemo, useState } from "react";
+import { api } from "../api/api";
+import { useAnswer, useLast } from "../api/queries";
+import type { SweepRun } from "../api/types";
+import { Painted } from "../picture/painted";
+import type { Box, Look, Pen } from "../picture/pen";
+import { fileStem } from "../picture/picture";
+import { PictureMenu } from "../picture/picture-menu";
+import { formatCount } from "../ui/format";
+import { metricScale } from "../ui/metric-name";
+import { Stale } from "../ui/stale";
+import { useScheme } from "../ui/use-canvas";
+import { cellText, extentText, mostIn, paintDistribution, rampColour, type Shown } from "./paint-distribution";
+import { labelScale } from "./points";
+import styles from "./runs.module.css";
+
+interface DistributionChartProps {
+  sweep: SweepRun;
+  /** What runs can be counted over. */
+  quantities: readonly string[];
+  figures: readonly string[];
+  /** The figure to begin with. */
+  first: string | undefined;
+  /** Asked again after so long, ms. */
+  every: number | undefined;
+}
+
+/** How runs are spread over one quantity or two: a histogram, dots of few runs, a density of many. */
+export function DistributionChart({ sweep, quantities, figures, first, every }: DistributionChartProps) {
+  const varied = quantities.find((name) => name !== "seed" && !figures.includes(name));
+  const figure = first ?? figures[0] ?? "seed";
+  const [across, setAcross] = useState<string | undefined>(undefined);
+  const [up, setUp] = useState<string | undefined>(undefined);
+  const x = across ?? varied ?? figure;
+  const y = up ?? (varied ? figure : "");
+  const {
+    value: answer,
+    error,
+    since,
+    again,
+  } = useAnswer(
+    ["sweep distribution", sweep.id, sweep.state, x, y],
+    () => api.sweepDistribution(sweep.id, { x, y: y || undefined }),
+    () => every,
+  );
+  const value = useLast(answer);
+  const shown = useMemo((): Shown | undefined => {
+    if (!value) return undefined;
+    const scale = (extent: typeof value.x) =>
+      (figures.includes(extent.name) ? metricScale : labelScale)(extent.name, [extent.low, extent.high]);
+    return { found: value, x: scale(value.x), y: value.y ? scale(value.y) : undefined };
+  }, [value, figures]);
+  const names = quantities.map((name) => ({
+    value: name,
+    label: figures.includes(name) ? metricScale(name, []).title : labelScale(name, []).title,
+  }));
+  return (
+    <section className={styles.diagnosis} aria-label="Distribution of runs">
+      <h3>Distribution of runs</h3>
+      <div className={styles.links}>
+        <NativeSelect
+          size="xs"
+          label="Across"
+          value={x}
+          data={names}
+          onChange={(e) => setAcross(e.currentTarget.value)}
+        />
+        <NativeSelect
+          size="xs"
+          label="Up"
+          value={y}
+          data={[{ value: "", label: "number of runs" }, ...names]}
+          onChange={(e) => setUp(e.currentTarget.value)}
+        />
+      </div>
+      <Stale error={error} since={since} onRetry={again} />
+      {shown && <Chart shown={shown} />}
+    </section>
+  );
+}
+
+function Chart({ shown }: { shown: Shown }) {
+  const { found, x, y } = shown;
+  const [read, setRead] = useState<string | undefined>(undefined);
+  const paint = useCallback((pen: Pen, box: Box, look: Look) => paintDistribution(pen, box, shown, look), [shown]);
+  const kind = !y ? "Histogram" : found.dots ? "Runs" : "Density of runs";
+  const title = y ? `${kind}: ${y.name} over ${x.name}` : `${kind} of ${x.name}`;
+  return (
+    <figure className={styles.distribution}>
+      <figcaption>
+        {title}
+        <output>{read}</output>
+        <PictureMenu name={title} take={() => ({ title, stem: fileStem(title), height: 480, paint })} />
+      </figcaption>
+      <div className={styles.field}>
+        <Painted
+          label={`${title}; ${formatCount(found.runs, "run")}, ${extentText(shown)}`}
+          paint={paint}
+          onPoint={(at, plot) => setRead(at && cellText(shown, plot, at))}
+        />
+      </div>
+      {y && !found.dots && <Scale most={mostIn(found)} />}
+      <p className={styles.note}>{formatCount(found.runs, "run")}. Point at the plot to read it.</p>
+    </figure>
+  );
+}
+
+/** What each colour means. */
+function Scale({ most }: { most: number }) {
+  const scheme = useScheme();
+  const colours = [0, 0.25, 0.5, 0.75, 1].map((share) => rampColour(share, scheme));
+  return (
+    <p className={styles.scale}>
+      <span>runs in a cell: 1</span>
+      <span className={styles.ramp} style={{ background: `linear-gradient(to right, ${colours.join(", ")})` }} />
+      <span>{most} (logarithmic)</span>
+    </p>
+  );
+}
