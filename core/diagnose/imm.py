@@ -143,7 +143,8 @@ class Imm(KalmanBank):
                 least = min(least, s.nis[i])
             total = 0.0
             for i in range(whole(n)):
-                s.density[i] = exp(0.5 * (least - s.nis[i])) / math.sqrt(s.covariance[i])
+                exponent = min(0.5 * (least - s.nis[i]), 0.0)  # positive behind the models alone
+                s.density[i] = exp(exponent) / math.sqrt(s.covariance[i])
             for i in range(n):
                 share = s.weight[i] * s.density[i]
                 s.weight[i] = share

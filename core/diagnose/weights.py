@@ -69,6 +69,8 @@ def take_floored_softmax(
         floored = floor > 0.0 and share == floor
         logs[i] = log_floor if floored else likelihood[i] - shift
         probability[i] = share * inverse
+    for i in range(n, whole(n)):  # they would grow beyond all bounds
+        logs[i] = 0.0
 
 
 @inlined
