@@ -33,11 +33,11 @@ class Rows:
     Parameters
     ----------
     paths : sequence of str
-        What the columns set.
+        The fields of the scenario that the columns set.
     rows : ndarray
         The values, a row for each step.
     number : str
-        What the number of a row is called, which names the step then; without it its values do.
+        Name under which tables show the number of a row; empty: they show its values.
     """
 
     def __init__(self, paths: Sequence[str], rows: FloatArray, number: str = "") -> None:

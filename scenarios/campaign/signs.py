@@ -1,4 +1,4 @@
-"""What a worker process and the one that gave it work tell each other meanwhile: ticks done, and whether to stop."""
+"""Shared memory between a worker and the process that gave it work: the worker counts ticks, the other says stop."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class Jobs(Requested[Run]):
 
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a run as a campaign; it is carried out on this machine."""
-        folder = self._requests.folder / row.id
+        folder = self._requests.folders[self.kind] / row.id
         await asyncio.to_thread(shutil.rmtree, folder, ignore_errors=True)
         return Campaign(
             await asyncio.to_thread(lambda: single(Scenario.load(row.document), row.seeds or [])),
@@ -78,12 +78,12 @@ class Jobs(Requested[Run]):
     async def traces(self, run_ids: list[str]) -> tuple[list[Run], list[Path]]:
         """Return runs, and where their traces are if they have any."""
         runs = [await self.get(run_id) for run_id in run_ids]
-        return runs, [(self._requests.folder / run.id / STEM).with_suffix(".parquet") for run in runs]
+        return runs, [(self._requests.folders[self.kind] / run.id / STEM).with_suffix(".parquet") for run in runs]
 
     async def file(self, run_id: str, ending: str) -> tuple[Run, Path]:
         """Return a run that is done, and one of its files."""
         run = await self.get(run_id)
-        path = (self._requests.folder / run.id / STEM).with_suffix(ending)
+        path = (self._requests.folders[self.kind] / run.id / STEM).with_suffix(ending)
         if run.state != "done" or not path.is_file():
             raise not_found(f"{ending[1:]} file of run", run_id, "a run has its files once it is done")
         return run, path

@@ -86,12 +86,13 @@ class Requests:
     ----------
     database : Database
         Where it is.
-    folder : Path
-        Where each run has a folder of its own.
+    data : Path
+        The data folder, in which each run and each campaign has a folder of its own.
     """
 
-    def __init__(self, database: Database, folder: Path) -> None:
-        self._database, self.folder = database, folder
+    def __init__(self, database: Database, data: Path) -> None:
+        self._database = database
+        self.folders: dict[Kind, Path] = {"run": data / "runs", "campaign": data / "sweeps"}
 
     async def settle(self, row: RequestRow, has_room: bool) -> RequestRow | None:
         """Return the same request if it waits, is under way or done, named anew; otherwise put it there if it may."""
@@ -155,7 +156,7 @@ class Requests:
             if rows[row_id] in ACTIVE:
                 raise ApiError(409, "conflict", f"the {kind} {row_id} is {rows[row_id]}; cancel it first", "ids")
         for row_id in dict.fromkeys(ids):
-            await asyncio.to_thread(shutil.rmtree, self.folder / row_id, ignore_errors=True)
+            await asyncio.to_thread(shutil.rmtree, self.folders[kind] / row_id, ignore_errors=True)
             statement: Delete = delete(RequestRow).where(RequestRow.id == row_id, RequestRow.state.not_in(ACTIVE))
             await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
         return len(set(ids))

@@ -113,7 +113,7 @@ class Queue:
         workers = max(1, settings.run_workers)
         self.kinds: dict[str, Requested[Any]] = {}
         self.results, self.processes = Results(database), Processes(workers, NICE)
-        self.requests = Requests(database, settings.data / "runs")
+        self.requests = Requests(database, settings.data)
         self._turns = {"run": asyncio.Semaphore(workers), "campaign": asyncio.Semaphore(1)}
         self._threads = ThreadPoolExecutor(workers + 2, thread_name_prefix="combbench-campaign")  # figures are made too
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -226,8 +226,8 @@ class Queue:
         finally:
             self._tasks.pop(row.id, None)
             self.campaigns.pop(row.id, None)
-        if state == "cancelled":
-            await asyncio.to_thread(shutil.rmtree, self.requests.folder / row.id, ignore_errors=True)
+        if state == "cancelled":  # files of a campaign hold what is done, those of a run are not whole
+            await asyncio.to_thread(shutil.rmtree, self.requests.folders["run"] / row.id, ignore_errors=True)
         if not self._is_closing or state == "done":
             values: dict[str, Any] = {}
             if campaign is not None and campaign.total:

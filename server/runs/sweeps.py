@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from datetime import datetime
 from typing import Any, TypeVar
 
@@ -65,7 +64,7 @@ class Sweeps(Requested[SweepRun]):
     def __init__(self, queue: Queue, settings: Settings, database: Database) -> None:
         super().__init__(queue, settings)
         self._expanding = Apart(FEW_POINTS)
-        self._surveys = Surveys(database, settings.data / "sweeps")
+        self._surveys = Surveys(database, self._requests.folders[self.kind])
 
     async def start(self, document: dict[str, Any], label: str = "") -> tuple[SweepRun, bool]:
         """Queue a campaign, or return the same one if it exists; true when it is new. A name it is given is its name.
@@ -129,15 +128,6 @@ class Sweeps(Requested[SweepRun]):
     async def ended(self, row: RequestRow, done: int) -> None:
         """Have the files of a campaign written to the end."""
         self._surveys.write(row.id, row.document, done, False)
-
-    async def remove(self, ids: Sequence[str] | None) -> int:
-        """Remove some that have ended, all of them if none is named, with their files; results stay."""
-        before = {row.name for row in self._surveys.folder.glob("*")}
-        removed = await super().remove(ids)
-        there = {row.id for row in await self._requests.some(self.kind, list(before))}
-        for sweep_id in before - there:
-            await asyncio.to_thread(shutil.rmtree, self._surveys.folder / sweep_id, ignore_errors=True)
-        return removed
 
     async def document(self, sweep_id: str) -> dict[str, Any]:
         """Return the document that a campaign was requested with."""

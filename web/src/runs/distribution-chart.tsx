@@ -3,6 +3,7 @@ import { useCallback, useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAnswer, useLast } from "../api/queries";
 import type { SweepRun } from "../api/types";
+import chart from "../picture/line-chart.module.css";
 import { Painted } from "../picture/painted";
 import type { Box, Look, Pen } from "../picture/pen";
 import { fileStem } from "../picture/picture";
@@ -87,7 +88,7 @@ function Chart({ shown }: { shown: Shown }) {
   const kind = !y ? "Histogram" : found.dots ? "Runs" : "Density of runs";
   const title = y ? `${kind}: ${y.name} over ${x.name}` : `${kind} of ${x.name}`;
   return (
-    <figure className={styles.distribution}>
+    <figure className={chart.chart}>
       <figcaption>
         {title}
         <output>{read}</output>
