@@ -22,24 +22,31 @@ COPY web/package.json web/package-lock.json web/.npmrc web/
 RUN scripts/npm --prefix web ci
 COPY web web
 COPY scenarios/report/palette.json scenarios/report/metric_names.json scenarios/report/
-RUN scripts/npm --prefix web run build
+RUN scripts/npm --prefix web run build && .venv/bin/python scripts/audit.py page sbom
 
 # ---- the service
 FROM packages AS service
+ARG SSL_CERT_FILE
+ARG PIP_CERT
 COPY core core
 COPY scenarios scenarios
 COPY server server
 ENV COMBBENCH_KERNEL_CACHE=/app/kernels
+# What lists and checks the packages stands beside them, so that it is not in the list.
+RUN .venv/bin/uv venv --quiet /audit \
+ && .venv/bin/uv pip install --quiet --python /audit/bin/python -c requirements.lock cyclonedx-bom pip-audit
 RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
  && .venv/bin/python -m compileall -q core scenarios server .venv/lib \
  && .venv/bin/python -m scenarios.kernels && chmod -R a+rX kernels \
- && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools
+ && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools \
+ && /audit/bin/python scripts/audit.py python sbom --python .venv/bin/python
 
 # ---- what runs
 FROM ${BASE}
 WORKDIR /app
 COPY --from=service /app /app
 COPY --from=page /app/web/dist web/dist
+COPY --from=page /app/sbom sbom
 RUN install -d -m 700 -o 10001 -g 10001 /data
 ENV PATH=/app/.venv/bin:$PATH \
     PYTHONDONTWRITEBYTECODE=1 \

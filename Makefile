@@ -16,11 +16,14 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run setup first-kernels test check fix dev bench load soak page-speed image codegen digests lock clean help
+.PHONY: run classroom setup first-kernels test check fix dev bench load class-load soak page-speed image audit codegen digests lock clean help
 
 run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels
 	@.venv/bin/combbench serve $(ARGS) || [ $$? -eq 130 ]
+
+classroom: override ARGS += --classroom
+classroom: run  ## The same for a class: students on this network join by a code
 
 setup: $(PYTHON_STAMP)  ## Set everything up, serve nothing
 	@$(MAKE) --no-print-directory -j2 $(PAGE) $(KERNEL_STAMP)
@@ -44,14 +47,21 @@ bench: $(PYTHON_STAMP)  ## Measure speed, each figure as a ratio to a peer in th
 load: setup  ## Many watchers of one bench for 20 s: frame rate, latency, board timing
 	@.venv/bin/python scripts/load.py $(ARGS)
 
-page-speed: setup  ## How often eight scopes are drawn, what a frame costs, how soon a click acts, the heap over 30 min
+page-speed: setup  ## How often eight scopes are drawn, what a frame costs, how soon a click acts, the heap over 30 min, campaigns
 	@cd web && ../scripts/npm exec -- playwright test -c measure.config.ts $(ARGS)
+
+class-load: setup  ## A class of 30 students and 60 watchers: joining, effects, memory
+	@.venv/bin/python scripts/class_load.py $(ARGS)
 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
 	@.venv/bin/python scripts/load.py --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
 
 image: ## Build the container image, start it, ask for its health and stop it
 	@scripts/image
+
+audit: $(PYTHON_STAMP) $(NODE_STAMP) ## List all packages into sbom/, and ask the indices whether one is known to be weak
+	@.venv/bin/python scripts/audit.py python sbom
+	@.venv/bin/python scripts/audit.py page sbom
 
 codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document
 	@.venv/bin/python -m server.openapi > web/openapi.json
@@ -69,7 +79,7 @@ clean:  ## Remove everything that was set up or built; recorded data stays
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
 $(PYTHON_STAMP): requirements.lock pyproject.toml scripts/venv
 	@scripts/venv

@@ -91,10 +91,14 @@ class Layout:
         """The places of single numbers."""
         return np.array([*self.scalars], dtype=np.int64)
 
+    @cached_property
+    def behind(self) -> int:
+        """How many numbers stand behind the fixed ones for each of the length of the tails."""
+        return sum(field.inner.size if field.inner else 1 for field in self.fields if field.tail)
+
     def numbers(self, length: int) -> int:
         """Return the numbers of a record whose tails have a length."""
-        each = [field.inner.size if field.inner else 1 for field in self.fields if field.tail]
-        return self.size + length * sum(each)
+        return self.size + length * self.behind
 
 
 @dataclass(frozen=True)
@@ -137,13 +141,15 @@ class Record:
         hints = get_type_hints(cls, include_extras=True)
         for name in get_annotations(cls):
             declared[name] = (hints[name], cls.__dict__.get(name))
-        cls._declared = declared
+        cls._declared, cls._blank = declared, {}
         cls.layout = _laid_out(cls.__qualname__, declared)
         for field in cls.layout.fields:
             kind = record_of(declared[field.name][0])
             setattr(cls, field.name, _Scalar(field.offset) if field.kind == SCALAR else _Part(cls.layout, field, kind))
 
     _declared: ClassVar[dict[str, tuple[Any, Any]]] = {}
+    _blank: ClassVar[dict[int, Any]] = {}
+    """The blank record of each length, to be copied."""
 
     @classmethod
     def zeros(cls, length: int = 0) -> Self:
@@ -156,9 +162,11 @@ class Record:
     @classmethod
     def blank(cls, length: int = 0) -> Self:
         """Return a record whose fixed numbers are still to be packed."""
-        record = cls.zeros(length)
-        record.array.view(np.uint64)[cls.layout.scalar_places] = BLANK
-        return record
+        if length not in cls._blank:
+            record = cls.zeros(length)
+            record.array.view(np.uint64)[cls.layout.scalar_places] = BLANK
+            cls._blank[length] = record.array
+        return cls(cls._blank[length].copy())
 
     @cached_property
     def address(self) -> int:
@@ -167,8 +175,10 @@ class Record:
 
     def blanks(self) -> list[str]:
         """Return the names of the numbers that nobody has packed."""
-        bits = self.array[: self.layout.size].view(np.uint64).tolist()  # quicker for few numbers than a search by numpy
-        return [name for at, name in self.layout.scalars.items() if bits[at] == BLANK_BITS]
+        bits = self.array.view(np.uint64)[self.layout.scalar_places].tolist()
+        if BLANK_BITS not in bits:
+            return []
+        return [name for name, own in zip(self.layout.scalars.values(), bits, strict=True) if own == BLANK_BITS]
 
 
 R = TypeVar("R", bound=Record)

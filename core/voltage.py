@@ -106,26 +106,24 @@ def moves(x: AppliedPorts) -> tuple[float, float, float]:
     return u, x.middle - u, x.end - u
 
 
-def fill_tick(p: Tick, device: Oscillator, gain: float, h: float, analogue: bool) -> None:
-    """Pack a device over a tick; at rest, its stiffness times its displacement is the gain times the voltage."""
-    p.phi11, p.phi12, p.phi21, p.phi22 = transition(device.mass, device.damping, device.stiffness, h)
+def over_tick(device: Oscillator, gain: float, h: float, analogue: bool) -> tuple[float, ...]:
+    """Return the numbers of a `Tick`; at rest, stiffness times displacement is the gain times the voltage."""
+    phi11, phi12, phi21, phi22 = transition(device.mass, device.damping, device.stiffness, h)
     rest = gain / device.stiffness
-    p.push1, p.push2 = (1.0 - p.phi11) * rest, -p.phi21 * rest
     effects = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
-    p.middle1, p.middle2, p.end1, p.end2 = effects
+    return *effects, phi11, phi12, phi21, phi22, (1.0 - phi11) * rest, -phi21 * rest
 
 
 def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
     """Return a device over a tick."""
-    tick = Tick.blank()
-    fill_tick(tick, device, gain, h, analogue)
-    return tick
+    return Tick(np.array(over_tick(device, gain, h, analogue)))
 
 
 def interval_of(context: Context) -> Interval:
     """Return the nominal device over a tick and the interval of the block, for a displacement at rest of 1 um/V."""
     device, interval = context.device, Interval.blank()
-    fill_tick(interval, device, device.stiffness, context.dt_ms / context.every, context.analogue)
+    moving = over_tick(device, device.stiffness, context.dt_ms / context.every, context.analogue)
+    interval.array[: len(moving)] = moving
     b0, b1, _, _ = difference_equation(device, 1.0, context.dt_ms)
     _, phi12, _, phi22 = transition(device.mass, device.damping, device.stiffness, context.dt_ms)
     interval.later1, interval.later2 = -phi22, phi12

@@ -54,4 +54,4 @@ def _without(event: Document, kind: str) -> Document | None:
         kept["set"] = {path: value for path, value in kept["set"].items() if not path.startswith("controller.")}
         if not kept["set"]:
             del kept["set"]
-    return kept if {"switch", "set", "heal", "fault", "reset_trip"} & kept.keys() else None
+    return kept if {"switch", "set", "heal", "fault", "reset_trip", "make_safe"} & kept.keys() else None

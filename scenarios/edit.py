@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.board.document import Document, has
-from core.board.document import with_values as write
+from core.board.document import Document, has, written_over
 from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.schema import Scenario
@@ -23,13 +22,23 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
 
 
 def written(document: Document, values: dict[str, Any]) -> Document:
-    """Return a copy of a scenario with values written over; a fitted field that goes with that is no longer named."""
-    changed = write(document, values)
+    """Return a scenario with values written over; a fitted field that goes with that is no longer named.
+
+    It shares the tables that stay as they are.
+    """
+    changed = written_over(document, values)
     rows = changed.get("expect")
-    for row in rows if isinstance(rows, list) else ():
-        if isinstance(row, dict) and isinstance(row.get("fitted"), list):
-            row["fitted"] = [path for path in row["fitted"] if not has(document, str(path)) or has(changed, str(path))]
+    if isinstance(rows, list) and any(isinstance(row, dict) and isinstance(row.get("fitted"), list) for row in rows):
+        changed["expect"] = [_fitted(row, document, changed) for row in rows]
     return changed
+
+
+def _fitted(row: Any, before: Document, changed: Document) -> Any:
+    """Return an expectation that names of its fitted fields those that are still there."""
+    if not isinstance(row, dict) or not isinstance(row.get("fitted"), list):
+        return row
+    left = [path for path in row["fitted"] if not has(before, str(path)) or has(changed, str(path))]
+    return {**row, "fitted": left}
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:

@@ -23,7 +23,6 @@ from core.board.rows import Rows
 from core.board.wiring import wire
 from core.lanes import code
 from core.lanes.numbers import WIDTH
-from core.lanes.rows import sorting
 from core.ports import RESERVED
 from scenarios.kernel_cache import COMPLETE, folder, prune
 from scenarios.key import code_version
@@ -57,8 +56,8 @@ def _loop() -> None:
     table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
     wide, no, wide_folds = np.zeros((RESERVED, WIDTH)), np.zeros(0, np.int64), np.zeros((2, 0, WIDTH), np.uint64)
-    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, no, wide_folds, no, np.zeros((0, 0, WIDTH)), no, no, 0)
-    abreast.call_once(sorting(), wide, np.zeros((0, WIDTH, 0)), np.zeros(4, np.int64), np.zeros(4, np.int64))
+    rows, trace = np.zeros((WIDTH, 0, WIDTH)), np.zeros((0, WIDTH, 0))
+    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, no, wide_folds, no, rows, no, trace, no, 0)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
     history.columns([0], 0, 1, 1)

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from core.board.document import with_values
+from core.board.document import written_over
 
 SCENARIOS = Path(__file__).resolve().parent
 CORE = SCENARIOS.parent / "core"
@@ -27,7 +27,7 @@ def code_version() -> str:
 
 def content_hash(document: dict[str, Any]) -> str:
     """Return a hash of a scenario without its seed; the order of fields does not matter."""
-    content = {name: value for name, value in with_values(document, {}).items() if name != "seed"}
+    content = {name: value for name, value in written_over(document, {}).items() if name != "seed"}
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()
 
 

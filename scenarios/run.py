@@ -20,25 +20,18 @@ from core.board.parse import changed
 from core.errors import InputError
 from core.signals import Signal
 from scenarios.expectation import overall
-from scenarios.measure import rate
 from scenarios.measure.metrics import device_metrics, measure
-from scenarios.measure.verdicts import TRACED_VERDICTS
+from scenarios.samples import Samples, Trace
 from scenarios.schema import Scenario
+from scenarios.signals import PICTURED, figure_signals, traced
 
 DEFAULT_SAMPLES = 10_000
 """Length of a run whose scenario has no end."""
-TRACED_FIGURES = (
-    "plant.displacement",
-    "sensor.displacement",
-    "model.displacement",
-    "drive.voltage",
-    "reference.voltage",
-)
 
 
 @dataclass
 class Result:
-    """The result of a run; ``names`` are those of the columns of ``outputs``."""
+    """The result of a run; ``trace`` has the signals that were kept, those of a long run in a temporary file."""
 
     scenario: Scenario
     seed: int
@@ -47,9 +40,7 @@ class Result:
     elapsed_s: float
     metrics: dict[str, float]
     warnings: list[str]
-    names: list[str]
-    outputs: FloatArray
-    taps: FloatArray | None = field(default=None, repr=False)
+    trace: dict[str, FloatArray] = field(repr=False)
 
     @property
     def trip(self) -> Trip | None:
@@ -57,10 +48,14 @@ class Result:
         return self.board.trip
 
     @property
+    def samples(self) -> int:
+        """Length of the traces, 0 of a study."""
+        return len(next(iter(self.trace.values()), ()))
+
+    @property
     def kept(self) -> list[Signal]:
-        """Signals whose traces were kept: the outputs, and the taps if the caller asked for them."""
-        kept = set(self.names)
-        return [s for s in self.board.signals if s.name in kept or (s.kind == "tap" and self.taps is not None)]
+        """Signals whose traces were kept."""
+        return [signal for signal in self.board.signals if signal.name in self.trace]
 
     def signal(self, name: str) -> FloatArray:
         """Return the trace of one signal.
@@ -70,12 +65,10 @@ class Result:
         InputError
             When there is no such signal, or it was not kept.
         """
-        column = self.board.signals.index(name)
-        if name in self.names:
-            return self.outputs[:, self.names.index(name)]
-        if self.taps is None or column < self.board.signals.outputs:
+        self.board.signals.index(name)
+        if name not in self.trace:
             raise InputError("was not kept", name)
-        return self.taps[:, column - self.board.signals.outputs]
+        return self.trace[name]
 
     def expectations(self) -> list[dict[str, Any]]:
         """Return each expectation with the measured figure."""
@@ -167,27 +160,20 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     return board
 
 
-WORKER_BYTES, WORKING_COLUMNS = 460_000_000, 16
-"""Memory beside the trace: the process itself (with pandas, which pyarrow loads where it is installed), a piece of the
-trace being written, and the columns worked on."""
-
-
-def run_bytes(board: Board, samples: int, *, taps: bool = False, figures_only: bool = False) -> int:
-    """Return the most memory the process of a run takes."""
-    columns = len(board.signals) if taps else board.signals.outputs
-    return WORKER_BYTES + 8 * samples * ((len(watched(board)) if figures_only else columns) + WORKING_COLUMNS)
-
-
 def run(
     scenario: Scenario,
     seed: int | None = None,
     *,
     taps: bool = False,
     figures_only: bool = False,
+    everything: bool = False,
     compiled: bool = True,
+    trace: Trace | None = None,
     on_tick: Callable[[int], None] | None = None,
 ) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
+
+    The memory it takes does not depend on its length: the samples of a long run lie in a temporary file.
 
     Parameters
     ----------
@@ -198,41 +184,54 @@ def run(
     taps : bool
         Keep the inner signals as well.
     figures_only : bool
-        Keep only the outputs that figures are made of, and do not run controllers that only look on.
+        Keep only the outputs that figures are made of.
+    everything : bool
+        Run and keep the blocks that only look on as well, as a live bench does; no figure and no digest depends on it.
     compiled : bool
         Run compiled blocks.
+    trace : Trace, optional
+        What takes the signals to be kept as they come; of taps, the result has only those that reports show then.
     on_tick : callable, optional
         Called with the tick reached after every chunk; it may raise to end the run.
+
+    Raises
+    ------
+    OSError
+        When samples have no room in the folder of temporary files, or for what ``trace`` raises.
     """
     board = build(scenario, seed, compiled=compiled)
+    signals = traced(board, taps=taps, figures_only=figures_only, everything=everything)
+    kept = [one for one in signals if trace is None or one.kind == "output" or one.name in PICTURED]
     if scenario.study is not None:
-        return _run_study(scenario, board)
+        result = _run_study(scenario, board, kept)
+        if trace is not None:
+            trace.begin(board, signals)
+        return result
+    if not everything:
+        leave_out_idle(board)
+    if trace is not None:
+        trace.begin(board, signals)
     samples = scenario.samples or DEFAULT_SAMPLES
-    names = board.signals.names[: board.signals.outputs]
-    if figures_only:
-        names = watched(board)
-        if not isinstance(board, Ensemble):  # what one of its boards does not need, another may
-            leave_out_idle(board)
-    columns = np.array([board.signals.index(name) for name in names], dtype=np.int64)
-    outputs = np.empty((samples, len(names)))
-    kept = np.empty((samples, len(board.signals) - board.signals.outputs)) if taps else None
+    split = board.signals.outputs
+    outputs = np.array([one.index for one in kept if one.kind == "output"], dtype=np.int64)
+    inner = np.array([one.index - split for one in kept if one.kind == "tap"], dtype=np.int64)
     began = time.perf_counter()
-    while board.tick < samples:
-        rows = board.advance(samples - board.tick)
-        if rows.count == 0:
-            break  # tripped, and no waiting command would reset it
-        outputs[rows.first_tick : board.tick] = rows.outputs[:, columns] if figures_only else rows.outputs
-        if kept is not None:
-            kept[rows.first_tick : board.tick] = rows.taps
-        if on_tick is not None:
-            on_tick(board.tick)
+    with Samples(len(kept), samples) as stored:
+        while board.tick < samples:
+            rows = board.advance(samples - board.tick)
+            if rows.count == 0:
+                break  # tripped, and no waiting command would reset it
+            stored.add(np.hstack([rows.outputs[:, outputs], rows.taps[:, inner]]))
+            if trace is not None:
+                trace.add(rows)
+            if on_tick is not None:
+                on_tick(board.tick)
+        columns = dict(zip((one.name for one in kept), stored.columns(), strict=True))
     elapsed = time.perf_counter() - began
-    outputs = outputs[: board.tick]
-    trace = dict(zip(names, outputs.T, strict=True))
-    metrics = figures(board, trace, scenario)
+    metrics = figures(board, columns, scenario)
     if isinstance(board, Ensemble):
         for name, twin in board.twins.items():
-            own = figures(twin, trace, scenario, f"{name}:")
+            own = figures(twin, columns, scenario, f"{name}:")
             metrics |= {f"twins.{name}.{metric}": value for metric, value in own.items()}
     return Result(
         scenario,
@@ -243,48 +242,20 @@ def run(
         metrics,
         # a warning that came and went is listed once
         list(dict.fromkeys(entry.text for entry in board.log if entry.kind == "warning")),
-        names,
-        outputs,
-        kept[: board.tick] if kept is not None else None,
+        columns,
     )
 
 
 def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, prefix: str = "") -> dict[str, float]:
     """Return the figures of a board from its trace, or those of a twin from the trace of all boards."""
     names = [name for name in figure_signals(board) if prefix + name in trace]
-    # numpy adds neighbours in another order than numbers that lie apart
-    own = {name: np.ascontiguousarray(trace[prefix + name][: board.tick]) for name in names}
-    return measure(board, own, scenario.head.metrics)
+    return measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
 
 
-def watched(board: Board) -> list[str]:
-    """Return the outputs that the figures of a run are made of, those of twins with their prefix."""
-    wanted = {*figure_signals(board), *evidence_signals(board)}
-    wanted |= {f"{name}.{port}" for name in board.spec.controllers for port in rate.READ if board.spec.axes}
-    if isinstance(board, Ensemble):
-        for name, twin in board.twins.items():
-            wanted |= {f"{name}:{signal}" for signal in figure_signals(twin)}
-    return [signal.name for signal in board.signals if signal.kind == "output" and signal.name in wanted]
-
-
-def evidence_signals(board: Board) -> list[str]:
-    """Return the probabilities of all diagnosers that choose between hypotheses."""
-    return [f"{name}.probability.{hypothesis}" for name, s in board.scores().items() for hypothesis in s.names]
-
-
-def figure_signals(board: Board) -> list[str]:
-    """Return the signals that the figures of a board are made of."""
-    moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
-    names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
-    names += [f"{name}.error_pct" for name in board.spec.identifiers]
-    return [name for name in names if name in board.signals]
-
-
-def _run_study(scenario: Scenario, board: Board) -> Result:
+def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> Result:
     """Make a study of a bench, without a trace; the digest is the one of the figures."""
     assert scenario.study is not None
     study, params = scenario.study
-    nothing = np.empty((0, board.signals.outputs)), np.empty((0, len(board.signals) - board.signals.outputs))
     fresh = Board.restore(board.checkpoint())
     began = time.perf_counter()
     metrics = {**device_metrics(board.spec), **study.figures(board, params)}
@@ -292,5 +263,5 @@ def _run_study(scenario: Scenario, board: Board) -> Result:
     figures = np.array([metrics[name] for name in sorted(metrics)])
     digest = hashlib.sha256(figures.tobytes()).hexdigest()
     told = [*scenario.warnings, *cautions(board.spec)]
-    names = board.signals.names[: board.signals.outputs]
-    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, names, *nothing)
+    nothing = {one.name: np.empty(0) for one in kept}
+    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, nothing)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import operator
 from typing import Any, Literal
 
 import tomlkit
 from pydantic import Field, ValidationError
 
 from core.board.commands import LONGEST_MS, Command, parse_event
-from core.board.document import Document, has
+from core.board.document import Document, has, says_the_same
 from core.board.ensemble import twin_specs
 from core.board.parse import parse
 from core.board.spec import Spec, fields
@@ -72,17 +73,18 @@ class Scenario:
         self.document = document = _with_open_ends(document)
         head = {key: value for key, value in document.items() if key in HEAD}
         self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
-        self._text = repr(head)
-        is_alike = like is not None and like._text == self._text
+        self._head, known = head, like._head if like is not None else {}
+        is_alike = head.keys() == known.keys() and all(says_the_same(value, known[key]) for key, value in head.items())
         try:
             self.head: Head = like.head if like is not None and is_alike else Head.model_validate(head)
         except ValidationError as error:
             raise from_validation(error, {"": (*HEAD, *fields()), "metrics": [*Stretch.model_fields]}) from None
         if self.head.samples is not None and self.head.duration_ms is not None:
             raise InputError("give samples or duration_ms, not both", "duration_ms")
-        unknown = [key for key in self.bench if key not in fields()]
+        allowed = fields()
+        unknown = [key for key in self.bench if key not in allowed]
         if unknown:
-            raise unknown_field(unknown[0], (*HEAD, *fields()), unknown[0])
+            raise unknown_field(unknown[0], (*HEAD, *allowed), unknown[0])
         self.spec: Spec = parse(self.bench, like.spec if like is not None else None)
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
@@ -155,14 +157,16 @@ def _with_open_ends(document: Document) -> Document:
     rows = document.get("expect")
     if not isinstance(rows, list):
         return document
-    closed = []
-    for row in rows:
-        ends = row.get("published_range") if isinstance(row, dict) else None
-        if isinstance(ends, list):
-            texts = [str(end) if isinstance(end, float) and math.isinf(end) else end for end in ends]
-            row = {**row, "published_range": texts}
-        closed.append(row)
-    return {**document, "expect": closed}
+    closed = [_closed(row) for row in rows]
+    return document if all(map(operator.is_, closed, rows)) else {**document, "expect": closed}
+
+
+def _closed(row: Any) -> Any:
+    """Return an expectation with the open ends of its published range as texts."""
+    ends = row.get("published_range") if isinstance(row, dict) else None
+    if not isinstance(ends, list) or not any(isinstance(end, float) and math.isinf(end) for end in ends):
+        return row
+    return {**row, "published_range": [str(end) if isinstance(end, float) and math.isinf(end) else end for end in ends]}
 
 
 def _commands(event: Document) -> list[Command]:

@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -85,7 +86,6 @@ class Server:
     def count(self) -> Counts:
         """Return what the server has counted so far."""
         text = self.http.get("/metrics").text
-        edges = re.findall(r'combbench_event_loop_lag_seconds_bucket\{le="([^"]+)"\} (\S+)', text)
         ticks = re.search(r"^combbench_ticks_total (\S+)", text, re.MULTILINE)
         overruns = re.search(r"^combbench_overruns_total (\S+)", text, re.MULTILINE)
         assert ticks is not None and overruns is not None
@@ -93,7 +93,8 @@ class Server:
             at=time.monotonic(),
             ticks=float(ticks[1]),
             overruns=float(overruns[1]),
-            lag={float(edge): float(count) for edge, count in edges},
+            lag=_histogram(text, "event_loop_lag_seconds"),
+            woke=_histogram(text, "engine_wake_lateness_seconds"),
             processor_s=self.processor_s(),
             own_s=time.process_time(),
         )
@@ -126,6 +127,7 @@ class Counts:
     ticks: float
     overruns: float
     lag: dict[float, float]
+    woke: dict[float, float]
     processor_s: float
     own_s: float
 
@@ -133,6 +135,17 @@ class Counts:
         """Return the upper edge of the histogram bucket that holds 99 % of the event loop's lateness since."""
         since = {edge: count - before.lag.get(edge, 0.0) for edge, count in self.lag.items()}
         return next((1e3 * edge for edge, count in since.items() if count >= 0.99 * since[float("inf")]), float("inf"))
+
+    def woke_late(self, before: Counts) -> int:
+        """Return how many rounds of the engine began more than 0.1 s late since."""
+        late = [of.woke[float("inf")] - of.woke[0.1] for of in (before, self)]
+        return int(late[1] - late[0])
+
+
+def _histogram(text: str, name: str) -> dict[float, float]:
+    """Return how many values of a metric lie at or below each edge."""
+    edges = re.findall(rf'combbench_{name}_bucket\{{le="([^"]+)"\}} (\S+)', text)
+    return {float(edge): float(count) for edge, count in edges}
 
 
 async def command(watcher: Watcher, phase: float, per_s: float) -> None:
@@ -211,6 +224,25 @@ def broken(found: dict[str, Any], flat: bool) -> list[str]:
     return [promise for promise, is_kept in kept.items() if not is_kept]
 
 
+def under(load: Callable[[Server], Coroutine[Any, Any, dict[str, Any]]], watchers: int) -> dict[str, Any]:
+    """Start a server, put a load on it, stop it; return the measurements."""
+    with tempfile.TemporaryDirectory() as folder:
+        server = Server(Path(folder), watchers)
+        try:
+            server.wait_ready()
+            return uvloop.run(load(server))
+        finally:
+            server.stop()
+
+
+def report(found: dict[str, Any], missed: list[str]) -> int:
+    """Print the measurements and the promises that were not kept; return the exit code."""
+    print(json.dumps(found, indent=2))
+    for promise in missed:
+        print(f"not kept: {promise}")
+    return 1 if missed else 0
+
+
 def main() -> int:
     """Read the arguments, run, report."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -222,18 +254,8 @@ def main() -> int:
     parser.add_argument("--kind", choices=COMMANDS, default="time_scale", help="of the commands")
     parser.add_argument("--flat", action="store_true", help="memory must not grow")
     told = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        server = Server(Path(folder), told.watchers)
-        try:
-            server.wait_ready()
-            found = uvloop.run(drive(server, told))
-        finally:
-            server.stop()
-    print(json.dumps(found, indent=2))
-    missed = broken(found, told.flat)
-    for promise in missed:
-        print(f"not kept: {promise}")
-    return 1 if missed else 0
+    found = under(lambda server: drive(server, told), told.watchers)
+    return report(found, broken(found, told.flat))
 
 
 if __name__ == "__main__":

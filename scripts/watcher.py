@@ -47,7 +47,7 @@ class Watcher(asyncio.Protocol):
         self._lines = ClientProtocol(parse_uri(address), subprotocols=[Subprotocol(SUBPROTOCOL)])
         self._token = token
         self._transport: Transport | None = None
-        self.opened = asyncio.Event()
+        self.opened, self.seen = asyncio.Event(), asyncio.Event()
         self.frames = 0
         self.late_ms: list[float] = []
         self.replies_ms: list[float] = []
@@ -111,6 +111,7 @@ class Watcher(asyncio.Protocol):
             _, _, _, number, _, _, cut_s = HEADER.unpack_from(frame.data)
             self._lines.send_text(b'{"type":"ack","frame":%d}' % number)
             self.frames += 1
+            self.seen.set()
             self.late_ms.append(1e3 * (now - cut_s))
         elif frame.opcode is Opcode.TEXT and bytes(frame.data[: len(REPLY)]) == REPLY:
             self.replies_ms.append(1e3 * (now - float(json.loads(bytes(frame.data))["id"])))

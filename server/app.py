@@ -11,33 +11,44 @@ from fastapi import FastAPI
 from server import document, errors
 from server.api import (
     aliases,
+    audit,
     benches,
+    blind,
     catalog,
+    classes,
     devices,
     diagnosers,
+    driving,
     experiments,
     gallery,
     health,
+    joining,
+    lectures,
+    lesson,
     links,
+    me,
     metrics,
     parameter_sets,
     readouts,
     recordings,
     runs,
     scenarios,
+    sheets,
     snapshots,
     stream,
     sweeps,
     theory,
     trace,
+    votes,
+    watchers,
 )
 from server.page import Page
 from server.security.body import BodyLimit
-from server.security.gate import OPEN_PATHS, Gate
+from server.security.frames import Frames
+from server.security.gate import Gate
 from server.security.headers import SecurityHeaders
 from server.security.identity import Identity, token_of
 from server.security.origin import OriginPolicy
-from server.security.public import PublicOrigin
 from server.service import Service
 from server.settings import Settings
 from server.version import VERSION
@@ -61,6 +72,16 @@ ROUTERS = (
     gallery,
     theory,
     links,
+    lectures,
+    me,
+    classes,
+    lesson,
+    driving,
+    blind,
+    votes,
+    watchers,
+    sheets,
+    audit,
     stream,
 )
 
@@ -74,13 +95,18 @@ def create_app(settings: Settings) -> FastAPI:
         Limits and places of the service.
     """
     service = Service(settings)
-    public = PublicOrigin.parse(settings.public_origin)
-    identity = Identity(settings.token.get_secret_value() if settings.token else token_of(settings.data), public)
+    public = service.public
+    token = settings.token.get_secret_value() if settings.token else token_of(settings.data)
+    identity = Identity(token, public, loopback_only=settings.classroom, shard=settings.shard)
+
+    frames: Frames | None = None
 
     @contextlib.asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         async with service.running():
             yield
+            if frames is not None:
+                await app.state.lti.close()
 
     app = FastAPI(
         title="CombBench",
@@ -94,27 +120,34 @@ def create_app(settings: Settings) -> FastAPI:
         servers=[{"url": str(public)}] if public.origin else None,
     )
     app.state.service, app.state.identity = service, identity
-    errors.install(app)
+    errors.install(app, public.prefix)
     document.install(app)
     for module in ROUTERS:
         app.include_router(module.router, prefix=API)
-    for module in (health, metrics):
+    for module in (health, metrics, joining):
         app.include_router(module.router)
     if importlib.util.find_spec("server.view3d") is not None:
         from server.view3d import proxy
 
         app.include_router(proxy.router)
+    if settings.lti:
+        from server.lti import routes
+
+        frames = routes.install(app, service)
     app.router.default = Page()
-    open_paths = OPEN_PATHS | {"/metrics"} if settings.metrics_open else OPEN_PATHS
     # A request passes the middleware that was added last first.
     app.add_middleware(BodyLimit, limit=settings.body_limit_bytes)
     app.add_middleware(
         Gate,
         identity=identity,
-        origin=OriginPolicy(settings.host, settings.allowed_hosts, public),
-        open_paths=open_paths,
+        people=service.people,
+        driving=service.driving,
+        is_blind=service.is_blind,
+        origin=OriginPolicy(settings.host, settings.allowed_hosts, public, settings.classroom),
+        open_paths=frozenset({"/metrics"}) if settings.metrics_open else frozenset(),
         prefix=public.prefix,
+        frames=frames,
     )
     app.add_middleware(errors.CatchAll)
-    app.add_middleware(SecurityHeaders, prefix=public.prefix)
+    app.add_middleware(SecurityHeaders, prefix=public.prefix, frames=frames)
     return app

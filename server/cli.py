@@ -1,17 +1,14 @@
-"""The command line: ``combbench serve | run | gallery | sweep | catalog | bench | doctor``."""
+"""The command line: ``combbench serve | run | gallery | lectures | sheets | sweep | catalog | bench | doctor``."""
 
 from __future__ import annotations
 
 import errno
 import fnmatch
-import json
 import os
 import sys
-from collections.abc import Callable
 from contextlib import ExitStack
-from functools import wraps
 from pathlib import Path
-from typing import Annotated, Any, ParamSpec, TypeVar
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
@@ -20,14 +17,16 @@ import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.errors import InputError, one_line
 from core.format import format_short, format_si, unit_text
 from core.registry import BlockCard, catalog
-from scenarios.campaign.single import beside, run_seeds
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
-from scenarios.report.keeping import keep
 from scenarios.report.text import gallery_text, run_text
+from scenarios.report.traces import TraceFile
 from scenarios.run import run as run_scenario
+from scenarios.samples import temporary_folder
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
+from server.lessons import lectures, sheets
+from server.terminal import JsonOption, plainly, read_text, say, say_json
 
 UsageError: Any = typer.BadParameter.__base__
 """Every usage error of options and arguments; Typer exports only one kind of them."""
@@ -49,53 +48,18 @@ class OneLine(TyperGroup):
 
 
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+app.command()(lectures)
+app.command()(sheets)
 
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 """Errors of a write to an open file."""
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
-
-
-def say(text: str = "") -> None:
-    """Print a line."""
-    sys.stdout.write(text + "\n")
-
-
-def say_json(document: Any) -> None:
-    """Print a JSON document."""
-    say(json.dumps(document, indent=2, allow_nan=False))
-
-
-P = ParamSpec("P")
-T = TypeVar("T")
-
-
-def plainly(command: Callable[P, T]) -> Callable[P, T]:
-    """Turn bad input into one line and exit code 2."""
-
-    @wraps(command)
-    def guarded(*args: P.args, **kwargs: P.kwargs) -> T:
-        try:
-            return command(*args, **kwargs)
-        except InputError as error:
-            hint = f" ({error.hint})" if error.hint else ""
-            sys.stderr.write(f"combbench: {error}{hint}\n")
-            raise typer.Exit(2) from None
-
-    return guarded
 
 
 def load(name: str) -> Scenario:
     """Return a scenario of the library, or from a file."""
     path = Path(name)
-    if path.suffix == ".toml" or path.is_file():
-        try:
-            return Scenario.load(path.read_text("utf-8"))
-        except OSError as error:
-            raise InputError(f"cannot read {name}: {error.strerror}", "scenario") from None
-        except UnicodeDecodeError:
-            raise InputError(f"{name} is not UTF-8 text", "scenario") from None
-    return get(name)
+    return Scenario.load(read_text(path, "scenario")) if path.suffix == ".toml" or path.is_file() else get(name)
 
 
 @app.command()
@@ -109,24 +73,40 @@ def run(
     seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
     as_json: JsonOption = False,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace, report and script here.")] = None,
+    everything: Annotated[
+        bool,
+        typer.Option(
+            "--all",
+            help="Also run the controllers that never drive, and write all signals to the trace, "
+            "those of sensors that are never in use as well. No figure and no digest depends on it.",
+        ),
+    ] = False,
 ) -> None:
     """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
+    from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
+    from scenarios.report.keeping import keep
+
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
     if seed is not None and seeds is not None:
         raise InputError("give --seed or --seeds, not both", "--seeds")
-    if seeds is not None:
-        if out is not None:
-            raise InputError("traces are written for one seed; use --seed", "--out")
-        summary = run_seeds(chosen, parse_seeds(seeds))
-    else:
-        result = run_scenario(chosen, seed, taps=out is not None)
-        summary = result.summary()
-        if out is not None:
-            summary = beside(result)
-            try:
-                keep(result, summary, [result.seed], out / f"{chosen.id}-seed{result.seed}")
-            except OSError as error:
-                raise InputError(f"cannot write to {out}: {error.strerror}", "--out") from None
+    if seeds is not None and out is not None:
+        raise InputError("traces are written for one seed; use --seed", "--out")
+    if seeds is not None and everything:
+        raise InputError("is for the trace of one seed; use --seed", "--all")
+    try:
+        if seeds is not None:
+            summary = run_seeds(chosen, parse_seeds(seeds))
+        elif out is None:
+            summary = run_scenario(chosen, seed, figures_only=True, everything=everything).summary()
+        else:
+            stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
+            with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
+                result = run_scenario(chosen, seed, taps=True, everything=everything, trace=trace)
+                summary = beside(result)
+                keep(result, summary, [result.seed], stem)
+    except OSError as error:
+        folder, field = (temporary_folder(), "TMPDIR") if out is None else (out, "--out")
+        raise InputError(f"cannot write to {folder}: {error.strerror}", field) from None
     if as_json:
         say_json(summary)
     else:
@@ -141,10 +121,12 @@ def gallery(
     as_json: JsonOption = False,
 ) -> None:
     """Run every library scenario: published claim, expectation, measured, verdict, and what the open loop gives."""
+    from scenarios.campaign.single import beside
+
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
     if not chosen:
         raise InputError(f"no scenario matches {only!r}", "--only")
-    summaries = [beside(run_scenario(entry)) for entry in chosen]
+    summaries = [beside(run_scenario(entry, figures_only=True)) for entry in chosen]
     if as_json:
         say_json(summaries)
     else:
@@ -167,6 +149,7 @@ def sweep(
 ) -> None:
     """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
     from scenarios.campaign.campaign import Stopped
+    from scenarios.campaign.executor import collect_seldom
     from server.settings import load_settings
     from server.sweeping import carry_out, read_sweep
 
@@ -174,6 +157,7 @@ def sweep(
         raise InputError("give --workers or --scheduler, not both", "--scheduler")
     if workers is not None and not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"must be from 1 to {MOST_WORKERS}, got {workers}", "--workers")
+    collect_seldom()
     campaign = read_sweep(file)
     folder = out or Path("sweeps") / campaign.head.id
     address = load_settings().database_url
@@ -261,17 +245,22 @@ def bench(as_json: JsonOption = False) -> None:
 @app.command()
 @plainly
 def serve(
-    host: Annotated[str | None, typer.Option(help="Address to listen on; anything but loopback needs a token.")] = None,
+    host: Annotated[
+        str | None, typer.Option(help="Address to listen on; anything but loopback needs a token or --classroom.")
+    ] = None,
     port: Annotated[int | None, typer.Option(help="Port to listen on; 0 for any free one.")] = None,
     data: Annotated[Path | None, typer.Option(help="Folder for database and recordings.")] = None,
+    classroom: Annotated[
+        bool, typer.Option("--classroom", help="Serve a class on this network: students join by a code, without TLS.")
+    ] = False,
     open_page: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
 ) -> None:
     """Serve the dashboard."""
     from server.serve import serve as start
     from server.settings import load_settings
 
-    given = {"host": host, "port": port, "data": data, "open_page": open_page or None}
-    start(load_settings(**{name: value for name, value in given.items() if value is not None}))
+    flags = {"classroom": classroom or None, "open_page": open_page or None}
+    start(load_settings(host=host, port=port, data=data, **flags))
 
 
 @app.command()

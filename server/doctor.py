@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from scenarios.kernel_cache import folder
 from scenarios.key import code_version
+from server.classroom import join_addresses
 from server.page import DIST
 from server.security.identity import TOKEN_FILE
 from server.settings import describe_settings, load_settings
@@ -27,6 +28,7 @@ def examine() -> dict[str, dict[str, str]]:
     settings = load_settings()
     kernels = folder()
     compiled = sum(1 for _ in kernels.iterdir()) if kernels else 0
+    join = ", ".join(join_addresses(settings.host, settings.port)) or "nothing: this machine is on no network"
     token = "from the settings" if settings.token else str(settings.data / TOKEN_FILE)
     return {
         "settings": {row.name: f"{row.value}  ({row.source})" for row in describe_settings(settings)},
@@ -41,6 +43,7 @@ def examine() -> dict[str, dict[str, str]]:
             "page": "built" if (DIST / "index.html").is_file() else "not built: make setup",
             "data folder": "can be written" if _can_write(settings.data) else "cannot be written",
             "access token": token,
+            "students open": join if settings.classroom else "nothing: classroom is off",
         },
     }
 

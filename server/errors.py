@@ -7,10 +7,11 @@ import logging
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
+from urllib.parse import urlencode
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse
+from fastapi.responses import JSONResponse, RedirectResponse, Response
 from pydantic import BaseModel, field_validator
 from sqlalchemy.exc import DBAPIError
 from starlette.exceptions import HTTPException
@@ -22,6 +23,8 @@ from core.errors import InputError, either, field_of, one_line
 
 log = logging.getLogger(__name__)
 
+SHARD = "shard"
+"""What in the query of an address tells the proxy to which of several processes it leads."""
 LONGEST = 300
 """Characters of a message, a field or a hint: one line a person reads."""
 METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
@@ -78,6 +81,20 @@ class ApiError(HTTPException):
     ) -> None:
         super().__init__(status, message, dict(headers or {}))
         self.body = ErrorBody(code=code, message=message, field=field, hint=hint)
+
+
+class Elsewhere(Exception):
+    """Another of several processes has what is asked for; whoever asks is sent there by the proxy.
+
+    Parameters
+    ----------
+    shard : str
+        Its letter.
+    """
+
+    def __init__(self, shard: str) -> None:
+        super().__init__(shard)
+        self.shard = shard
 
 
 def not_found(noun: str, name: str, hint: str = "") -> ApiError:
@@ -151,12 +168,29 @@ def _given(error: Any) -> str:
     return f" (got {given!r})" if isinstance(given, str) and len(given) <= 40 else ""
 
 
-def install(app: FastAPI) -> None:
-    """Answer every failure of ``app`` in the one shape."""
+def install(app: FastAPI, prefix: str) -> None:
+    """Answer every failure of ``app`` in the one shape.
+
+    Parameters
+    ----------
+    app : FastAPI
+        The application.
+    prefix : str
+        The prefix a proxy takes off every path.
+    """
 
     @app.exception_handler(ApiError)
     async def _(_request: Request, error: ApiError) -> JSONResponse:
         return reply(error.status_code, error.body, error.headers)
+
+    @app.exception_handler(Elsewhere)
+    async def _(request: Request, error: Elsewhere) -> Response:
+        if request.query_params.get(SHARD) == error.shard:
+            text = f"process {error.shard} has that, and the proxy does not lead there"
+            return reply(409, ErrorBody(code="elsewhere", message=text, hint="docs/scaling.md has its set-up"))
+        rest = [(name, value) for name, value in request.query_params.multi_items() if name != SHARD]
+        query = urlencode([*rest, (SHARD, error.shard)])
+        return RedirectResponse(f"{prefix}{request.url.path}?{query}", 307)
 
     @app.exception_handler(DBAPIError)
     async def _(_request: Request, error: DBAPIError) -> JSONResponse:

@@ -53,7 +53,7 @@ class Idling:
         return [session for session in sessions if self.left_s(session) == 0.0]
 
     def _is_needed(self, session: Session) -> bool:
-        """Say whether a bench has a watcher, is to be kept, or has something to come or to lose.
+        """Say whether a bench has a watcher, is to be kept, hides a fault, or has something to come or to lose.
 
         Commands that wait on a bench that stands still are kept with it; on one that runs their moment comes.
         Moments that were kept of a bench would be lost.
@@ -61,6 +61,7 @@ class Idling:
         recordings = session.recordings
         return (
             session.keep
+            or session.hiding.view is not None
             or self._watchers(session.id) > 0
             or bool(recordings.under_way or recordings.armed or session.snapshots.all())
             or (session.is_running and len(session.board.pending) > 0)

@@ -17,8 +17,8 @@ log = logging.getLogger(__name__)
 
 STANDARD = frozenset(vars(logging.makeLogRecord({})))
 
-SECRET = re.compile(r"(\btoken=)[^&\s\"']+|(://[^/\s:@]*:)[^/\s\"']+(?=@)")
-"""The token of the address to open; the password in the address of a database."""
+SECRET = re.compile(r"(\b(?:token|code)=|/join/)[^&?\s\"']+|(://[^/\s:@]*:)[^/\s\"']+(?=@)")
+"""The token of the address to open, the code of a class in the address to join; the password of a database in its."""
 
 
 class JsonFormatter(logging.Formatter):

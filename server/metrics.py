@@ -37,6 +37,11 @@ class Metrics:
             buckets=FINE,
             registry=registry,
         )
+        self.watchdog_trips = Counter(
+            "combbench_watchdog_trips",
+            "Times that benches were taken to safe outputs because the engine hung",
+            registry=registry,
+        )
         self.round_seconds = Histogram(
             "combbench_engine_round_seconds", "Board work of one round", buckets=FINE, registry=registry
         )

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
+from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
-from starlette.responses import FileResponse, HTMLResponse, RedirectResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
+from server.compression import takes_gzip
 from server.security.gate import page
 
 DIST = Path(__file__).resolve().parent.parent / "web" / "dist"
-OURS = ("/api/", "/health/", "/benches/", "/assets/")
+OURS = ("/api/", "/health/", "/benches/", "/assets/", "/lti")
 """An unknown path below these is an error, not a page."""
 
 NOT_BUILT = (
@@ -50,15 +53,10 @@ class Page:
         path = scope["path"]
         if path != "/" and (self._folder / "index.html").is_file():
             try:
-                response = await self._files.get_response(path.lstrip("/"), scope)
+                return await self._file(path, scope)
             except HTTPException as error:
                 if error.status_code != 404:
                     raise
-            else:
-                # The build puts a hash into the name of every asset.
-                hashed = path.startswith("/assets/")
-                response.headers["Cache-Control"] = "public, max-age=31536000, immutable" if hashed else "no-cache"
-                return response
         if path.startswith(OURS):
             raise HTTPException(404)
         if not index.is_file():
@@ -66,4 +64,26 @@ class Page:
         if path != "/":
             query = scope["query_string"].decode("latin-1")
             return RedirectResponse(f"/?{query}" if query else "/", 303)
-        return FileResponse(index, headers={"Cache-Control": "no-cache"})
+        return index_page(index, scope)
+
+    async def _file(self, path: str, scope: Scope) -> Response:
+        """Return a file of the build; a caller who takes that gets what the build has compressed."""
+        name, response = path.lstrip("/"), None
+        if takes_gzip(Headers(scope=scope)):
+            with suppress(HTTPException):  # there is no such file
+                response = await self._files.get_response(f"{name}.gz", scope)
+                response.headers["Content-Encoding"] = "gzip"
+        if response is None:
+            response = await self._files.get_response(name, scope)
+        response.headers["Vary"] = "Accept-Encoding"
+        # The build puts a hash into the name of every asset.
+        is_hashed = path.startswith("/assets/")
+        response.headers["Cache-Control"] = "public, max-age=31536000, immutable" if is_hashed else "no-cache"
+        return response
+
+
+def index_page(index: Path, scope: Scope) -> Response:
+    """Return the page; libraries of it write styles, which the policy knows by the nonce of this answer."""
+    nonce = f'<meta name="nonce" content="{scope.get("nonce", "")}"></head>'
+    marked = index.read_text("utf-8").replace("</head>", nonce, 1)
+    return HTMLResponse(marked, headers={"Cache-Control": "no-cache"})

@@ -9,6 +9,7 @@ import signal
 import socket
 import sys
 import webbrowser
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
@@ -16,9 +17,10 @@ import uvicorn
 
 from core.errors import InputError
 from server import logs
+from server.classroom import notice
 from server.connection import Connection
 from server.security.identity import fits_header
-from server.settings import Settings
+from server.settings import ANY_IPV4, ANY_IPV6, Settings
 from server.store.lock import lock
 from server.store.privacy import keep_private
 from server.stream.line import Line
@@ -30,6 +32,9 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+LOOPBACK = "127.0.0.1"
+SWITCH_S = 0.001
+"""How long a thread keeps the interpreter while another waits: a round of the engine has 8 ms for all benches."""
 MIN_TOKEN = 16
 GRACE_S = 6
 
@@ -45,11 +50,13 @@ class Server(uvicorn.Server):
         The service whose streams are closed.
     address : str
         Printed once requests are answered.
+    notice : str
+        Lines printed below it.
     """
 
-    def __init__(self, config: uvicorn.Config, service: Service, address: str = "") -> None:
+    def __init__(self, config: uvicorn.Config, service: Service, address: str = "", notice: str = "") -> None:
         super().__init__(config)
-        self._service, self._address = service, address
+        self._service, self._address, self._notice = service, address, notice
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start, then print the address."""
@@ -58,8 +65,9 @@ class Server(uvicorn.Server):
             # All objects loaded by now stay. A collection that went through them would stop all benches for 0.1 s.
             gc.collect()
             gc.freeze()
+            sys.setswitchinterval(SWITCH_S)
             try:
-                sys.stdout.write(f"CombBench is at {self._address}\n")
+                sys.stdout.write(f"CombBench is at {self._address}\n{self._notice}")
                 sys.stdout.flush()
             except OSError as error:  # the service runs even if a full disk takes no output
                 log.warning("the address to open cannot be printed: %s", error.strerror)
@@ -73,7 +81,7 @@ class Server(uvicorn.Server):
 
 
 def check_binding(settings: Settings) -> None:
-    """Refuse an address that other machines can reach without a token from the settings.
+    """Refuse an address that other machines can reach without a token from the settings, but for a class.
 
     Raises
     ------
@@ -86,7 +94,16 @@ def check_binding(settings: Settings) -> None:
     if not fits_header(token):
         text = "cannot be sent in a header; allowed: letters without accents, digits and signs, no space at either end"
         raise InputError(text, "token", "set COMBBENCH_TOKEN to another")
-    if not settings.is_loopback and not token:
+    if settings.classroom and settings.public_origin:
+        raise InputError(
+            "cannot be used with public_origin: a proxy makes everyone look like this machine, which may use the token",
+            "classroom",
+            "serve the class through the proxy without it, as docs/behind-a-proxy.md says, or unset public_origin",
+        )
+    if settings.classroom and settings.is_loopback:
+        text = f"students cannot reach {settings.host}, which is this machine alone"
+        raise InputError(text, "classroom", f"leave host out, or set it to {ANY_IPV4} or an address of this machine")
+    if not settings.is_loopback and not settings.classroom and not token:
         raise InputError(
             f"{settings.host} can be reached from other machines, which needs an access token",
             "host",
@@ -117,7 +134,7 @@ def bind(settings: Settings) -> socket.socket:
     return listener
 
 
-def make_server(settings: Settings, app: FastAPI, address: str = "") -> Server:
+def make_server(settings: Settings, app: FastAPI, address: str = "", notice: str = "") -> Server:
     """Configure uvicorn: one process owns the boards, so there is one worker."""
     config = uvicorn.Config(
         app,
@@ -136,7 +153,7 @@ def make_server(settings: Settings, app: FastAPI, address: str = "") -> Server:
         log_config=None,
         proxy_headers=False,
     )
-    return Server(config, app.state.service, address)
+    return Server(config, app.state.service, address, notice)
 
 
 def serve(settings: Settings) -> None:
@@ -149,31 +166,32 @@ def serve(settings: Settings) -> None:
     """
     check_binding(settings)
     logs.configure(settings)
-    listener = bind(settings)
-    try:
-        keep_private(settings.data)
-        held = lock(settings.data, "data")
-        from server.app import create_app  # this import loads everything; wrong settings are reported before it
+    with ExitStack() as stack:
+        listeners = [stack.enter_context(bind(settings))]
+        port = listeners[0].getsockname()[1]
+        is_everywhere = settings.host in (ANY_IPV4, ANY_IPV6)
+        if settings.classroom and not is_everywhere:  # the teacher comes by an address of this machine alone
+            listeners.append(stack.enter_context(bind(settings.model_copy(update={"host": LOOPBACK, "port": port}))))
+        try:
+            keep_private(settings.data)
+            held = lock(settings.data, "data")
+            from server.app import create_app  # this import loads everything; wrong settings are reported before it
 
-        app = create_app(settings)
-        app.state.service.database.migrate()
-        app.state.service.database.claim()
-    except InputError:
-        listener.close()
-        raise
-    except OSError as error:
-        listener.close()
-        raise InputError(f"the data folder {settings.data} cannot be used: {error.strerror}", "data") from None
-    host = f"[{settings.host}]" if ":" in settings.host else settings.host
-    shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else host
-    port = listener.getsockname()[1]
-    page = settings.public_origin or f"http://{shown}:{port}"
-    address = f"{page}/?token={quote(app.state.identity.token, safe='')}"
-    server = make_server(settings, app, address)
-    # uvicorn raises the signal again at its end; a stop by signal is no failure.
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: None)
-    server.run(sockets=[listener])
-    held.close()
+            app = create_app(settings)
+            app.state.service.shared.migrate()
+            app.state.service.shared.claim(settings.shard)
+        except OSError as error:
+            raise InputError(f"the data folder {settings.data} cannot be used: {error.strerror}", "data") from None
+        host = f"[{settings.host}]" if ":" in settings.host else settings.host
+        shown = LOOPBACK if settings.classroom or is_everywhere else host
+        page = settings.public_origin or f"http://{shown}:{port}"
+        here = f"shard={settings.shard}&" if settings.shard else ""
+        address = f"{page}/?{here}token={quote(app.state.identity.token, safe='')}"
+        server = make_server(settings, app, address, notice(settings, port) if settings.classroom else "")
+        # uvicorn raises the signal again at its end; a stop by signal is no failure.
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: None)
+        server.run(sockets=listeners)
+        held.close()
     if not server.started:
         raise InputError("the service did not start; the lines above say why", "serve")

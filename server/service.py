@@ -13,22 +13,39 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from server.bench.benches import Benches
+from server.bench.blind import refusal
+from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
 from server.bench.experiment import THIS_VERSION, experiment_of
-from server.bench.portrait import bench_of
 from server.bench.recording import Records
-from server.bench.session import Session
+from server.bench.safety import Safety
+from server.bench.session import Seen, Session
+from server.bench.staging import Staging
 from server.bench.status import Bench, Opened
+from server.bench.watchdog import Watchdog
 from server.errors import ApiError, not_found
 from server.idling import EVERY_S, Idling
 from server.kernels import Kernels
 from server.lag import Lateness, probe
 from server.metrics import Metrics
+from server.people.audit import Audit
+from server.people.blinds import Blinds
+from server.people.classes import Classes
+from server.people.driving import Driving, go_without_driver
+from server.people.joining import Joining
+from server.people.lesson import Lesson
+from server.people.people import People
+from server.people.person import Person
+from server.people.sheet_shelf import Shelf
+from server.people.sheets import Sheets
+from server.people.student_benches import StudentBenches
+from server.people.votes import Votes
 from server.runs.figures import Figures
 from server.runs.jobs import Jobs
 from server.runs.queue import Queue
 from server.runs.sweeps import Sweeps
 from server.security.limits import Buckets
+from server.security.public import PublicOrigin
 from server.settings import Settings
 from server.store.database import Database
 from server.store.keeping import Keeping
@@ -53,25 +70,66 @@ class Service:
     """
 
     def __init__(self, settings: Settings) -> None:
-        self.settings = settings
+        self.settings, self.public = settings, PublicOrigin.parse(settings.public_origin)
         self.id = secrets.token_hex(8)
         self.metrics = Metrics()
         self.lag = Lateness(self.metrics.loop_lag)
         self.hub = Hub(settings, self.metrics, self._lateness)
         self.engine = Engine(self.metrics, self._after_round)
-        self.database = Database(settings.database_url or settings.data / "combbench.sqlite3")
-        self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
-        self.parameter_sets = ParameterSets(self.database)
-        self.benches = Benches(self.engine, settings, self.metrics)
+        place = settings.data / "combbench.sqlite3"
+        self.database = self.shared = Database(settings.database_url or place)
+        if settings.shard and settings.database_url:  # others use that one too; classes and recordings stay here
+            self.database = Database(place)
+        self.databases = {self.database, self.shared}
+        shard = settings.shard
+        self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes, shard)
+        self.parameter_sets = ParameterSets(self.shared)
+        self.people, self.audit = People(self.database, shard), Audit(self.database)
+        self.benches = Benches(self.engine, settings, self.metrics, self.audit.witness)
+        self.driving = Driving(self.people, self.hub, self._note, self._go_without_driver)
+        self.hub.company = self.driving.company
+        self.lesson = Lesson(self.database, self.people, self.audit, self.hub)
+        self.staging = Staging(self.benches, self.engine)
+        self.checkpoints = Checkpoints(settings.data / "benches", self.engine, self._kept)
+        self.student_benches = StudentBenches(
+            self.database, self.people, self.benches, self.close_bench, self.checkpoints
+        )
+        self.blinds, self.votes = Blinds(self.database, self.engine, self._turn_pages), Votes(self.database, shard)
+        self.classes = Classes(
+            self.database,
+            self.people,
+            self.student_benches,
+            self.audit,
+            self.lesson,
+            self.blinds,
+            self.votes,
+            settings.max_students,
+            shard,
+        )
         self.records = Records(self.engine, self.recordings, settings.max_recording_ticks)
-        self.links = Links(self.database, settings.max_links)
+        self.links = Links(self.shared, settings.max_links)
         self.idling = Idling(self._present, settings.idle_minutes)
-        self.queue = Queue(self.database, settings, self.metrics)
+        self.queue = Queue(self.shared, settings, self.metrics)
         self.jobs = Jobs(self.queue, settings)
-        self.sweeps = Sweeps(self.queue, settings, self.database)
+        self.sweeps = Sweeps(self.queue, settings, self.shared)
         self.figures = Figures(self.queue, settings)
-        self.keeping = Keeping(self.database, settings)
+        self.keeping = Keeping(self.database, self.shared, settings)
+        self.safety = Safety(
+            self.engine, self.records, self.keeping, self.metrics, self.hub.show_status, self.close_bench
+        )
+        self.watchdog = Watchdog(self.engine, self.safety)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
+        self.joining = Joining(self.classes)
+        self.sheets = Sheets(
+            self.database,
+            Shelf(self.shared),
+            self.classes,
+            self.people,
+            self.benches,
+            self.engine,
+            self.close_bench,
+            self.blinds,
+        )
         self.viewers = _viewers()
         self._coming_back = asyncio.Lock()
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
@@ -83,14 +141,23 @@ class Service:
     async def running(self) -> AsyncIterator[None]:
         """Start everything, and stop it in the opposite order."""
         self._loop = asyncio.get_running_loop()
-        await asyncio.to_thread(self.database.migrate)
+        for database in self.databases:
+            await asyncio.to_thread(database.migrate)
         await self.recordings.recover()
+        await self.people.recover()
+        await self.lesson.recover()
+        await self.blinds.recover()
+        await self.sheets.recover()
         self.engine.start()
+        self.safety.start()
+        self.watchdog.start()
         await self.kernels.start()
+        await self._bring_back_seen()
         await self.queue.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run()))
-        tasks.append(asyncio.create_task(self._watch_idle()))
+        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.sheets)
+        tasks += [asyncio.create_task(self._watch_idle()), *(asyncio.create_task(part.run()) for part in lasting)]
         tasks.append(asyncio.create_task(self.queue.warm(self.kernels.compiled)))
         # where pandas is installed, pyarrow loads it with the first array, which takes longer than a recording may wait
         tasks.append(asyncio.create_task(asyncio.to_thread(pa.array, [0.0])))
@@ -109,41 +176,90 @@ class Service:
             await self.figures.stop()
             await self.queue.close()
             self.sweeps.close()
+            await self.checkpoints.write()
             await self.benches.close()
+            await self.safety.stop()
+            await self.audit.write()
+            await asyncio.to_thread(self.watchdog.stop)
             await asyncio.to_thread(self.engine.stop)
-            await asyncio.to_thread(self.database.close)
+            for database in self.databases:
+                await asyncio.to_thread(database.close)
 
-    def view(self, session: Session) -> Bench:
-        """Describe a bench in full."""
+    def seen(self, session: Session, person: Person) -> Seen:
+        """Return a bench as somebody may see it: all of it, or what is shown while a fault is hidden there."""
+        view = session.hiding.view
+        return view if view is not None and session.hiding.hides_from(person) else session
+
+    def is_blind(self, person: Person, bench_id: str) -> bool:
+        """Whether a fault is hidden from somebody, on the bench in the path or on that of a student."""
+        session = self.benches.find(bench_id or self.people.bench_of(person))
+        return session is not None and session.hiding.hides_from(person)
+
+    def whole(self, bench_id: str, person: Person) -> Session:
+        """Return a bench that somebody may see all of, or refuse."""
+        if self.is_blind(person, bench_id):
+            raise refusal()
+        return self.benches.get(bench_id)
+
+    def view(self, session: Session, person: Person) -> Bench:
+        """Describe a bench as somebody may see it."""
         view3d = f"/benches/{session.id}/3d/" if self.viewers is not None else None
-        bench = bench_of(session, self.hub.around(session), view3d)
+        bench = self.seen(session, person).describe(self.hub.around(session), view3d)
         return bench.model_copy(update={"let_go_in_s": self.idling.left_s(session)})
 
-    def views(self) -> list[Bench]:
-        """Describe the benches, oldest first; one that cannot be described does not hide the others."""
+    def views(self, person: Person) -> list[Bench]:
+        """Describe the benches that are no students', oldest first; one that cannot be described hides no others."""
         descriptions = []
         for session in self.benches.all():
+            if session.class_id:
+                continue
             try:
-                descriptions.append(self.view(session))
+                descriptions.append(self.view(session, person))
             except Exception:
                 log.exception("bench %s cannot be described", session.id)
         return descriptions
 
-    async def opened(self, session: Session) -> Bench:
+    async def opened(self, session: Session, person: Person) -> Bench:
         """Describe a bench just made; one that cannot be described is closed again."""
         try:
-            return self.view(session)
+            return self.view(session, person)
         except Exception:
             await self.close_bench(session)
             raise
 
-    async def close_bench(self, session: Session) -> None:
-        """Close a bench, its streams and its 3D view."""
+    async def close_bench(self, session: Session, *, comes_back: bool = False) -> None:
+        """Close a bench, its streams and its 3D view; unless it comes back, links to watch it end too."""
+        await self.blinds.close(session)
         await self.benches.close_bench(session)
+        if not comes_back:
+            self.driving.forget(session.id)
+            await self.lesson.forget(session.id)
+            for watcher in self.people.watchers(session.id):
+                await self.people.remove(watcher)
         self.hub.close_bench(session.id)
         self.idling.forget(session.id)
+        await self.checkpoints.forget(session.id)
         if self.viewers is not None:
             await self.viewers.drop(session.id)
+
+    async def _turn_pages(self, session: Session) -> None:
+        """Let the pages of a bench come back to what may be seen of it now."""
+        self.hub.turn_bench(session.id)
+        if self.viewers is not None:
+            await self.viewers.drop(session.id)
+
+    def _kept(self) -> list[Session]:
+        """List the benches that survive a crash: those of students, and those that students are shown or lent."""
+        seen = self.people.seen_by_students()
+        return [one for one in self.benches.all() if one.class_id or (one.id in seen and not one.replay_of)]
+
+    async def _bring_back_seen(self) -> None:
+        """Bring the benches back that students were shown or lent, before anybody asks; end that of what is gone."""
+        self.driving.recover()
+        for bench_id in self.people.seen_by_students():
+            if not await self.student_benches.bring_back(bench_id):
+                self.driving.forget(bench_id)
+                await self.lesson.forget(bench_id)
 
     async def open_link(self, link: LinkDetail, bench_id: str | None = None) -> Session:
         """Make a bench that repeats the experiment of a link.
@@ -188,16 +304,18 @@ class Service:
 
     async def _let_go(self, session: Session) -> None:
         """Keep what was done on a bench, and close it unless somebody has come meanwhile."""
+        is_kept = False
         if not session.replay_of:  # a recording is kept already
             experiment = await self.engine.call(experiment_of, session)
             title = session.scenario.head.title or session.scenario.id
             try:
                 await self.links.keep(Content(experiment=experiment), title[:200], bench_id=session.id)
+                is_kept = True
             except ApiError as error:
                 log.warning("bench %s is let go for good: %s", session.id, error.body.message)
         if not self.idling.due([session]):
             return await self.links.delete(session.id)
-        await self.close_bench(session)
+        await self.close_bench(session, comes_back=is_kept)
         log.info("bench %s was let go: nobody had been there for a while", session.id)
 
     async def _watch_idle(self) -> None:
@@ -214,6 +332,20 @@ class Service:
     def _present(self, bench_id: str) -> int:
         """Count the pages that watch a bench, those with its 3D view alone too."""
         return self.hub.watchers(bench_id) + (self.viewers.watchers(bench_id) if self.viewers is not None else 0)
+
+    def _note(self, bench_id: str, person: Person, text: str) -> None:
+        """Keep what somebody did about driving or watching a bench."""
+        bench = self.benches.find(bench_id)
+        if bench is not None:
+            name = "a link to watch" if person.role == "watcher" else person.name
+            class_id = person.class_id or bench.class_id
+            self.audit.add(name, "driving", text, class_id, bench_id, bench.status.tick)
+
+    def _go_without_driver(self, bench_id: str, why: str) -> None:
+        """Let a bench do what its scenario says when whoever drove it is gone."""
+        bench = self.benches.find(bench_id)
+        if bench is not None:
+            self.engine.submit(go_without_driver, bench, why)
 
     def _lateness(self) -> dict[str, float]:
         """Return the lateness of the event loop and of the engine."""

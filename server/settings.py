@@ -9,7 +9,7 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, SecretStr, ValidationError, field_validator
+from pydantic import Field, SecretStr, ValidationError, field_validator, model_validator
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -18,10 +18,12 @@ from pydantic_settings import (
 )
 
 from core.errors import InputError
+from server.platforms import Platform
 from server.security.public import PublicOrigin
 
 CONFIG_FILE = Path("combbench.toml")
 PREFIX = "COMBBENCH_"
+ANY_IPV4, ANY_IPV6 = "0.0.0.0", "::"
 
 
 class Settings(BaseSettings):
@@ -29,17 +31,28 @@ class Settings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", toml_file=CONFIG_FILE)
 
-    host: str = Field("127.0.0.1", description="Address to listen on; anything but loopback needs a token.")
+    host: str = Field(
+        "127.0.0.1", description="Address to listen on; anything but loopback needs a token or classroom."
+    )
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 picks a free one.")
     data: Path = Field(Path("data"), description="Folder for the database, recordings and run results.")
     database_url: str = Field(
         "", repr=False, description="Database by address, such as postgresql://...; SQLite in data if unset."
+    )
+    shard: str = Field(
+        "",
+        pattern="^[2-9a-hjkmnp-z]?$",
+        description="Letter of this process where several serve one public_origin; its ids and codes begin with it.",
     )
     token: SecretStr | None = Field(None, description="Access token; made and kept in the data folder if unset.")
     allowed_hosts: list[str] = Field([], description="Further host names the page may be opened under.")
     public_origin: str = Field(
         "", description="Address of the page behind a proxy, such as https://lab.example or https://lab.example/bench."
     )
+    classroom: bool = Field(
+        False, description="Serve a class on this network without TLS; the token is accepted from this machine alone."
+    )
+    lti: list[Platform] = Field([], description="Learning platforms that may launch the bench by LTI 1.3.")
     metrics_open: bool = Field(False, description="Serve /metrics without a token.")
     open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
 
@@ -48,6 +61,11 @@ class Settings(BaseSettings):
         15.0,
         ge=0,
         description="Minutes until a bench that nobody watches and no script asks for is let go; 0 lets none go.",
+    )
+    max_students: int = Field(60, ge=1, le=500, description="Students of all classes, each with a bench beside those.")
+    student_history_mb: int = Field(16, ge=1, le=10_000, description="Memory of the history of a student's bench.")
+    student_ticks_per_s: int = Field(
+        20_000, ge=100, description="Ticks a second to which the time scale of a student's bench is limited."
     )
     max_links: int = Field(10_000, ge=0, description="Experiments and layouts kept by a link.")
     max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
@@ -59,7 +77,7 @@ class Settings(BaseSettings):
     max_run_mb: int = Field(
         1000,
         ge=1,
-        description="Memory of the process of a run; it keeps taps and outputs as far as they have room.",
+        description="MB of numbers in the trace of a run; beyond, it lacks taps, then outputs no figure is made of.",
     )
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
@@ -93,6 +111,13 @@ class Settings(BaseSettings):
     def _as_browsers_write_it(cls, given: str) -> str:
         """Check the address, and write it as browsers do."""
         return str(PublicOrigin.parse(given))
+
+    @model_validator(mode="after")
+    def _open_to_the_class(self) -> Settings:
+        """Listen to the network for a class, unless an address to listen on is given."""
+        if self.classroom and "host" not in self.model_fields_set:
+            self.host = ANY_IPV4
+        return self
 
     @property
     def is_loopback(self) -> bool:
@@ -145,12 +170,13 @@ def load_settings(**given: Any) -> Settings:
         return Settings(**values)
     except ValidationError as error:
         first = error.errors()[0]
-        name = str(first["loc"][0]) if first["loc"] else ""
+        place = [str(part) for part in first["loc"]] or [""]
+        name = place[0]
         if first["type"] == "extra_forbidden":
-            raise InputError(f"unknown setting '{name}' in {CONFIG_FILE}", field=name) from None
+            raise InputError(f"unknown setting '{'.'.join(place)}' in {CONFIG_FILE}", field=name) from None
         source = _source(name, values, _file_values())
         reason = first["msg"].removeprefix("Value error, ").lower()
-        raise InputError(f"setting '{name}' from {source}: {reason}", field=name) from None
+        raise InputError(f"setting '{'.'.join(place)}' from {source}: {reason}", field=name) from None
     except (ValueError, RecursionError) as error:  # also a whole number of more digits than Python reads
         raise InputError(f"{CONFIG_FILE} is not valid TOML: {error}") from None
     except OSError as error:
@@ -164,6 +190,8 @@ def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting
     rows = []
     for name, field in Settings.model_fields.items():
         source, value = _source(name, values, file_values), str(getattr(settings, name))
+        if name == "host" and source == "default" and settings.classroom:
+            source = "classroom"
         shown = without_password(value) if name == "database_url" else value
         rows.append(EffectiveSetting(name, shown, source, field.description or ""))
     return rows

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -12,9 +15,11 @@ from sqlalchemy.exc import DBAPIError
 from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.campaign.campaign import Campaign, Stopped
+from scenarios.campaign.check import check
 from scenarios.campaign.cluster import check_address
+from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.parts import Parts, write_runs
-from scenarios.campaign.survey import Survey
+from scenarios.campaign.survey import Survey, listed
 from scenarios.campaign.sweep import Sweep
 from scenarios.report.campaign import surveyed_report
 from scenarios.report.html import as_toml
@@ -33,8 +38,10 @@ TABLE, CAMPAIGN, REPORT, POINTS, RUNS_PARQUET, RUNS_CSV = (
 )
 PARTS = "runs"
 """Folder of the Parquet files that grow while the campaign runs."""
-MOST_LISTED, POINTS_AT_ONCE = 20_000, 500
+MOST_LISTED = 20_000
 """Points whose tallies are written as JSON, each up to 10 kB; the tables have more."""
+FEW_LISTED, PIECES = 750, 8
+"""Points that are listed at once; more are listed in so many pieces, none smaller, by the processes."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +67,9 @@ def read_sweep(path: Path) -> Sweep:
     source = document.get("scenario")
     if isinstance(source, str) and source.endswith(".toml"):
         document["scenario"] = _toml(path.parent / source, "scenario")
-    return Sweep.load(document)
+    sweep = Sweep(document)
+    check(sweep)
+    return sweep
 
 
 def _toml(path: Path, field: str) -> dict[str, Any]:
@@ -107,13 +116,14 @@ def carry_out(
         raise InputError(f"cannot write to {folder}: {error.strerror}", "--out") from None
     database = Database(database_url or place)
     results = Results(database)
-    parts = Parts(sweep, folder / PARTS)
+    parts, processes = Parts(sweep, folder / PARTS), Processes(workers)
 
     def follow(done: int, total: int) -> None:
         parts.follow(done, results.outcomes)
         on_progress(done, total)
 
-    campaign = Campaign(sweep, results, workers=workers, scheduler=scheduler, on_progress=follow)
+    own = None if scheduler else processes
+    campaign = Campaign(sweep, results, scheduler=scheduler, processes=own, on_progress=follow)
     try:
         database.migrate()
         write_text(named, as_toml({**sweep.document, "id": sweep.head.id}))
@@ -121,7 +131,7 @@ def carry_out(
             campaign.run()
         finally:
             parts.keep_up(results.outcomes, to_end=True)
-            failed, warnings = write(sweep, parts, folder)
+            failed, warnings = write(sweep, parts, folder, processes)
     except DBAPIError as error:
         text = f"the database cannot be used: {reason_of(error)}"
         raise Stopped(f"{text}; {campaign.done} of {campaign.total} runs are done") from None
@@ -129,13 +139,14 @@ def carry_out(
         text = f"cannot write to {folder}: {error.strerror}"
         raise Stopped(f"{text}; {campaign.done} of {campaign.total} runs are done") from None
     finally:
+        processes.shutdown()
         database.close()
         held.close()
     return Ended(campaign.done, campaign.total, failed, warnings, folder)
 
 
-def write(sweep: Sweep, parts: Parts, folder: Path) -> tuple[int, list[str]]:
-    """Write report and tables, each under a temporary name first.
+def write(sweep: Sweep, parts: Parts, folder: Path, processes: Processes) -> tuple[int, list[str]]:
+    """Write report and tables, each under a temporary name first; many points are listed by the processes meanwhile.
 
     Returns
     -------
@@ -144,25 +155,32 @@ def write(sweep: Sweep, parts: Parts, folder: Path) -> tuple[int, list[str]]:
     list of str
         What the others warn of, once each.
     """
-    survey = Survey(sweep, parts)
+    survey, count = Survey(sweep, parts), len(sweep.points)
+    size = max(FEW_LISTED, -(-count // PIECES))
+    pieces = [range(first, min(first + size, count)) for first in range(0, count, size)]
+    listing: list[Future[bytes]] = []
+    with contextlib.suppress(*LOST):
+        while FEW_LISTED < count <= MOST_LISTED and len(listing) < len(pieces):
+            listing.append(processes.submit(listed, sweep.document, folder / PARTS, pieces[len(listing)]))
+
+    def list_points(file: BinaryIO) -> None:
+        for piece, elsewhere in zip_longest(pieces, listing):
+            text = None
+            with contextlib.suppress(*LOST):
+                text = elsewhere.result() if elsewhere is not None else None
+            file.write((b",\n" if file.tell() else b"[\n") + (text or survey.listed(piece)))
+        file.write(b"\n]\n")
+
     files: dict[str, Callable[[BinaryIO], object]] = {
         REPORT: lambda file: file.write(surveyed_report(sweep, survey).encode()),
         RUNS_PARQUET: lambda file: write_runs(parts, file, kind="parquet"),
         RUNS_CSV: lambda file: write_runs(parts, file, kind="csv"),
     }
-    if len(sweep.points) <= MOST_LISTED:
-        files[POINTS] = lambda file: write_points(survey, len(sweep.points), file)
+    if count <= MOST_LISTED:
+        files[POINTS] = list_points
     for name, put in files.items():
         part = folder / f"{name}.part"
         with part.open("wb") as file:
             put(file)
         part.rename(folder / name)
     return survey.failed(), survey.warnings()
-
-
-def write_points(survey: Survey, count: int, file: BinaryIO) -> None:
-    """Write the tallies of all points as JSON, some at a time."""
-    for first in range(0, count, POINTS_AT_ONCE):
-        for point in survey.page(range(first, min(first + POINTS_AT_ONCE, count))):
-            file.write((b",\n" if file.tell() else b"[\n") + point.model_dump_json().encode())
-    file.write(b"\n]\n")

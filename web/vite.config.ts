@@ -1,4 +1,5 @@
 import react from "@vitejs/plugin-react";
+import { compression } from "vite-plugin-compression2";
 import { defineConfig } from "vitest/config";
 
 /** Where `npm run dev` finds the board; the built page is served by the board itself. */
@@ -7,7 +8,11 @@ const board = process.env.COMBBENCH_URL ?? "http://127.0.0.1:8000";
 export default defineConfig({
   // All addresses are relative to the page's own, so that a proxy may serve it under any path.
   base: "./",
-  plugins: [react()],
+  plugins: [
+    react(),
+    // The board serves these instead: a class that opens the page over one wireless network waits for a third of it.
+    compression({ algorithms: ["gzip"], include: /\.(js|css|svg)$/, skipIfLargerOrEqual: true }),
+  ],
   server: {
     host: "127.0.0.1",
     fs: { allow: [".", "../scenarios/report"] },

@@ -17,7 +17,15 @@ from core.board import program
 from core.board.fold import SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
-from core.board.pattern import Pattern, Uneven, is_same_but_seed, is_same_structure, numbers
+from core.board.pattern import (
+    Pattern,
+    Uneven,
+    has_same_blocks,
+    is_alike,
+    is_same_structure,
+    numbers,
+    unlike,
+)
 from core.board.pending import Queue
 from core.board.program import EVERY, call, walk
 from core.board.spec import Spec
@@ -30,8 +38,6 @@ from core.ports import RESERVED, TICK, TIME_MS
 
 ALIGNMENT = 8
 """Numbers of a cache line, at which rows of lanes begin."""
-CHUNK = 128
-"""Ticks whose signals are kept before they are sorted by board."""
 
 
 @kernel
@@ -49,6 +55,7 @@ def run(
     folded: IntArray,
     rows: FloatArray,
     columns: IntArray,
+    trace: FloatArray,
     sizes: IntArray,
     trip: int,
 ) -> int:
@@ -59,17 +66,20 @@ def run(
     p, s, w : ndarray, shape (numbers, WIDTH)
         Parameters, states and signals, a column for each board.
     tail : ndarray
-        Addresses of what folds a tick and of what keeps it (``core.lanes.rows``).
+        Addresses of what folds a tick, of what keeps it, and of what sorts the ticks kept (``core.lanes.rows``).
     folds, folded : ndarray
         The folds, and the places of the outputs that count.
     rows, columns : ndarray
-        Where signals are kept, shape (ticks, kept, WIDTH), and their places.
+        Where signals are kept, shape (WIDTH, kept, WIDTH), and their places.
+    trace : ndarray, shape (kept, WIDTH, ticks)
+        Where they go, sorted by board, ``WIDTH`` ticks at a time; the last few ticks stay in ``rows``.
     sizes : ndarray
-        How many outputs count, how many there are, how many signals are kept.
+        How many outputs count, how many there are, how many signals are kept; the four numbers of ``sorting``.
     """
     p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
     w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
-    row, row_bytes = np.int64(rows.ctypes.data), 8 * WIDTH * len(columns)
+    first_row, row_bytes = np.int64(rows.ctypes.data), 8 * WIDTH * len(columns)
+    trace_address, row = np.int64(trace.ctypes.data), first_row
     fold_address, folded_address = np.int64(folds.ctypes.data), np.int64(folded.ctypes.data)
     column_address, size_address = np.int64(columns.ctypes.data), np.int64(sizes.ctypes.data)
     for i in range(n):
@@ -81,19 +91,16 @@ def run(
         call(int(tail[0]), w_address, fold_address, folded_address, size_address)
         call(int(tail[1]), w_address, row, column_address, size_address + 16)
         row += row_bytes
+        if i % WIDTH == WIDTH - 1:
+            sizes[6] = tick + 1 - WIDTH
+            call(int(tail[2]), first_row, trace_address, column_address, size_address + 24)
+            row = first_row
         tripped = False
         for k in range(WIDTH):
             tripped = tripped or w[trip, k] != 0.0
         if tripped:
             return i + 1
     return n
-
-
-@kernel
-def call_once(address: int, first: FloatArray, second: FloatArray, places: IntArray, sizes: IntArray) -> None:
-    """Call a function of four pointers with arrays."""
-    data = np.int64(first.ctypes.data), np.int64(second.ctypes.data), np.int64(places.ctypes.data)
-    call(address, data[0], data[1], data[2], np.int64(sizes.ctypes.data))
 
 
 class Abreast:
@@ -127,14 +134,16 @@ class Abreast:
         self._folds = np.repeat(pattern.board.folds[:, :, None], WIDTH, axis=2)
         self._columns = np.array([wiring.index[name] for name in columns], dtype=np.int64)
         self._trace = np.empty((len(columns), WIDTH, samples))
-        self._rows = np.empty((CHUNK, len(columns), WIDTH))
+        self._rows = np.empty((WIDTH, len(columns), WIDTH))
         self._folded = pattern.folded + RESERVED
         outputs = self._folds.shape[1]
-        self._sizes = np.array([len(self._folded), outputs, len(columns)], dtype=np.int64)
-        self._tail = np.array([folding((A, B), SHIFTS, RESERVED), keeping()], dtype=np.int64)
+        sizes = len(self._folded), outputs, len(columns), len(columns), WIDTH, samples, 0
+        self._sizes = np.array(sizes, dtype=np.int64)
+        self._tail = np.array([folding((A, B), SHIFTS, RESERVED), keeping(), sorting()], dtype=np.int64)
         self._names, self._trip = list(columns), wiring.trip
         self.boards: list[Lane] = []
         self._leaders: list[Lane] = []
+        self._read, self._packed = {**pattern.read}, set[int]()
         for lane, (spec, queue) in enumerate(zip(specs, pending, strict=True)):
             self.boards.append(self._board(lane, spec, queue))
         for lane in range(len(self.boards), WIDTH):  # lanes nobody needs follow the first
@@ -146,26 +155,34 @@ class Abreast:
         self._link()
 
     def _board(self, lane: int, spec: Spec, queue: Queue) -> Lane:
-        """Return the board of a lane, with what its bench has of its own."""
-        pattern, before = self._pattern, self._pattern.board
+        """Return the board of a lane; what its bench does not have of its own is that of the lane before."""
+        pattern, before = self._pattern, self.boards[-1] if self.boards else self._pattern.board
         p, s, w = self._p[:, lane], self._s[:, lane], self._w[:, lane]
-        rows, leader = pattern.seeded, next((one for one in self._leaders if one.leads(spec, queue)), None)
-        if leader is not None:
-            wiring = replace(leader.wiring, p=p, s=s, w=w)
-            p[:], s[:], w[:] = leader.wiring.p, leader.wiring.s, leader.wiring.w
-        else:
-            wiring = _apart(before.wiring, p, s, w)
-            if spec is not before.spec and not is_same_but_seed(spec, before.spec):
-                wiring.instances, rows = instances(spec), pattern.used
-                if not is_same_structure(before, spec, wiring.instances):
-                    raise Uneven("another structure")
-        for row in rows:
-            instance = wiring.instances[row]
-            parameters, state = numbers(instance, spec)
-            packed, own = wiring.packed(row), wiring.state_of(instance.key)
-            if len(parameters) != len(packed) or len(state) != len(own):
+        order = before.wiring.instances
+        if spec.faults is not before.spec.faults or not has_same_blocks(spec, before.spec):
+            order = instances(spec)
+            if not is_same_structure(pattern.board, spec, order):
+                raise Uneven("another structure")
+        leader = next((one for one in self._leaders if one.leads(queue)), None)
+        wiring = _apart(pattern.board.wiring) if leader is None else leader.wiring
+        wiring = replace(wiring, instances=[*order], p=p, s=s, w=w)
+        others: dict[tuple[int, str], set[str]] = {}
+        for row, read in self._read.items():
+            instance, known = order[row], before.wiring.instances[row]
+            place = instance.every, instance.axis
+            if place not in others:
+                others[place] = unlike(spec.context(*place), before.spec.context(*place))
+            if others[place].isdisjoint(read) and is_alike(instance.params, known.params):
+                if row not in self._packed:
+                    continue
+                parameters, state = before.wiring.packed(row), before.wiring.state_of(instance.key)
+            else:
+                parameters, state, self._read[row] = numbers(instance, spec)
+                self._packed.add(row)
+            packed, first = wiring.packed(row), wiring.state_of(instance.key)
+            if len(parameters) != len(packed) or len(state) != len(first):
                 raise Uneven("other lengths")
-            packed[:], own[:] = parameters, state
+            packed[:], first[:] = parameters, state
         board = Lane(spec, wiring, self._folds[:, :, lane], queue, leader)
         if leader is None:
             self._leaders.append(board)
@@ -197,6 +214,8 @@ class Abreast:
             stopped = self._w[self._trip, : len(self.boards)] != 0.0
             tripped = [before or now for before, now in zip(tripped, stopped.tolist(), strict=True)]
             self._silence(tripped)
+        for board in self._leaders:
+            board.tell_faults()
         return [not gone for gone in tripped]
 
     def trace(self, lane: int) -> dict[str, FloatArray]:
@@ -204,20 +223,12 @@ class Abreast:
         return {name: self._trace[column, lane, : self.tick] for column, name in enumerate(self._names)}
 
     def _run(self, n: int) -> int:
-        board, n = self.boards[0], min(n, CHUNK)
         arrays = (self._table, self._p, self._s, self._w, self._io, self._tail, self._folds, self._folded)
-        kept = self._rows, self._columns, self._sizes
-        ran = int(run(n, self.tick, board.dt_ms, *arrays, *kept, self._trip))
-        self._sort(ran)
+        kept = self._rows, self._columns, self._trace, self._sizes
+        ran = int(run(n, self.tick, self.boards[0].dt_ms, *arrays, *kept, self._trip))
+        end, rest = self.tick + ran, ran % WIDTH
+        self._trace[:, :, end - rest : end] = self._rows[:rest].transpose(1, 2, 0)
         return ran
-
-    def _sort(self, ran: int) -> None:
-        """Sort the signals of some ticks by board."""
-        whole = ran // WIDTH * WIDTH
-        sizes = np.array([len(self._names), whole, self._trace.shape[2], self.tick], dtype=np.int64)
-        call_once(sorting(), self._rows, self._trace, sizes, sizes)
-        rest = self._rows[whole:ran].transpose(1, 2, 0)
-        self._trace[:, :, self.tick + whole : self.tick + ran] = rest
 
     def _silence(self, tripped: list[bool]) -> None:
         """Let the lane of a board that has tripped follow another, which has not."""
@@ -250,19 +261,15 @@ class Abreast:
         self._table[:, program.ADDRESS] = [code.address(first.instances[row].block) for row in rows]
 
 
-def _apart(wiring: Wiring, p: FloatArray, s: FloatArray, w: FloatArray) -> Wiring:
-    """Return the wiring of a board for another one with numbers of its own, which may change it."""
+def _apart(wiring: Wiring) -> Wiring:
+    """Return a wiring that a board may change."""
     return replace(
         wiring,
-        instances=[*wiring.instances],
         io=wiring.io.copy(),
         table=wiring.table.copy(),
         unread=[*wiring.unread],
         absent=[*wiring.absent],
         resting={*wiring.resting},
-        p=p,
-        s=s,
-        w=w,
     )
 
 

@@ -30,7 +30,7 @@ CHUNK = 512
 """Most ticks of one call of ``advance``."""
 
 
-COPIED = ("pending", "trip", "wiring", "folds", "used", "_observer")
+COPIED = ("pending", "trip", "wiring", "folds", "used", "observer")
 SHARED = ("spec", "base", "compiled", "tick")
 """What of a board is its own in every copy, and what never changes in place."""
 
@@ -70,7 +70,7 @@ class Board:
         self.trip: Trip | None = None
         self.folds = fold.begin(self.wiring.signals.outputs)
         self.used: set[str] = set()
-        self._observer = Observer(self.spec, self.wiring)
+        self.observer = Observer(self.spec, self.wiring)
         self._linked: Wiring | None = None
         self._running: list[int] = []
         self._table = self.wiring.table
@@ -141,7 +141,7 @@ class Board:
             stop = end if upcoming is None else min(end, upcoming)
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
-            for finding in self._observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
+            for finding in self.observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
                 self.note("board", **finding)
             if ran:
                 self.used |= {*self.spec.driving.values(), self.spec.measuring}

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from core import registry
 from core.block import BlockParams
-from core.board.commands import Command, Heal, Inject, Set, Switch, Trip
+from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch, Trip
 from core.board.difference import change
 from core.board.document import CHOSEN, as_written
 from core.board.fitting import misfit
@@ -32,6 +32,10 @@ class Board(Protocol):
     wiring: Wiring
     trip: Trip | None
     tick: int
+
+    @property
+    def dt_ms(self) -> float:
+        """Sample interval, ms."""
 
     def value(self, signal: str) -> float:
         """Return the value of a signal after the last tick."""
@@ -65,6 +69,8 @@ def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
         return set_values(board, command.set)
     if isinstance(command, Switch):
         return switch(board, command)
+    if isinstance(command, MakeSafe):
+        return make_safe(board, command.make_safe)
     return reset_trip(board)
 
 
@@ -126,6 +132,8 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
 def switched(spec: Spec, command: Switch) -> dict[str, Any]:
     """Return the path of the slot that a controller stands in, and its name."""
     block = registry.block("control", command.switch, "switch")
+    if reason := misfit(block, spec.plant.block):
+        raise InputError(f"{block.name} {reason}", "switch", f"there are: {', '.join(spec.controllers)}")
     last = list(spec.driving)[-1]
     path = f"slots.{block.slot}" if block.slot in spec.driving and block.slot != last else "controller.kind"
     return {path: block.name}
@@ -137,6 +145,15 @@ def disengage(board: Board) -> None:
         if instance.prefix.split(".")[0] == "drive":
             for port in instance.block.outputs:
                 board.wiring.w[board.wiring.index[f"{instance.prefix}.{port.name}"]] = 0.0
+
+
+def make_safe(board: Board, reason: str) -> tuple[Any, Any]:
+    """Trip the board at this tick for a reason that no signal shows."""
+    if board.trip is not None:
+        raise InputError("the board has tripped already", "make_safe", code="conflict")
+    board.trip = Trip(tick=board.tick, time_ms=board.tick * board.dt_ms, reason=reason, signal="", value=None)
+    disengage(board)
+    return None, board.trip.model_dump()
 
 
 def cause(board: Board) -> tuple[str, str]:
@@ -161,6 +178,7 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
         raise InputError("the board has not tripped", "reset_trip", code="conflict")
     old = board.trip.model_dump()
     fresh = wire(board.spec)
+    fresh.left_out = board.wiring.left_out
     for instance in fresh.instances:
         if instance.key.endswith(".score"):
             fresh.state_of(instance.key)[:] = board.wiring.state_of(instance.key)

@@ -97,13 +97,21 @@ class Switch(Timed):
     cold: bool = False
 
 
-Command = ResetTrip | Heal | Inject | Set | Switch
+class MakeSafe(Timed):
+    """Take the outputs to their safe values, as a trip does; says why."""
+
+    kind = "make_safe"
+    make_safe: str = Field(min_length=1, max_length=200, description="why, in words")
+
+
+Command = ResetTrip | Heal | Inject | Set | Switch | MakeSafe
 COMMANDS: dict[str, type[Command]] = {
     "reset_trip": ResetTrip,
     "heal": Heal,
     "fault": Inject,
     "set": Set,
     "switch": Switch,
+    "make_safe": MakeSafe,
 }
 """The commands by the field that says what is done, in the order in which those of one event take effect."""
 FIELDS = tuple(dict.fromkeys(name for model in COMMANDS.values() for name in model.model_fields))

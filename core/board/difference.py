@@ -32,7 +32,7 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
         if spec.context(*place) is not before.context(*place) and spec.context(*place) != before.context(*place)
     }
     packed = {
-        row: order[row].packed(spec)
+        row: order[row].packed(spec.context(order[row].every, order[row].axis))
         for row in rows
         if (order[row].every, order[row].axis) in other or order[row] != wiring.instances[row]
     }

@@ -212,6 +212,11 @@ def _position(part: str, items: list[Any], path: str) -> int:
     return int(part)
 
 
+def says_the_same(one: Any, other: Any) -> bool:
+    """Return whether two parts of documents say the same, to the sign of a zero."""
+    return one is other or repr(one) == repr(other)
+
+
 def has(document: Document, path: str) -> bool:
     """Return whether a document says something at a path; parameters of controllers and sensors may be parked."""
     if _leads(document, path.split(".")):

@@ -123,8 +123,8 @@ class Ensemble(Board):
             except InputError as error:
                 raise error.under(f"twins.{name}") from None
         self._own = {name: [path for path, _ in _leaves(with_values(own, {}))] for name, own in values.items()}
-        self._mirrored = 0
-        self._warned: set[str] = set()
+        self.mirrored = 0
+        self.warned: set[str] = set()
         self._table_of_all()
 
     def _table_of_all(self) -> None:
@@ -174,7 +174,7 @@ class Ensemble(Board):
         rows = super().advance(n)
         if rows.count == 0:
             return rows
-        todo, self._mirrored = self.done[self._mirrored :], len(self.done)
+        todo, self.mirrored = self.done[self.mirrored :], len(self.done)
         outputs, taps, idle = [rows.outputs], [rows.taps], [rows.idle]
         for (name, twin), (shown_outputs, shown_taps) in zip(self.twins.items(), self._columns, strict=True):
             for tick, command in todo:
@@ -199,8 +199,10 @@ class Ensemble(Board):
             if not shared:
                 return
             command = command.model_copy(update={"set": shared})
-        if isinstance(command, ResetTrip) and twin.trip is not None and command.at_sample is not None:
-            twin.tick = command.at_sample  # it rested meanwhile
+        if isinstance(command, ResetTrip):
+            twin.apply_due()  # what made it safe may wait for this very tick
+            if twin.trip is not None and command.at_sample is not None:
+                twin.tick = command.at_sample  # it rested meanwhile
         with suppress(InputError):  # it need not be possible there, such as healing what tripped it
             twin.apply(command)
 
@@ -208,26 +210,26 @@ class Ensemble(Board):
         """Note what a twin found, what it warns of that the board does not, and why it rests."""
         for entry in entries:
             kind = NOTED.get(entry.kind)
-            if kind is None or (kind == "warning" and entry.text in self._warned):
+            if kind is None or (kind == "warning" and entry.text in self.warned):
                 continue
             self.note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
 
     def note(self, actor: str, kind: str, text: str, **rest: Any) -> LogEntry:
         """Write an entry of the log, and remember what the board warns of."""
         if kind == "warning":
-            self._warned.add(text)
+            self.warned.add(text)
         return super().note(actor, kind, text, **rest)
 
     def checkpoint(self) -> Checkpoint:
         """Return everything all of them are at this tick edge."""
         whole = super().checkpoint()
         twins = {name: twin.checkpoint() for name, twin in self.twins.items()}
-        whole.parts.update(twins=twins, _own=self._own, _mirrored=self._mirrored, _warned=set(self._warned))
+        whole.parts.update(twins=twins, _own=self._own, mirrored=self.mirrored, warned=set(self.warned))
         return whole
 
     def _revive(self) -> None:
         self.twins = {name: Board.restore(kept) for name, kept in self.twins.items()}  # type: ignore[arg-type]
-        self._warned = set(self._warned)
+        self.warned = set(self.warned)
         super()._revive()
         self._table_of_all()
 

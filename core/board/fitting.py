@@ -69,8 +69,8 @@ def suited(spec: Spec) -> Spec:
     *others, last = spec.driving
     fields = {
         "plant.model": plant,
-        **{f"slots.{slot}": spec.controllers[spec.driving[slot]].block for slot in others},
-        "controller.kind": spec.controllers[spec.driving[last]].block,
+        **{f"slots.{slot}": registry.block("control", spec.driving[slot]) for slot in others},
+        "controller.kind": registry.block("control", spec.driving[last]),
         "sensor.kind": spec.sensors[spec.measuring].block,
     }
     if spec.is_analogue:

@@ -1,9 +1,13 @@
-"""What need not run in a board whose signals nobody watches: controllers that look on to the end."""
+"""What need not run in a board whose signals nobody watches: controllers and sensors that look on to the end."""
 
 from __future__ import annotations
 
+import re
+
 from core.board.board import Board
-from core.board.commands import Set, Switch
+from core.board.ensemble import Ensemble
+from core.board.pending import Queue
+from core.board.wiring import needed
 
 
 def leave_out_idle(board: Board) -> None:
@@ -11,25 +15,32 @@ def leave_out_idle(board: Board) -> None:
 
     Call it at the first tick, when all commands of the run wait.
     """
-    wiring, idle = board.wiring, idle_controllers(board)
-    wiring.left_out = {row for row, instance in enumerate(wiring.instances) if instance.key in idle}
-    wiring.is_changed = True
-    board.link()
+    for one in [board, *(board.twins.values() if isinstance(board, Ensemble) else ())]:
+        wiring, idle = one.wiring, idle_controllers(one, board.pending)
+        wiring.left_out = {row for row, instance in enumerate(wiring.instances) if instance.key in idle}
+        wiring.is_changed = True
+        one.link()
 
 
-def idle_controllers(board: Board) -> set[str]:
-    """Return the controllers that drive neither now nor by a command that waits, and that no other block reads."""
+def looking_on(board: Board) -> set[str]:
+    """Return the blocks that only look on: idle controllers, and sensors that rest to the end."""
+    return idle_controllers(board, board.pending) | (
+        {*board.spec.sensors} - needed(board.spec, sorted(_named(board.pending)))
+    )
+
+
+def idle_controllers(board: Board, pending: Queue) -> set[str]:
+    """Return the controllers that drive neither now nor by a command that waits, and that nothing else reads."""
     spec, wiring = board.spec, board.wiring
-    used = {*spec.driving.values()}
-    for entry in board.pending:
-        if isinstance(entry.command, Switch):
-            used.add(entry.command.switch)
-        elif isinstance(entry.command, Set):
-            used |= {str(value) for value in entry.command.set.values()}
-    idle = {*spec.controllers} - used
-    places = {wiring.index[signal.name]: signal.block for signal in board.signals if signal.block in idle}
+    idle = {*spec.controllers} - {*spec.driving.values()} - _named(pending)
+    places = {wiring.index[signal.name]: signal.block for signal in wiring.signals if signal.block in idle}
     for row, instance in enumerate(wiring.instances):
         if instance.key not in idle:
             read = wiring.ports(row)[: len(instance.block.inputs)].tolist()
             idle -= {places[place] for place in read if place in places}
     return idle
+
+
+def _named(pending: Queue) -> set[str]:
+    """Return all words of the commands that wait, their conditions included."""
+    return {word for entry in pending for word in re.findall(r"\w+", str(entry.command.document()))}

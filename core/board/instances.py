@@ -6,7 +6,7 @@ from functools import cache
 from typing import Any, NamedTuple, cast
 
 from core import registry
-from core.block import Block, BlockParams, FloatArray
+from core.block import Block, BlockParams, Context, FloatArray
 from core.board.spec import Section, Spec
 from core.diagnose.hypothesis import ModelList
 from core.errors import InputError
@@ -27,8 +27,8 @@ class Instance(NamedTuple):
     every: int = 1
     axis: str = ""
 
-    def packed(self, spec: Spec) -> FloatArray:
-        """Return what its step reads on a bench.
+    def packed(self, context: Context) -> FloatArray:
+        """Return what its step reads on a bench of which it may know some facts.
 
         Raises
         ------
@@ -36,7 +36,7 @@ class Instance(NamedTuple):
             For what the parameters do not allow on this bench, with the field below the key.
         """
         try:
-            return self.block.packed(self.params, spec.context(self.every, self.axis))
+            return self.block.packed(self.params, context)
         except InputError as error:
             raise error.under(self.key) from None
 
@@ -45,6 +45,15 @@ class Instance(NamedTuple):
 def faults_of(axes: tuple[str, ...]) -> dict[str, type[Block]]:
     """Return the faults that a plant with these axes may have, by name."""
     return {name: block for name, block in registry.blocks("faults").items() if block.fits(axes)}
+
+
+@cache
+def _absent_faults(axes: tuple[str, ...]) -> dict[str, Instance]:
+    """Return the faults that a plant with these axes may have, as they are while they are not there."""
+    return {
+        name: Instance(f"faults.{name}", f"faults.{name}", block, usual_params(block))
+        for name, block in faults_of(axes).items()
+    }
 
 
 def instances(spec: Spec) -> list[Instance]:
@@ -56,8 +65,8 @@ def instances(spec: Spec) -> list[Instance]:
     """
     order = [_usual("plant", spec.plant), _usual("environment", spec.environment)]
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
-    for name, block in faults_of(spec.axes).items():
-        order.append(Instance(f"faults.{name}", f"faults.{name}", block, spec.faults.get(name) or usual_params(block)))
+    for name, absent in _absent_faults(spec.axes).items():
+        order.append(absent._replace(params=spec.faults[name]) if name in spec.faults else absent)
     order += _measured(spec)
     order += [_waiting(spec, name, section) for name, section in spec.identifiers.items()]
     for name, section in spec.diagnosers.items():

@@ -10,18 +10,19 @@ from core.board.commands import Command, Heal, Inject
 from core.board.fold import Words
 from core.board.instances import Instance
 from core.board.log import Log, LogEntry
-from core.board.pattern import is_same_but_seed
+from core.board.pattern import numbers, unlike
 from core.board.pending import Queue
 from core.board.spec import Spec
 from core.board.wiring import Wiring
+from core.loop.score import Scores
 
 
 class Lane(Board):
     """A board whose arrays are columns of those of all; it keeps no log.
 
-    A lane that differs from an earlier one by the seed alone follows it: the leader carries out the commands, and its
-    followers take over what they change. They share all of its wiring but the numbers. ``specs`` are the benches it has
-    been, each with the tick from which on, but for faults.
+    A lane for which the same faults wait as for an earlier one follows it: the leader carries out the commands, and its
+    followers take over what they change. They share all of its wiring but the numbers and parameters. ``specs`` are
+    the benches it has been, each with the tick from which on, but for faults.
 
     Parameters
     ----------
@@ -44,16 +45,24 @@ class Lane(Board):
         self.log, self.done, self.used = Log(), [], set()
         self.followers: list[Lane] = []
         self.specs: list[tuple[int, Spec]] = [(0, spec)]
+        self._unlike: dict[tuple[int, str], set[str]] = {}
+        self._scores: tuple[int, dict[str, Scores]] | None = None
         if leader is not None:
             leader.followers.append(self)
-            self.done, self.used, self.specs = leader.done, leader.used, leader.specs
+            self.done, self.used = leader.done, leader.used
 
-    def leads(self, spec: Spec, pending: Queue) -> bool:
-        """Say whether a bench and its commands are those of this lane but for the seed, and are faults alone."""
-        return is_same_but_seed(self.spec, spec) and all(
+    def scores(self) -> dict[str, Scores]:
+        """Return the score of every diagnoser that chooses between hypotheses, read once at each tick."""
+        if self._scores is None or self._scores[0] != self.tick:
+            self._scores = self.tick, super().scores()
+        return self._scores[1]
+
+    def leads(self, pending: Queue) -> bool:
+        """Say whether the commands that wait for another lane are those of this one, and are faults alone."""
+        return all(
             one is not None
             and other is not None
-            and (one.tick, one.command) == (other.tick, other.command)
+            and (one is other or (one.tick, one.command) == (other.tick, other.command))
             and isinstance(one.command, Inject | Heal)
             for one, other in zip_longest(self.pending, pending)
         )
@@ -71,11 +80,13 @@ class Lane(Board):
             self.specs.append((self.tick, self.spec))
         now = self.wiring.instances
         changed = [row for row, instance in enumerate(now) if instance is not before[row] and instance != before[row]]
-        for lane in self.followers:
-            lane.spec = lane.spec.with_faults(self.spec.faults)
-            lane.wiring.instances = now
         for row in changed:
             self._hand_on(row, now[row])
+
+    def tell_faults(self) -> None:
+        """Tell the lanes that follow which faults there are at the end."""
+        for lane in self.followers:
+            lane.spec = lane.spec.with_faults(self.spec.faults)
 
     def rest(self) -> list[int]:
         """Return the rows that run, and put the others to rest, in the lanes that follow too."""
@@ -87,12 +98,16 @@ class Lane(Board):
         return running
 
     def _hand_on(self, row: int, instance: Instance) -> None:
-        """Give the followers the parameters of a row: the same for all of them unless the seed has a say."""
-        numbers, is_shared = self.wiring.packed(row), False
+        """Give the followers the parameters of a row: those of the leader unless what they are made of differs."""
+        place = instance.every, instance.axis
+        context = self.spec.context(*place)
+        own, _, read = numbers(instance, self.spec)
         for lane in self.followers:
-            packed = lane.wiring.packed(row)
-            packed[:] = numbers if is_shared else instance.packed(lane.spec)
-            is_shared = is_shared or packed.tobytes() == numbers.tobytes()
+            if place not in lane._unlike:
+                lane._unlike[place] = unlike(lane.spec.context(*place), context)
+            is_shared = lane._unlike[place].isdisjoint(read)
+            lane.wiring.instances[row] = instance
+            lane.wiring.packed(row)[:] = own if is_shared else instance.packed(lane.spec.context(*place))
 
     def _do(self, command: Command, actor: str) -> LogEntry | None:  # type: ignore[override]
         changes.carry_out(self, command)

@@ -98,6 +98,14 @@ class Observer:
                 found.append({"kind": port, "text": f"{name}: {text}", "tick": first_tick + i, "new": text})
         return sorted(found, key=lambda finding: int(finding["tick"]))
 
+    def seen(self) -> tuple[FloatArray, list[str]]:
+        """Return what it saw last and what it has warned of; by both another goes on."""
+        return self._last.copy(), sorted(self._cautions)
+
+    def go_on(self, last: FloatArray, cautions: list[str]) -> None:
+        """Go on from what another saw of the same bench."""
+        self._last[:], self._cautions = last, set(cautions)
+
     def _caution(self, spec: Spec, tick: int) -> list[Finding]:
         """Warn, once for each, of what takes the voltage for another than it is."""
         if spec is self._cautioned:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import replace
 from typing import Any
 
@@ -17,6 +18,7 @@ from core.board.document import (
     as_written,
     completed,
     normal_form,
+    says_the_same,
     sections,
     written,
     written_over,
@@ -52,9 +54,7 @@ def parse(document: Document, like: Spec | None = None) -> Spec:
     InputError
         For the first thing that is not allowed, with the dotted path of its field.
     """
-    doc = normal_form(document)
-    if like is not None:
-        doc = _sharing(doc, like.document)
+    doc = normal_form(document) if like is None else _sharing(completed(document), like.document)
     try:
         return _parse(doc, like)
     except InputError as error:
@@ -80,15 +80,14 @@ def changed(spec: Spec, values: dict[str, Any]) -> Spec:
 
 
 def _sharing(doc: Document, other: Document) -> Document:
-    """Return a document whose tables are those of another one where they say the same, to the sign of a zero."""
+    """Return a copy of a document whose tables are those of another one where they say the same."""
 
     def shared(value: Any, known: Any) -> Any:
-        return known if repr(value) == repr(known) else value
+        return known if says_the_same(value, known) else copy.deepcopy(value)
 
     def table(value: Any, known: Any) -> Any:
-        found = shared(value, known)
-        if found is known or not (isinstance(value, dict) and isinstance(known, dict)):
-            return found
+        if says_the_same(value, known) or not (isinstance(value, dict) and isinstance(known, dict)):
+            return shared(value, known)
         return {key: shared(entry, known.get(key)) for key, entry in value.items()}
 
     return {key: table(value, other.get(key)) for key, value in doc.items()}
@@ -113,7 +112,12 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     if before is not None and same("device", "plant", "drive"):
         device, plant, drive = before.device, before.plant, before.drive
     else:
-        device, plant, drive = _driven(doc, before if same("device") else None)
+        device = build_device(doc["device"])
+        known_parts = (before.plant, before.drive) if before is not None and same("plant", "drive") else None
+        plant, drive = known_parts or _driven(doc, device)
+        device = _fitted(device, plant)
+        if before is not None and same("device") and before.device == device:
+            device = before.device
     axes = plant.block.axes or ()
     in_use = (doc["controller"]["kind"], doc["sensor"]["kind"], *doc.get("slots", {}).values())
     refuse_what_does_not_fit(doc, plant.block)
@@ -175,8 +179,8 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     return suited(spec)
 
 
-def _driven(doc: Document, before: Spec | None) -> tuple[Device, Section, Section]:
-    """Return device, plant and drive: how the drive works may be said at the plant, and a gap there is the device's."""
+def _driven(doc: Document, device: Device) -> tuple[Section, Section]:
+    """Return plant and drive: how the drive works may be said at the plant."""
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
     if "drive" in plant:
@@ -184,17 +188,18 @@ def _driven(doc: Document, before: Spec | None) -> tuple[Device, Section, Sectio
         if drive.setdefault("kind", here) != here:
             text = f"plant.drive says {short(here)} and drive.kind {short(there)}"
             raise InputError(text, "drive.kind", "leave one of them out")
-    device = build_device(doc["device"])
     if "model" not in plant:
         doc["plant"] = {**doc["plant"], "model": device.usual_plant}
     section = _section("plant", plant.pop("model", device.usual_plant), plant, "plant", "model")
-    gap = section.params.gap_um if isinstance(section.params, ShuttleParams) else None
-    if gap is not None:  # one comb, one gap: of the force, of the sensors, of the model a diagnoser believes in
-        device = device.model_copy(update={"finger_gap_um": gap})
-    if before is not None and before.device == device:
-        device = before.device
     stage = AxisDrive if section.block.axes else Drive
-    return device, section, Section(stage, _params(stage, drive, "drive"))
+    return section, Section(stage, _params(stage, drive, "drive"))
+
+
+def _fitted(device: Device, plant: Section) -> Device:
+    """Return a device with the gap of its plant, if that has one."""
+    gap = plant.params.gap_um if isinstance(plant.params, ShuttleParams) else None
+    # one comb, one gap: of the force, of the sensors, of the model a diagnoser believes in
+    return device if gap is None else device.model_copy(update={"finger_gap_um": gap})
 
 
 def _reference(doc: Document) -> Section:

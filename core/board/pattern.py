@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray, IntArray
+from core.block import BlockParams, Context, FloatArray, IntArray
 from core.board.board import Board
 from core.board.commands import Set
 from core.board.idle import leave_out_idle
@@ -15,8 +17,9 @@ from core.board.program import P_OFFSET
 from core.board.spec import Spec
 from core.record import Layout
 
-PARTS = [part.name for part in fields(Spec) if part.name not in ("document", "frame")]
-"""Parts of a bench that no seed changes."""
+FACTS = [fact.name for fact in fields(Context)]
+"""What blocks may know of a bench."""
+ALL_FACTS = attrgetter(*FACTS)
 
 
 class Uneven(Exception):
@@ -53,7 +56,9 @@ class Pattern:
         outputs = [signal for signal in wiring.signals if signal.kind == "output" and signal.block in counted]
         self.folded = np.array([signal.index for signal in outputs], dtype=np.int64)
         self.choices = self._choices()
-        self.seeded = self._seeded()
+        # what rests is packed when it comes
+        packed = [row for row in self.used if not wiring.absent[row] or len(wiring.state_of(wiring.instances[row].key))]
+        self.read = {row: numbers(wiring.instances[row], board.spec)[2] for row in packed}
 
     def _choices(self) -> IntArray:
         """Return the places of the numbers that boards abreast must share."""
@@ -63,18 +68,6 @@ class Pattern:
             start = int(wiring.table[row, P_OFFSET])
             found += [start + at for at in _choices_of(wiring.instances[row].block.Packed.layout)]
         return np.array(found, dtype=np.int64)
-
-    def _seeded(self) -> list[int]:
-        """Return the rows whose parameters or first state the seed has a say in, found by trying three."""
-        spec, wiring = self.board.spec, self.board.wiring
-        others = [spec.with_seed(seed) for seed in (spec.seed + 1, spec.seed + 2, 3 * spec.seed + 5)]
-        found = []
-        for row in self.used:
-            instance = wiring.instances[row]
-            now = numbers(instance, spec)
-            if any(not _alike(now, numbers(instance, other)) for other in others):
-                found.append(row)
-        return found
 
 
 def _choices_of(layout: Layout) -> list[int]:
@@ -87,19 +80,47 @@ def _choices_of(layout: Layout) -> list[int]:
     return found
 
 
-def numbers(instance: Instance, spec: Spec) -> tuple[FloatArray, FloatArray]:
-    """Return the parameters and the first state of a block."""
-    context = spec.context(instance.every, instance.axis)
-    return instance.packed(spec), instance.block.initial(instance.params, context)
+class _Noting:
+    """The facts of a bench, which notes those that are read."""
+
+    def __init__(self, context: Context) -> None:
+        self._context, self.read = context, set[str]()
+
+    def __getattr__(self, name: str) -> Any:
+        self.read.add(name)
+        return getattr(self._context, name)
 
 
-def _alike(one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]) -> bool:
-    return all(a.tobytes() == b.tobytes() for a, b in zip(one, other, strict=True))
+def numbers(instance: Instance, spec: Spec) -> tuple[FloatArray, FloatArray, set[str]]:
+    """Return the parameters and the first state of a block, and which facts of the bench they are made of."""
+    noting: Any = _Noting(spec.context(instance.every, instance.axis))
+    return instance.packed(noting), instance.block.initial(instance.params, noting), noting.read
 
 
-def is_same_but_seed(spec: Spec, other: Spec) -> bool:
-    """Say whether two benches share all parts but the seed."""
-    return spec.dt_ms == other.dt_ms and all(getattr(spec, name) is getattr(other, name) for name in PARTS)
+def unlike(one: Context, other: Context) -> set[str]:
+    """Return the facts in which two benches differ."""
+    facts = zip(FACTS, ALL_FACTS(one), ALL_FACTS(other), strict=True)
+    return {fact for fact, own, another in facts if own is not another and not is_alike(own, another)}
+
+
+def is_alike(one: Any, other: Any) -> bool:
+    """Say whether two values are the same, to the sign of a zero."""
+    if one is other:
+        return True
+    if type(one) is float and one != 0.0:
+        return bool(one == other)
+    if isinstance(one, BlockParams):
+        return type(one) is type(other) and is_alike(vars(one), vars(other))
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(is_alike(value, other[name]) for name, value in one.items())
+    return bool(one == other) and repr(one) == repr(other)
+
+
+def has_same_blocks(spec: Spec, other: Spec) -> bool:
+    """Say whether two benches have the very same sections, and so the same blocks in the same order."""
+    if (spec.dt_ms, spec.driving, spec.measuring) != (other.dt_ms, other.driving, other.measuring):
+        return False
+    return spec.has_sections_of(other)
 
 
 def is_same_structure(board: Board, spec: Spec, order: list[Instance]) -> bool:
@@ -110,7 +131,10 @@ def is_same_structure(board: Board, spec: Spec, order: list[Instance]) -> bool:
     if len(order) != len(before):
         return False
     return all(
-        (one.key, one.block, one.every, one.axis) == (other.key, other.block, other.every, other.axis)
-        and one.block.rests(one.params) == other.block.rests(other.params)
+        one is other
+        or (
+            (one.key == other.key and one.block is other.block and one.every == other.every and one.axis == other.axis)
+            and (one.params is other.params or one.block.rests(one.params) == other.block.rests(other.params))
+        )
         for one, other in zip(order, before, strict=True)
     )

@@ -59,6 +59,18 @@ class Queue:
         """The entries in the order in which they have begun to wait, in which those of one tick take effect."""
         return _as_asked(self._entries)
 
+    @property
+    def asked(self) -> int:
+        """How many have begun to wait so far."""
+        return self._asked
+
+    @classmethod
+    def of(cls, entries: Iterable[Pending], asked: int) -> Queue:
+        """Return a queue in which these wait, as they did in another."""
+        queue = cls()
+        queue._entries, queue._asked = sorted(entries, key=_moment), asked
+        return queue
+
     def copy(self) -> Queue:
         """Return a queue in which the same commands wait for the same ticks, for another board."""
         queue = Queue()

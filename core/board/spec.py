@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, cast
+from operator import attrgetter
+from typing import Any, Literal, cast
 
 from pydantic import Field
 
@@ -18,6 +19,11 @@ from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.model import Model
 from core.table import Table
+
+ALONE = ("environment", "plant", "reference", "model", "drive", "guard")
+GROUPS = ("sensors", "generators", "controllers", "identifiers", "diagnosers", "readouts")
+"""Sections of a bench, and tables of sections by name."""
+ALL_ALONE, ALL_GROUPS = attrgetter(*ALONE), attrgetter(*GROUPS)
 
 
 @dataclass(frozen=True)
@@ -38,6 +44,10 @@ class Frame(Table):
 
     sample_rate_khz: float = Field(100.0, ge=0.1, le=1e5, description="ticks per ms of device time")
     seed: int = Field(1, ge=0, le=MOST_SEED, description="seed of all noise")
+    without_driver: Literal["hold", "safe"] = Field(
+        "hold",
+        description="what a live bench does when whoever drives it among several is gone: go on, or safe outputs",
+    )
 
 
 def fields() -> tuple[str, ...]:
@@ -121,11 +131,20 @@ class Spec:
 
     def parts(self) -> Iterator[tuple[str, Section]]:
         """Yield every section with its name."""
-        for name in ("environment", "plant", "reference", "model", "drive", "guard"):
+        for name in ALONE:
             yield name, getattr(self, name)
-        chosen = self.identifiers, self.diagnosers, self.readouts
-        for group in (self.sensors, self.generators, self.controllers, *chosen):
-            yield from group.items()
+        for name in GROUPS:
+            yield from getattr(self, name).items()
+
+    def has_sections_of(self, other: Spec) -> bool:
+        """Say whether the sections are the very same as those of another bench, in the same order."""
+        if any(own is not another for own, another in zip(ALL_ALONE(self), ALL_ALONE(other), strict=True)):
+            return False
+        groups = zip(ALL_GROUPS(self), ALL_GROUPS(other), strict=True)
+        return all(
+            own is another or (list(own) == list(another) and all(own[name] is another[name] for name in own))
+            for own, another in groups
+        )
 
     def turns(self, section: Section) -> int:
         """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
@@ -153,11 +172,11 @@ class Spec:
         return {}
 
     def _context(self, every: int) -> Context:
-        sensor = self.sensors[self.measuring]
+        sensor, known = self.sensors[self.measuring], self._known(every)
         # the noise of a sample of the sensor, however often the block that asks runs
         block: Any = sensor.block
-        own = block.noise_um(sensor.params, self._known(sensor.every))
-        return replace(self._known(every), sensor_noise_um=float(own), sensor_every=sensor.every)
+        own = block.noise_um(sensor.params, known if sensor.every == every else self._known(sensor.every))
+        return replace(known, sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:
         nominal, drive = self.nominal, self.drive.params
@@ -180,6 +199,8 @@ class Spec:
 
     def with_seed(self, seed: int) -> Spec:
         """Return this bench with other noise; it goes on with all that was worked out of this one."""
+        if seed == self.seed:
+            return self
         spec = object.__new__(Spec)
         frame = self.frame.model_copy(update={"seed": seed})
         document = {**self.document, "seed": seed}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeVar
@@ -50,6 +50,8 @@ class Wiring:
     left_out: set[int] = field(default_factory=set)
     """Rows that never run, because nobody watches them."""
     resting: set[int] = field(default_factory=set)
+    places: dict[int, IntArray] = field(default_factory=dict)
+    """Row by row, the places of its signals, as far as they were asked for."""
     is_changed: bool = True
     """Whether other rows may have to run than before, or at other ticks."""
 
@@ -107,12 +109,21 @@ class Wiring:
         """Make rows as new, and their signals 0."""
         for row in rows:
             instance = self.instances[row]
-            self.state_of(instance.key)[:] = instance.block.initial(
-                instance.params, spec.context(instance.every, instance.axis)
-            )
-            for port in (*instance.block.outputs, *instance.block.taps):
-                start = self.index[signal_name(instance, port.name)]
-                self.w[start : start + len(port.names(instance.params))] = 0.0
+            state = self.state_of(instance.key)
+            if len(state):
+                context = spec.context(instance.every, instance.axis)
+                state[:] = instance.block.initial(instance.params, context)
+            if row not in self.places:
+                self.places[row] = self._places(instance)
+            self.w[self.places[row]] = 0.0
+
+    def _places(self, instance: Instance) -> IntArray:
+        """Return the places of the signals of an instance."""
+        found: list[int] = []
+        for port in (*instance.block.outputs, *instance.block.taps):
+            start = self.index[signal_name(instance, port.name)]
+            found += range(start, start + len(port.names(instance.params)))
+        return np.array(found, dtype=np.int64)
 
     def idle(self, running: list[int]) -> BoolArray:
         """Return which taps stay 0 while these rows run."""
@@ -140,8 +151,9 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
     p_parts, s_parts, io_parts = [], [], []
     p_size = s_size = io_size = 0
     for row, instance in enumerate(order):
-        p = instance.packed(spec)
-        s = instance.block.initial(instance.params, spec.context(instance.every, instance.axis))
+        context = spec.context(instance.every, instance.axis)
+        p = instance.packed(context)
+        s = instance.block.initial(instance.params, context)
         io = ports_of(spec, instance, index)
         table[row, 1:] = (p_size, s_size, io_size, every_of(instance))
         p_parts.append(p)
@@ -216,8 +228,8 @@ def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
         w[index[f"{name}.engaged"]] = 1.0 if name in driving else 0.0
 
 
-def needed(spec: Spec) -> set[str]:
-    """Return the sensor in use, those that always run or that a diagnoser reads, and all they read from."""
+def needed(spec: Spec, also: Iterable[str] = ()) -> set[str]:
+    """Return the sensor in use, those that always run, that a diagnoser reads or are named, and all they read from."""
     found: set[str] = set()
     always = [
         name
@@ -225,7 +237,7 @@ def needed(spec: Spec) -> set[str]:
         if issubclass(unit.block, Sensor) and unit.block.runs_always(unit.params)
     ]
     read = [port.source.split(".")[0] for section in spec.diagnosers.values() for port in section.block.inputs]
-    waiting = [spec.measuring, *always, *read]
+    waiting = [spec.measuring, *always, *read, *also]
     while waiting:
         name = waiting.pop()
         if name in spec.sensors and name not in found:

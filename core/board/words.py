@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core import registry
-from core.board.commands import Command, Heal, Inject, Set, Switch
+from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch
 from core.errors import short
 from core.format import format_short
 
@@ -20,6 +20,8 @@ def describe(command: Command) -> str:
         return "set " + ", ".join(f"{path} = {value}" for path, value in command.set.items())
     if isinstance(command, Switch):
         return f"switch to {command.switch}{' from a cold start' if command.cold else ''}"
+    if isinstance(command, MakeSafe):
+        return f"safe outputs: {command.make_safe}"
     return "reset after the trip"
 
 

@@ -50,6 +50,10 @@ OF_RESONATOR = (
 """Fields that a device with two axes has no use for."""
 
 
+LCR_350 = Geometry()
+"""The drawing of a device that has none."""
+
+
 class Device(BlockParams):
     r"""A lateral comb resonator, from measured values or from its drawing.
 
@@ -175,13 +179,13 @@ class Device(BlockParams):
 
         Fingers given beside the drawing change the force alone: mass and damping are those of the drawn comb.
         """
-        drawn = self.geometry or Geometry()
+        drawn = self.geometry or LCR_350
         stated: dict[str, float] = {}
         if self.thickness_um is not None:
             stated["thickness_um"] = self.thickness_um
         if self.finger_gap_um is not None:
             stated["finger_gap_um"] = self.finger_gap_um - 2.0 * drawn.comb_bias_um
-        return drawn.model_copy(update=stated)
+        return drawn.model_copy(update=stated) if stated else drawn
 
     @property
     def stators_v(self) -> tuple[float, float]:

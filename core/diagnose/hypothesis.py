@@ -22,7 +22,8 @@ class NamedModel(BlockParams):
     @property
     def is_nominal(self) -> bool:
         """Whether it takes nothing for changed."""
-        return self == type(self)(name=self.name)
+        usual = type(self).model_fields
+        return all(value == usual[name].default for name, value in self if name != "name")
 
 
 class Hypothesis(NamedModel):

@@ -15,7 +15,7 @@ from core.diagnose.lanes import Filters, PackedFilters
 from core.elementary import cos, exp, sin
 from core.format import format_short
 from core.matrix import product, riccati
-from core.voltage import MOST_LOST, tick_of
+from core.voltage import MOST_LOST, Tick, over_tick
 
 P = TypeVar("P", bound=PackedFilters)
 S = TypeVar("S", bound=Filters)
@@ -91,20 +91,24 @@ class KalmanBank(Bank):
         q = params.process_noise_v**2 * scale
         r = (params.sensor_noise_um or assumed_noise(context)) ** 2 * scale
         steady, printed = cls.takes_steady_gains(params), cls.leaves_sensor_noise_out(params)
-        for i, hypothesis in enumerate(hypotheses):
-            device = hypothesis.oscillator(context.device)
-            tick = tick_of(device, device.force, context.dt_ms / context.every, context.analogue)
-            push = tick.push1, tick.push2
-            over_tick = np.array([[tick.phi11, tick.phi12], [tick.phi21, tick.phi22]])
-            phi, noise = over_ticks(over_tick, np.outer(push, push) * q, context.every)
-            p.phi11[i], p.phi12[i], p.phi21[i], p.phi22[i] = phi.flat
-            p.noise11[i], p.noise12[i], p.noise22[i] = noise[0, 0], noise[0, 1], noise[1, 1]
-            p.tick11[i], p.tick12[i], p.tick21[i], p.tick22[i] = over_tick.flat
-            p.push1[i], p.push2[i] = push
-            p.middle1[i], p.middle2[i], p.end1[i], p.end2[i] = tick.middle1, tick.middle2, tick.end1, tick.end2
-            if steady:
-                p.gain1[i], p.gain2[i], p.psi[i] = steady_gain(phi, noise, r, printed)
-                p.inverse_psi[i] = 1.0 / p.psi[i]
+        devices = [hypothesis.oscillator(context.device) for hypothesis in hypotheses]
+        h, n = context.dt_ms / context.every, len(devices)
+        moving = [over_tick(device, device.force, h, context.analogue) for device in devices]
+        ticks = Tick(np.array(moving).T)  # each number of all models
+        p.tick11[:n], p.tick12[:n], p.tick21[:n], p.tick22[:n] = ticks.phi11, ticks.phi12, ticks.phi21, ticks.phi22
+        p.push1[:n], p.push2[:n] = ticks.push1, ticks.push2
+        p.middle1[:n], p.middle2[:n], p.end1[:n], p.end2[:n] = ticks.middle1, ticks.middle2, ticks.end1, ticks.end2
+        push = np.array([ticks.push1, ticks.push2]).T
+        each = np.array([ticks.phi11, ticks.phi12, ticks.phi21, ticks.phi22]).T.reshape(n, 2, 2)
+        caused = push[:, :, None] * push[:, None, :] * q
+        spans = [over_ticks(*own, context.every) for own in zip(each, caused, strict=True)]
+        phi, noise = (np.array(kind).T for kind in zip(*spans, strict=True))
+        p.phi11[:n], p.phi12[:n], p.phi21[:n], p.phi22[:n] = phi[0, 0], phi[1, 0], phi[0, 1], phi[1, 1]
+        p.noise11[:n], p.noise12[:n], p.noise22[:n] = noise[0, 0], noise[1, 0], noise[1, 1]
+        if steady:
+            gains = [steady_gain(*own, r, printed) for own in spans]
+            p.gain1[:n], p.gain2[:n], p.psi[:n] = np.transpose(gains)
+            p.inverse_psi[:n] = 1.0 / p.psi[:n]
         p.count = len(hypotheses)
         p.sensor = r
         p.steady = steady

@@ -244,7 +244,7 @@ class Scores(BaseModel):
 def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Scores:
     """Read the counters of a score block; winner and whether no hypothesis fits are among its signals."""
     n = len(names)
-    delays = s.delays[: min(int(s.steps), STEPS)]
+    delays = s.delays[: min(int(s.steps), STEPS)].tolist()
     return Scores(
         names=names,
         winner=winner,
@@ -254,7 +254,7 @@ def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Sc
         delays=[None if value < 0 else int(value) for value in delays],
         since_tick=int(s.since),
         nis=float(s.nis_sum / s.nis_count) if s.nis_count else None,
-        least_nis=float(min(s.average[:n])),
+        least_nis=min(s.average[:n].tolist()),
         unexplained=unexplained,
         confusion=s.confusion.reshape(n, n).astype(int).tolist(),
     )

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from core.block import FloatArray
 from core.format import format_in, format_si
@@ -138,6 +137,8 @@ def _explained(taus: FloatArray, variances: FloatArray, times: FloatArray) -> bo
 
 def _least_squares(taus: FloatArray, variances: FloatArray, times: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """Return N^2, B^2 and K^2 in deg and s, their covariance, and the sum of squares in units of its scatter."""
+    from scipy.optimize import nnls  # a quarter of a second to load, for few benches
+
     basis = np.column_stack([1.0 / taus, np.full_like(taus, FLOOR), taus / 3.0])
     scatter = np.sqrt(2.0 / (times - 1.0) + PURITY**2)
     model = variances

@@ -14,6 +14,7 @@ from core.block import FloatArray
 from core.board.abreast import Abreast
 from core.board.board import Board
 from core.board.changes import check
+from core.board.commands import MakeSafe
 from core.board.lane import Lane
 from core.board.observer import cautions, warnings
 from core.board.pattern import Pattern, Uneven
@@ -21,8 +22,9 @@ from core.board.pending import Pending, Queue
 from core.errors import InputError
 from core.lanes.numbers import WIDTH
 from scenarios.campaign.outcome import Outcome, outcome, summed
-from scenarios.run import DEFAULT_SAMPLES, figures, watched
+from scenarios.run import DEFAULT_SAMPLES, figures
 from scenarios.schema import Scenario
+from scenarios.signals import watched
 
 FEWEST = 3
 """Runs that are worth the loop of many."""
@@ -64,7 +66,8 @@ def outcomes(runs: Sequence[Run], on_tick: Callable[[int], None] = lambda _: Non
 
 def shape(scenario: Scenario) -> Any:
     """Return what runs must share to run abreast; None for one that runs alone."""
-    if scenario.study is not None or scenario.twins or any(c.when for event in scenario.events for c in event):
+    commands = [command for event in scenario.events for command in event]
+    if scenario.study is not None or scenario.twins or any(c.when or isinstance(c, MakeSafe) for c in commands):
         return None
     spec = scenario.spec
     blocks = tuple((name, section.block, section.every) for name, section in spec.parts())
@@ -81,25 +84,33 @@ def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, Outcome],
         pattern, told = Pattern(board), running_warnings(board)
     except (InputError, Uneven):
         return
-    names = [*watched(board), *told]
+    names, queues = [*watched(board), *told], {id(scenario.events): board.pending.copy()}
     if samples * len(names) * WIDTH > MOST_NUMBERS:
         return
     for start in range(0, len(numbers), WIDTH):
         chosen = numbers[start : start + WIDTH]
         if len(chosen) >= FEWEST:
-            found |= _together(pattern, names, told, samples, runs, chosen)
+            found |= _together(pattern, names, told, samples, queues, runs, chosen)
             tell()
 
 
 def _together(
-    pattern: Pattern, names: list[str], told: dict[str, str], samples: int, runs: Sequence[Run], chosen: list[int]
+    pattern: Pattern,
+    names: list[str],
+    told: dict[str, str],
+    samples: int,
+    waits: dict[int, Queue],
+    runs: Sequence[Run],
+    chosen: list[int],
 ) -> dict[int, Outcome]:
+    """Carry out some runs; ``waits`` has the commands of the lists of events seen so far, by their identity."""
     began = time.perf_counter()
     try:
-        scenarios = [runs[number][0] for number in chosen]
         specs = [runs[number][0].spec.with_seed(runs[number][1]) for number in chosen]
-        waits = {number: waiting(scenario, pattern.board) for number, scenario in {id(s): s for s in scenarios}.items()}
-        queues = [waits[id(scenario)].copy() for scenario in scenarios]
+        for scenario in (runs[number][0] for number in chosen):
+            if id(scenario.events) not in waits:
+                waits[id(scenario.events)] = waiting(scenario, pattern.board)
+        queues = [waits[id(runs[number][0].events)].copy() for number in chosen]
         boards = Abreast(pattern, specs, queues, names, samples)
         came = boards.run(samples)
     except (InputError, Uneven):

@@ -12,9 +12,9 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, nullcontext
-from statistics import fmean
 from typing import Any, Protocol
 
+from core.errors import InputError
 from core.lanes.numbers import WIDTH
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.cluster import Cluster, open_cluster
@@ -37,7 +37,6 @@ PATIENCE, ATTEMPTS = 5, 3
 """Losses in a row, without a result in between, after which a campaign gives up, and one that keeps a trace: where both
 share processes, the single run is the likelier cause."""
 
-Task = tuple[str, dict[str, Any], int]
 Found = list[tuple[str, str]]
 """Outcomes as JSON, by the key of the run."""
 Others = list[list[str]]
@@ -68,8 +67,10 @@ class Stopped(Exception):
     """The campaign could not go on; the finished runs stay in the table."""
 
 
-def compute(tasks: list[Task], version: str) -> tuple[Found, float]:
+def compute(runs: list[Run], version: str) -> tuple[Found, float]:
     """Compute a batch; in a worker. Return the outcomes and the mean time of a run, s.
+
+    A point of which no scenario comes gives its error as the outcome of its runs.
 
     Raises
     ------
@@ -77,21 +78,33 @@ def compute(tasks: list[Task], version: str) -> tuple[Found, float]:
         When the worker runs another version of the code.
     """
     _check_version(version)
-    read: dict[int, Scenario] = {}
-    scenario = None
-    for _, document, _ in tasks:
-        if id(document) not in read:
-            read[id(document)] = scenario = Scenario.load(document, like=scenario)
-    found = outcomes([(read[id(document)], seed) for _, document, seed in tasks], tell)
-    texts = [(key, outcome.model_dump_json()) for (key, _, _), outcome in zip(tasks, found, strict=True)]
-    return texts, fmean(outcome.elapsed_s for outcome in found)
+    began = time.perf_counter()
+    read: dict[int, Scenario | InputError] = {}
+    like: Scenario | None = None
+    for _, point, _ in runs:
+        if id(point) not in read:
+            try:
+                read[id(point)] = like = Scenario.load(point.document, like=like)
+            except InputError as error:
+                read[id(point)] = error
+    good: list[tuple[str, tuple[Scenario, int]]] = []
+    found: list[tuple[str, Outcome]] = []
+    for key, point, seed in runs:
+        scenario = read[id(point)]
+        if isinstance(scenario, InputError):
+            found.append((key, Outcome(seed=seed, error=str(scenario))))
+        else:
+            good.append((key, (scenario, seed)))
+    made = outcomes([run for _, run in good], tell)
+    found += zip([key for key, _ in good], made, strict=True)
+    return [(key, one.model_dump_json()) for key, one in found], (time.perf_counter() - began) / len(runs)
 
 
-def compute_traced(trace: Trace, task: Task, others: Others, version: str) -> tuple[Found, float, Any]:
+def compute_traced(trace: Trace, run: Run, others: Others, version: str) -> tuple[Found, float, Any]:
     """Carry out the run whose trace is kept; in a worker. Return its outcome, its time, and what is wanted besides."""
     _check_version(version)
-    key, document, seed = task
-    found, kept = trace(document, seed, others)
+    key, point, seed = run
+    found, kept = trace(point.document, seed, others)
     return [(key, found.model_dump_json())], found.elapsed_s, kept
 
 
@@ -132,7 +145,7 @@ class Campaign:
         trace: Trace | None = None,
         on_progress: Callable[[int, int], None] = lambda _done, _all: None,
     ) -> None:
-        self.sweep, self.total = sweep, 0
+        self.sweep = sweep
         self.kept: Any = None
         self._table, self._on_progress = table, on_progress
         self._workers, self._scheduler, self._processes = workers, scheduler, processes
@@ -143,9 +156,14 @@ class Campaign:
         self._is_cancelled = False
 
     @property
+    def total(self) -> int:
+        """Different runs, as far as is known: points are compared in their turn."""
+        return self._remaining.total if self._remaining is not None else 0
+
+    @property
     def done(self) -> int:
-        """Runs that are in the table."""
-        return self.total - len(self._remaining) if self._remaining is not None else 0
+        """Runs that are in the table, as far as is known: they are looked for in their turn."""
+        return self._remaining.total - len(self._remaining) if self._remaining is not None else 0
 
     @property
     def progress(self) -> float:
@@ -167,10 +185,9 @@ class Campaign:
             If there is no worker or no scheduler left.
         """
         remaining = self._remaining = Remaining(self.sweep, self._have)
-        self.total = remaining.total
+        losses, lacks = 0, self._lacks(remaining)
         self._on_progress(self.done, self.total)
-        losses = 0
-        while remaining and not self._is_cancelled:
+        while lacks:
             before = self.done
             try:
                 with self._open() as executor:
@@ -182,7 +199,17 @@ class Campaign:
                     text = f"{lost} {losses} times in a row; {self.done} of {self.total} runs are done"
                     raise Stopped(text) from error
                 time.sleep(min(2.0**losses, 10.0) / 4)
+            lacks = self._lacks(remaining)
         return not remaining
+
+    def _lacks(self, remaining: Remaining) -> bool:
+        """Pass over the first runs that the table has; return whether there is something to do."""
+        remaining.take_back()
+        while remaining.waiting and not self._is_cancelled:
+            if remaining.take(1):
+                remaining.take_back()
+                return True
+        return False
 
     def _open(self) -> AbstractContextManager[Processes | Cluster]:
         if self._scheduler:
@@ -196,7 +223,6 @@ class Campaign:
 
     def _work(self, executor: Processes | Cluster, remaining: Remaining) -> None:
         """Keep the workers busy until no run is left, and put results into the table as they arrive."""
-        remaining.take_back()
         first = remaining.take(1)[0] if self._trace is not None else None
         pending: set[Future[Any]] = set()
         lost: BaseException | None = None
@@ -230,29 +256,19 @@ class Campaign:
             for future in pending:
                 executor.stop(future)
 
-    def _batch(self, remaining: Remaining, width: int) -> list[Task]:
-        """Take runs worth `BATCH_S` from the queue, towards its end ever fewer, so that all workers end together.
-
-        Those that another campaign has put into the table meanwhile are done.
-        """
+    def _batch(self, remaining: Remaining, width: int) -> list[Run]:
+        """Take runs worth `BATCH_S` from the queue, towards its end ever fewer, so that all workers end together."""
         share = max(-(-remaining.waiting // (AHEAD * width)), WIDTH)
-        chosen = remaining.take(min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share))
-        done = self._table.have([key for key, _, _ in chosen])
-        for key in done:
-            remaining.finish(key)
-        points = {id(point): point for key, point, _ in chosen if key not in done}
-        documents = {number: point.document for number, point in points.items()}
-        return [(key, documents[id(point)], seed) for key, point, seed in chosen if key not in done]
+        return remaining.take(min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share))
 
     def _submit_traced(self, executor: Processes | Cluster, first: Run) -> Future[tuple[Found, float, Any]]:
         """Hand over the run whose trace is kept, with the outcomes of the others."""
-        key, point, seed = first
         assert self._trace is not None
         keys = [self.sweep.key(number) for number in range(len(self.sweep))]
         texts = dict(self._table.outcomes(keys))
         count = len(self.sweep.seeds)
-        others = [[texts[one] for one in keys[at : at + count] if one != key] for at in range(0, len(keys), count)]
-        return executor.submit(compute_traced, self._trace, (key, point.document, seed), others, code_version())
+        others = [[texts[one] for one in keys[at : at + count] if one != first[0]] for at in range(0, len(keys), count)]
+        return executor.submit(compute_traced, self._trace, first, others, code_version())
 
     def _take(self, remaining: Remaining, outcomes: Found, cost_s: float, kept: Any = None) -> None:
         """Put results into the table and update the cost of a run."""

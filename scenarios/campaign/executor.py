@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import gc
+import importlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import forkserver
 from typing import Any, TypeVar
 
 from scenarios.campaign.signs import Signs, receive, watched
 
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
 """Errors of a future or a connection after a worker, the scheduler or the line to it is lost."""
+LOADED = "scenarios.campaign.loaded"
 T = TypeVar("T")
 
 
@@ -33,10 +37,8 @@ class Processes(Executor):
 
     def __init__(self, workers: int, niceness: int = 0) -> None:
         self.width = workers
-        # Spawned, because forking a process with threads is not safe.
-        self._context = multiprocessing.get_context("spawn")
         count = 4 * workers * (workers + 2)  # each process works for a campaign of its own, which hands over more ahead
-        self._signs, self._free = Signs(self._context, count), deque(range(count))
+        self._signs, self._free = Signs(count), deque(range(count))
         self._niceness = niceness
         self._places: dict[Future[Any], int] = {}
         self._pool: ProcessPoolExecutor | None = None
@@ -48,7 +50,7 @@ class Processes(Executor):
         Raises
         ------
         BrokenProcessPool
-            When a process died just now.
+            When a process died just now, or could not be started.
         """
         assert not named
         with self._lock:
@@ -57,10 +59,10 @@ class Processes(Executor):
             self._signs.ticks[place] = self._signs.stop[place] = 0
             try:
                 future = pool.submit(watched, place, function, *arguments)
-            except BrokenProcessPool:
+            except (BrokenProcessPool, OSError, EOFError) as error:
                 self._free.append(place)
                 self._pool = None
-                raise
+                raise BrokenProcessPool("a process could not be started") from error
             self._places[future] = place
         future.add_done_callback(lambda future: self._release(future, pool))
         return future
@@ -88,7 +90,7 @@ class Processes(Executor):
             self._pool.shutdown(wait=wait, cancel_futures=cancel_futures)
 
     def _start(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(self.width, self._context, prepare, (self._niceness, self._signs))
+        return pool(self.width, self._niceness, self._signs)
 
     def _release(self, future: Future[Any], pool: ProcessPoolExecutor) -> None:
         """Take back the signs of a piece of work that has ended, and give up processes of which one died."""
@@ -97,19 +99,47 @@ class Processes(Executor):
             self._pool = None
 
 
+def pool(workers: int, niceness: int = 0, signs: Signs | None = None) -> ProcessPoolExecutor:
+    """Return processes that are there soon: forked from one that has loaded the code, which takes seconds.
+
+    That one does nothing else; forking this process, which has threads at work, is not safe.
+    """
+    if sys.platform != "linux":
+        return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), prepare, (niceness, signs))
+    forkserver.set_forkserver_preload([LOADED])
+    starter = threading.Thread(target=_load, args=(niceness,))
+    starter.start()
+    starter.join()
+    return ProcessPoolExecutor(workers, multiprocessing.get_context("forkserver"), prepare, (niceness, signs))
+
+
+def _load(niceness: int) -> None:
+    """Start the process that others are forked from; it has the priority of this thread, which is its own on Linux.
+
+    It steps back half as far as they do: it has seconds of work, and somebody may wait for them.
+    """
+    os.nice(niceness // 2)
+    forkserver.ensure_running()
+
+
 def prepare(niceness: int = 0, signs: Signs | None = None) -> None:
-    """Set up a process: one thread, its priority, an end with its parent; Ctrl-C is left to the parent."""
+    """Set up a process: its priority, an end with its parent; Ctrl-C is left to the parent."""
     if niceness:
-        os.nice(niceness)
+        os.nice(max(0, niceness - os.nice(0)))
     if signs is not None:
         receive(signs)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_follow, args=(parent.join,), daemon=True).start()
-    import scenarios.campaign.batch  # noqa: F401  (load the kernels before the first run)
+    importlib.import_module(LOADED)  # where it is not there from the beginning
+    collect_seldom()
 
-    gc.freeze()  # what is loaded stays: no collection looks at it again
+
+def collect_seldom() -> None:
+    """Let the garbage collector pass over what is loaded, and look for cycles seldom: here next to nothing has any."""
+    gc.freeze()
+    gc.set_threshold(100_000)
 
 
 def _follow(wait: Callable[[], None]) -> None:

@@ -16,6 +16,7 @@ from core.board.commands import Trip
 from core.errors import InputError
 from core.kernel import kernel
 from core.loop.score import Scores
+from scenarios.measure.blocks import blocks
 from scenarios.run import Result, run
 from scenarios.schema import Scenario
 
@@ -81,8 +82,7 @@ def outcome(scenario: Scenario, seed: int, on_tick: Callable[[int], None] | None
 
 def outcome_of(result: Result) -> Outcome:
     """Return the outcome of a result: the same whether all its outputs were kept or those of its figures alone."""
-    trace = dict(zip(result.names, result.outputs.T, strict=True))
-    found = summed(result.scenario, result.board, result.metrics, result.digest, trace, result.warnings)
+    found = summed(result.scenario, result.board, result.metrics, result.digest, result.trace, result.warnings)
     found.elapsed_s = result.elapsed_s
     return found
 
@@ -118,42 +118,51 @@ def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatAr
     columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
     if healthy is None or columns[0] not in trace or board.tick == 0:
         return counted
-    probability = np.array([trace[column] for column in columns])
-    counts = evidence(probability, healthy, np.ascontiguousarray(trace[f"{name}.truth"]), ODDS)
+    counts = np.zeros((2, len(ODDS) + 1), dtype=np.int64)
+    for *probabilities, truth in blocks(*(trace[column] for column in columns), trace[f"{name}.truth"]):
+        fault = np.zeros(len(truth))
+        for position, probability in enumerate(probabilities):
+            if position != healthy:
+                fault += probability
+        others = np.ascontiguousarray(probabilities[healthy]), np.ascontiguousarray(truth)
+        counts += evidence(fault, *others, healthy, ODDS)
     counted.healthy, counted.faulty = counts.tolist()
     return counted
 
 
 @kernel
-def evidence(probability: FloatArray, healthy: int, truth: FloatArray, odds: FloatArray) -> IntArray:
+def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray) -> IntArray:
     """Count samples by the odds of any fault, those while the truth was healthy and the others.
 
     Parameters
     ----------
-    probability : ndarray, shape (hypotheses, samples)
+    fault, none : ndarray, shape (samples,)
+        Probabilities of any fault and of none.
+    truth : ndarray, shape (samples,)
     healthy : int
         The hypothesis of a healthy device.
-    truth : ndarray, shape (samples,)
     odds : ndarray, shape (thresholds,)
-        Where one bin ends and the next begins. Odds that are not a number, as before any verdict, count as even.
+        Where one bin ends and the next begins, by equal factors. Odds that are not a number, as before any verdict,
+        count as even.
 
     Returns
     -------
     ndarray of int64, shape (2, thresholds + 1)
     """
-    counts = np.zeros((2, len(odds) + 1), dtype=np.int64)
-    fault = np.zeros(probability.shape[1])
-    for k in range(probability.shape[0]):
-        if k != healthy:
-            fault += probability[k]
-    ratio = np.maximum(fault, LEAST) / np.maximum(probability[healthy], LEAST)
-    found = 0
+    count = len(odds)
+    counts = np.zeros((2, count + 1), dtype=np.int64)
+    ratio = np.maximum(fault, LEAST) / np.maximum(none, LEAST)
     for i in range(len(ratio)):
-        now = ratio[i]
-        if not now > 0.0:
-            now = 1.0
-        # most samples fall where the one before fell
-        if (found > 0 and now < odds[found - 1]) or (found < len(odds) and now >= odds[found]):
-            found = np.searchsorted(odds, now, side="right")
+        if not ratio[i] > 0.0:
+            ratio[i] = 1.0
+    # the bits of a number are nearly proportional to its logarithm: the bin they tell is the right one or next to it
+    bits, ends = ratio.view(np.int64), odds.view(np.int64)
+    share = (count - 1) / (ends[-1] - ends[0])
+    for i in range(len(ratio)):
+        found = min(max(int((bits[i] - ends[0]) * share) + 1, 0), count)
+        while found > 0 and ratio[i] < odds[found - 1]:
+            found -= 1
+        while found < count and ratio[i] >= odds[found]:
+            found += 1
         counts[0 if truth[i] == healthy else 1, found] += 1
     return counts

@@ -7,24 +7,32 @@ same columns, so that a folder of them is one table.
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO, Literal
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from pyarrow.csv import CSVWriter
 
 from scenarios.campaign.columns import ABOUT, Row, about, columns, fitted, union
 from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.sums import Sums
 from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.tally import Tallies
 from scenarios.key import content_hash, run_key
 
 PART = 5000
 """Runs of a file."""
 AT_ONCE = 500
 """Outcomes that are read together: each takes 10 kB of memory before it is a row."""
+MANY = 500
+"""Runs of a point, from which their sums are worth their place."""
+SUMS = b"combbench.sums"
+"""Where a file holds them."""
 Read = Callable[[list[str]], Iterable[tuple[str, str]]]
 """Reads outcomes, JSON texts, from the table of results by their keys."""
 
@@ -78,6 +86,12 @@ class Parts:
             if path.exists():
                 yield pq.read_table(path, columns=names, schema=schema, partitioning=None)
 
+    def sums(self, number: int) -> dict[int, Sums] | None:
+        """Return what the runs of a file add up to, by the number of the point; none of a file of many points."""
+        path = self.path(number)
+        said = (pq.read_metadata(path).metadata or {}).get(SUMS) if path.exists() else None
+        return None if said is None else {int(point): sums for point, sums in json.loads(said).items()}
+
     def follow(self, done: int, read: Read) -> None:
         """Write what has become complete, as soon as so many runs have been done since that there may be a file."""
         if done - self._followed >= PART:
@@ -100,6 +114,13 @@ class Parts:
                 self._write(number, table)
             if not rows and not to_end:
                 break
+        return self.rows()
+
+    def begin(self, read: Read) -> int:
+        """Write the first few runs, which takes a moment, if there are no files; return how many runs they have."""
+        self._clear()
+        if not self.rows() and (table := self._rows_of(range(min(AT_ONCE, self._whole(0))), read)) is not None:
+            self._write(0, table)
         return self.rows()
 
     def _whole(self, number: int) -> int:
@@ -132,23 +153,25 @@ class Parts:
     def _made(self, number: int, read: Read, to_end: bool) -> pa.Table | None:
         """Return the runs of a file that are in the table of results."""
         tables = []
-        for first in range(number * PART, number * PART + self._whole(number), AT_ONCE):
-            last = min(first + AT_ONCE, number * PART + self._whole(number))
-            keys = [self._sweep.key(run) for run in range(first, last)]
-            texts = dict(read(list(dict.fromkeys(keys))))
-            rows: list[Row] = [
-                (run, key, Outcome.model_validate_json(texts[key]))
-                for run, key in zip(range(first, last), keys, strict=True)
-                if key in texts
-            ]
-            if rows:
-                tables.append(columns(self._sweep, rows))
+        end = number * PART + self._whole(number)
+        for first in range(number * PART, end, AT_ONCE):
+            if (table := self._rows_of(range(first, min(first + AT_ONCE, end)), read)) is not None:
+                tables.append(table)
             elif not to_end:
                 break
         if not tables:
             return None
         schema = union([table.schema for table in tables])
         return pa.concat_tables(fitted(table, schema) for table in tables)
+
+    def _rows_of(self, numbers: range, read: Read) -> pa.Table | None:
+        """Return those of some runs that are in the table of results."""
+        keys = {number: self._sweep.key(number) for number in numbers}
+        texts = dict(read(list(dict.fromkeys(keys.values()))))
+        rows: list[Row] = [
+            (number, key, Outcome.model_validate_json(texts[key])) for number, key in keys.items() if key in texts
+        ]
+        return columns(self._sweep, rows) if rows else None
 
     def _write(self, number: int, table: pa.Table) -> None:
         """Write a file; when it brings columns that the others lack, they are written anew."""
@@ -173,7 +196,16 @@ def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"])
 
 
 def _put(path: Path, table: pa.Table) -> None:
-    """Write a file under a name that no reader of the folder takes for one of its own, then rename it."""
+    """Write a file under a name that no reader of the folder takes for one of its own, then rename it.
+
+    One with many runs of each point holds what they add up to: to read it takes a moment, to read the runs does not.
+    """
+    points = np.unique(table["point"].to_numpy())
+    if len(points) * MANY <= table.num_rows:
+        tallies = Tallies(points)
+        tallies.add(table)
+        sums = {int(point): tallies.sums(place) for place, point in enumerate(points)}
+        table = table.replace_schema_metadata({**table.schema.metadata, SUMS: json.dumps(sums)})
     temporary = path.with_name(f".{path.name}.part")
     pq.write_table(table, temporary, compression="zstd")
     os.replace(temporary, path)

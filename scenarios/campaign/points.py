@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, overload
 
+import numpy as np
+
 from core.block import FloatArray
+from core.errors import InputError
 from scenarios.edit import written
 from scenarios.key import content_hash
 
@@ -37,7 +40,7 @@ class Rows:
     rows : ndarray
         The values, a row for each step.
     number : str
-        Name under which tables show the number of a row; empty: they show its values.
+        Name under which tables show the number of a row, for those drawn by chance; empty: they show its values.
     """
 
     def __init__(self, paths: Sequence[str], rows: FloatArray, number: str = "") -> None:
@@ -51,6 +54,13 @@ class Rows:
         """Return a step."""
         values = dict(zip(self._paths, self._rows[at].tolist(), strict=True))
         return ({self._number: float(at + 1)} if self._number else {**values}), values
+
+    def ends(self, at: int) -> list[Step]:
+        """Return a step with each value as small, then as large as it becomes; none where chance draws them."""
+        _, values = self[at]
+        ends = np.array([self._rows.min(axis=0), self._rows.max(axis=0)]).T.tolist()
+        changed = [{**values, path: end} for path, pair in zip(self._paths, ends, strict=True) for end in pair]
+        return [] if self._number else [({**one}, one) for one in changed]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +82,19 @@ class Points(Sequence[Point]):
 
     Parameters
     ----------
-    axes : list of Axis
+    axes : sequence of Axis
         What varies.
     base : dict
         The scenario that the points differ from.
+
+    Attributes
+    ----------
+    varied : sequence of Axis
+        What varies.
     """
 
-    def __init__(self, axes: list[Axis], base: dict[str, Any]) -> None:
-        self._axes, self._base = axes, base
+    def __init__(self, axes: Sequence[Axis], base: dict[str, Any]) -> None:
+        self.varied, self._base = axes, base
         self._count = math.prod(len(axis) for axis in axes)
 
     def __len__(self) -> int:
@@ -97,12 +112,16 @@ class Points(Sequence[Point]):
         if not 0 <= at < self._count:
             raise IndexError(at)
         steps = []
-        for axis in reversed(self._axes):
+        for axis in reversed(self.varied):
             at, step = divmod(at, len(axis))
             steps.append(axis[step])
+        return self.of(reversed(steps))
+
+    def of(self, steps: Iterable[Step]) -> Point:
+        """Return the point of some steps, one of each axis."""
         labels: Labels = {}
         values: Values = {}
-        for names, written_over in reversed(steps):
+        for names, written_over in steps:
             labels |= names
             values |= written_over
         return Point(labels, values, self._base)
@@ -110,7 +129,7 @@ class Points(Sequence[Point]):
     def axes(self) -> dict[str, bool]:
         """Return the names of labels, in their order, and whether one of the values is a text."""
         found: dict[str, bool] = {}
-        for axis in self._axes:
+        for axis in self.varied:
             for number in range(1 if isinstance(axis, Rows) else len(axis)):  # the rows of an array are numbers
                 for name, value in axis[number][0].items():
                     found[name] = found.get(name, False) or isinstance(value, str)
@@ -118,7 +137,7 @@ class Points(Sequence[Point]):
 
 
 class Contents(Sequence[str]):
-    """The hashes of points, from which the keys of their runs are built; each worked out once, in 0.1 ms."""
+    """The hashes of points, from which the keys of their runs are built; each worked out once, in less than 0.1 ms."""
 
     def __init__(self, points: Points) -> None:
         self._points, self._known = points, [""] * len(points)
@@ -136,5 +155,9 @@ class Contents(Sequence[str]):
         if isinstance(at, slice):
             return [self[number] for number in range(*at.indices(len(self)))]
         if not self._known[at]:
-            self._known[at] = content_hash(self._points[at].document)
+            point = self._points[at]
+            try:
+                self._known[at] = content_hash(point.document)
+            except InputError:  # no scenario comes of its values: its runs say why
+                self._known[at] = content_hash({"scenario": point.base, "set": point.values})
         return self._known[at]

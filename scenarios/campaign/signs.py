@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from multiprocessing.context import SpawnContext
+from multiprocessing import RawArray
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -18,15 +18,13 @@ class Signs:
 
     Parameters
     ----------
-    context : SpawnContext
-        That of the processes.
     count : int
         Most pieces at once.
     """
 
-    def __init__(self, context: SpawnContext, count: int) -> None:
-        self.ticks: Any = context.RawArray("q", count)
-        self.stop: Any = context.RawArray("b", count)
+    def __init__(self, count: int) -> None:
+        self.ticks: Any = RawArray("q", count)
+        self.stop: Any = RawArray("b", count)
 
 
 _received: tuple[Signs, int] | None = None

@@ -14,8 +14,8 @@ import numpy as np
 from core.errors import InputError
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.outcome import Outcome, outcome_of
+from scenarios.campaign.sums import Moments
 from scenarios.campaign.sweep import Sweep
-from scenarios.campaign.tally import Moments
 from scenarios.counterpart import counterpart, replaced
 from scenarios.run import Result, summarise
 from scenarios.schema import Scenario
@@ -116,6 +116,7 @@ def _spread(runs: Sequence[Outcome]) -> dict[str, tuple[float, float]]:
     for name in sorted({name for run in runs for name in run.metrics}):
         moments, start = Moments(1), np.zeros(1, np.int64)
         moments.add(np.array([run.metrics[name] for run in runs if name in run.metrics]), start, start)
-        if (spread := moments.spread(0)) is not None:
+        (spread,) = moments.spreads()
+        if spread is not None:
             found[name] = spread.mean, spread.std
     return found

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, TypeAdapter
 
 from core.block import FloatArray, IntArray
 from core.errors import unknown
@@ -16,6 +18,7 @@ from scenarios.campaign.parts import PART, Parts
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import PointTally, Tallies
 
+TALLY = TypeAdapter(PointTally)
 MOST_DOTS = 2000
 """Runs that are drawn one by one; more are counted in cells."""
 BINS, SLICES = 60, 40
@@ -125,10 +128,19 @@ class Survey:
         files = np.unique(np.concatenate([_files(number * seeds, (number + 1) * seeds) for number in wanted.tolist()]))
         tallies = Tallies(wanted)
         names = ["point", "ok", "trip", "error", "warnings", *self.figures, *named(self._schema, "diagnosis")]
-        for table in self.parts.tables(names if len(self._schema) else None, files.tolist()):
-            tallies.add(table)
-        done = [tallies.tally(place, self._sweep.points[number].labels) for place, number in enumerate(wanted.tolist())]
+        for number in files.tolist():
+            sums = self.parts.sums(number)
+            if sums is None:
+                for table in self.parts.tables(names if len(self._schema) else None, [number]):
+                    tallies.add(table)
+            for place in np.flatnonzero(np.isin(wanted, list(sums or ()))).tolist():
+                tallies.add_sums(place, (sums or {})[int(wanted[place])])
+        done = tallies.tallies(self._sweep.points[number].labels for number in wanted.tolist())
         return [done[place] for place in places.tolist()]
+
+    def listed(self, points: Sequence[int]) -> bytes:
+        """Return the tallies of some points as JSON, separated by commas."""
+        return b",\n".join(map(TALLY.dump_json, self.page(points)))
 
     def distribution(self, x: str, y: str = "") -> Distribution:
         """Count the runs over one quantity, or over two.
@@ -215,6 +227,12 @@ class Survey:
             total += np.bincount(points, values[there], len(count))
         means: FloatArray = np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
         return means
+
+
+def listed(document: dict[str, Any], folder: Path, points: Sequence[int]) -> bytes:
+    """Return the tallies of some points as JSON; in a worker, from the files of the campaign."""
+    sweep = Sweep(document)
+    return Survey(sweep, Parts(sweep, folder)).listed(points)
 
 
 def _files(first: int, end: int) -> IntArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, Literal, Self
 
 import numpy as np
@@ -12,13 +12,11 @@ from pydantic import Field, ValidationError, model_validator
 from core.block import FloatArray
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
-from core.nesting import read_toml
 from core.table import Table
 from scenarios.campaign.points import Axis, Contents, Point, Points, Rows, Step, Values
 from scenarios.edit import with_values
 from scenarios.key import run_key
 from scenarios.library import get
-from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from scenarios.seeds import MAX_RUNS, Seeds
 
@@ -142,36 +140,6 @@ class Sweep:
             raise InputError(f"{text} and {MAX_RUNS} runs", "grid", code="too_long")
         self.points = Points(axes, self.base.document)
         self.contents: Sequence[str] = Contents(self.points)
-
-    @classmethod
-    def load(cls, text: str | dict[str, Any]) -> Sweep:
-        """Read a campaign from TOML or from a document, and check its points.
-
-        Raises
-        ------
-        InputError
-            Naming the field, or the line of malformed TOML.
-        """
-        sweep = cls(text if isinstance(text, dict) else read_toml(text, "sweep"))
-        sweep.longest(sweep.points)
-        return sweep
-
-    @staticmethod
-    def longest(points: Iterable[Point]) -> Scenario:
-        """Check some points, a third of a millisecond each; return the longest of them.
-
-        Raises
-        ------
-        InputError
-            For the first point that is not a valid scenario.
-        """
-        longest = scenario = None
-        for point in points:
-            scenario = Scenario.load(point.document, like=scenario)
-            if longest is None or (scenario.samples or DEFAULT_SAMPLES) > (longest.samples or DEFAULT_SAMPLES):
-                longest = scenario
-        assert longest is not None
-        return longest
 
     @property
     def seeds(self) -> range:

@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter, defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-from pydantic import BaseModel
+from numpy.typing import NDArray
 
 from core.block import FloatArray, IntArray
 from scenarios.campaign.columns import DIAGNOSIS, Row, columns, diagnosers, named
 from scenarios.campaign.outcome import EVIDENCE, Outcome
 from scenarios.campaign.points import Labels
+from scenarios.campaign.sums import DiagnosisSums, Moments, Spread, Sums
 from scenarios.campaign.sweep import Sweep
 
-
-class Spread(BaseModel):
-    """A figure over runs; ``std`` is that of a sample."""
-
-    count: int
-    mean: float
-    std: float
-    min: float
-    max: float
+FALLING = np.append(EVIDENCE[::-1], EVIDENCE[0])
+"""The threshold beside each point of a curve, as it falls; the last bin has no end."""
 
 
-class Roc(BaseModel):
+@dataclass(slots=True)
+class Roc:
     """Share of faulty samples called faulty against share of healthy ones, as the threshold falls."""
 
     false_alarm: list[float]
@@ -37,7 +33,8 @@ class Roc(BaseModel):
     area: float
 
 
-class DiagnosisTally(BaseModel):
+@dataclass(slots=True)
+class DiagnosisTally:
     """What one diagnoser said in all runs of a point."""
 
     names: list[str]
@@ -47,17 +44,18 @@ class DiagnosisTally(BaseModel):
     roc: Roc | None
 
 
-class PointTally(BaseModel):
+@dataclass(slots=True)
+class PointTally:
     """All runs of a point."""
 
     labels: dict[str, str | float]
-    runs: int = 0
-    ok: int = 0
-    tripped: int = 0
-    errors: list[str] = []
-    warnings: list[str] = []
-    metrics: dict[str, Spread] = {}
-    diagnosis: dict[str, DiagnosisTally] = {}
+    runs: int
+    ok: int
+    tripped: int
+    errors: list[str]
+    warnings: list[str]
+    metrics: dict[str, Spread]
+    diagnosis: dict[str, DiagnosisTally]
 
 
 class Tallies:
@@ -75,7 +73,7 @@ class Tallies:
         self._errors: dict[int, Counter[str]] = defaultdict(Counter)
         self._warnings: dict[int, Counter[str]] = defaultdict(Counter)
         self._moments: dict[str, Moments] = {}
-        self._diagnosis: dict[str, dict[int, _DiagnosisSums]] = defaultdict(dict)
+        self._diagnosis: dict[str, dict[int, DiagnosisSums]] = defaultdict(dict)
 
     def add(self, table: pa.Table) -> None:
         """Add runs, in the order of points, with the columns of `scenarios.campaign.columns`."""
@@ -101,27 +99,52 @@ class Tallies:
             moments.add(table[name].to_numpy(), starts, at)
         ends = [*starts[1:], len(places)]
         for name in diagnosers(table.schema):
-            said = {part: table[f"diagnosis.{name}.{part}"].combine_chunks() for part in DIAGNOSIS}
+            said = {part: _Rows(table[f"diagnosis.{name}.{part}"].combine_chunks()) for part in DIAGNOSIS}
             for place, start, end in zip(at.tolist(), starts.tolist(), ends, strict=True):
-                self._diagnosis[name].setdefault(place, _DiagnosisSums()).add(
-                    {part: array.slice(start, end - start) for part, array in said.items()}
+                self._diagnosis[name].setdefault(place, DiagnosisSums()).add(
+                    {part: rows.of(start, end) for part, rows in said.items()}
                 )
 
-    def tally(self, place: int, labels: Labels) -> PointTally:
-        """Return the tally of a point, the one at that place among those asked for."""
-        runs, ok, tripped = self._counts[:, place].tolist()
-        spreads = {name: self._moments[name].spread(place) for name in sorted(self._moments)}
-        tallies = {name: sums[place].tally() for name, sums in sorted(self._diagnosis.items()) if place in sums}
-        return PointTally(
-            labels=labels,
-            runs=runs,
-            ok=ok,
-            tripped=tripped,
-            errors=_counted(self._errors[place]),
-            warnings=_counted(self._warnings[place]),
-            metrics={name: spread for name, spread in spreads.items() if spread is not None},
-            diagnosis={name: tally for name, tally in tallies.items() if tally is not None},
-        )
+    def sums(self, place: int) -> Sums:
+        """Return what was added up at a place, as JSON can carry it."""
+        return {
+            "counts": self._counts[:, place].tolist(),
+            "errors": self._errors[place],
+            "warnings": self._warnings[place],
+            "figures": {name: moments.at(place) for name, moments in self._moments.items() if moments.count[place]},
+            "diagnosis": {name: said[place].as_json() for name, said in self._diagnosis.items() if place in said},
+        }
+
+    def add_sums(self, place: int, sums: Sums) -> None:
+        """Add what was added up of further runs of the point at a place."""
+        self._counts[:, place] += sums["counts"]
+        self._errors[place].update(sums["errors"])
+        self._warnings[place].update(sums["warnings"])
+        for name, figures in sums["figures"].items():
+            moments = self._moments.setdefault(name, Moments(len(self._points)))
+            moments.merge(np.array([place]), *(np.array([value]) for value in figures))
+        for name, said in sums["diagnosis"].items():
+            self._diagnosis[name].setdefault(place, DiagnosisSums()).merge(DiagnosisSums.of(said))
+
+    def tallies(self, labels: Iterable[Labels]) -> list[PointTally]:
+        """Return the tally of each point, by the labels of each."""
+        spreads = {name: self._moments[name].spreads() for name in sorted(self._moments)}
+        diagnosis = sorted(self._diagnosis.items())
+        found = []
+        for place, (own, (runs, ok, tripped)) in enumerate(zip(labels, self._counts.T.tolist(), strict=True)):
+            said = {name: _tally(sums[place]) for name, sums in diagnosis if place in sums}
+            tally = PointTally(
+                own,
+                runs,
+                ok,
+                tripped,
+                errors=_counted(self._errors[place]) if place in self._errors else [],
+                warnings=_counted(self._warnings[place]) if place in self._warnings else [],
+                metrics={name: spread for name, at in spreads.items() if (spread := at[place]) is not None},
+                diagnosis={name: tally for name, tally in said.items() if tally is not None},
+            )
+            found.append(tally)
+        return found
 
 
 def _counted(texts: Counter[str]) -> list[str]:
@@ -129,92 +152,31 @@ def _counted(texts: Counter[str]) -> list[str]:
     return [f"{text} ({count} runs)" for text, count in texts.most_common(3)]
 
 
-class Moments:
-    """Count, mean, sum of squared deviations, least and greatest of a figure at each point (Chan et al. 1979)."""
+class _Rows:
+    """Rows of numbers or texts, each of its own length, as one array."""
 
-    def __init__(self, points: int) -> None:
-        self.count, self.mean, self._square = np.zeros(points), np.zeros(points), np.zeros(points)
-        self._low, self._high = np.full(points, np.inf), np.full(points, -np.inf)
+    def __init__(self, rows: pa.ListArray) -> None:
+        lengths = pc.fill_null(pc.list_value_length(rows), 0).to_numpy()
+        self._ends = [0, *np.cumsum(lengths).tolist()]
+        self._values = rows.flatten().to_numpy(zero_copy_only=False)
 
-    def add(self, values: FloatArray, starts: IntArray, at: IntArray) -> None:
-        """Add values that are in the order of points; those of a point begin at its start, nan is none.
-
-        Parameters
-        ----------
-        values : (runs,) ndarray
-        starts : (points,) ndarray
-        at : (points,) ndarray
-            Where each point stands.
-        """
-        there = np.isfinite(values)
-        count = np.add.reduceat(there.astype(float), starts)
-        runs = np.diff(starts, append=len(values))
-        low = np.minimum.reduceat(np.where(there, values, np.inf), starts)
-        high = np.maximum.reduceat(np.where(there, values, -np.inf), starts)
-        base = np.where(count > 0.0, low, 0.0)  # from it, values that are all alike are exactly that far: not at all
-        above = np.where(there, values - np.repeat(base, runs), 0.0)
-        rise = np.add.reduceat(above, starts) / np.maximum(count, 1.0)
-        square = np.add.reduceat(np.where(there, above - np.repeat(rise, runs), 0.0) ** 2, starts)
-        mean = base + rise
-        total = np.maximum(self.count[at] + count, 1.0)
-        step = mean - self.mean[at]
-        self._square[at] += np.where(count > 0.0, square + step**2 * self.count[at] * count / total, 0.0)
-        self.mean[at] += step * (count / total)
-        self.count[at] += count
-        self._low[at] = np.minimum(self._low[at], low)
-        self._high[at] = np.maximum(self._high[at], high)
-
-    def spread(self, at: int) -> Spread | None:
-        """Return the spread at a point, none where no run had the figure."""
-        count = int(self.count[at])
-        if not count:
-            return None
-        return Spread(
-            count=count,
-            mean=float(self.mean[at]),
-            std=math.sqrt(self._square[at] / (count - 1)) if count > 1 else 0.0,
-            min=float(self._low[at]),
-            max=float(self._high[at]),
-        )
+    def of(self, first: int, end: int) -> NDArray[Any]:
+        """Return what is in some rows, one after another; nan stands for null."""
+        found: NDArray[Any] = self._values[self._ends[first] : self._ends[end]]
+        return found
 
 
-class _DiagnosisSums:
-    def __init__(self) -> None:
-        self._names: list[str] = []
-        self._confusion = np.zeros(0, np.int64)
-        self._delays: Counter[int] = Counter()
-        self._missed = 0
-        self._evidence = np.zeros((2, len(EVIDENCE) + 1), np.int64)
-
-    def add(self, said: dict[str, pa.ListArray]) -> None:
-        """Add what a diagnoser said in some runs of the point."""
-        if not self._names:
-            self._names = next((names for names in said["names"].to_pylist() if names), [])
-            self._confusion = np.zeros(len(self._names) ** 2, np.int64)
-        self._confusion += _summed(said["confusion"], len(self._confusion))
-        delays = said["delays"].flatten()
-        self._missed += delays.null_count
-        self._delays.update(delays.drop_null().to_pylist())
-        for row, part in enumerate(("healthy", "faulty")):
-            self._evidence[row] += _summed(said[part], self._evidence.shape[1])
-
-    def tally(self) -> DiagnosisTally | None:
-        """Return the sums, none where the diagnoser was in no run."""
-        if not self._names:
-            return None
-        return DiagnosisTally(
-            names=self._names,
-            confusion=self._confusion.reshape(len(self._names), -1).tolist(),
-            delays=dict(sorted(self._delays.items())),
-            missed=self._missed,
-            roc=receiver_operating_characteristic(*self._evidence) if self._evidence.sum(axis=1).all() else None,
-        )
-
-
-def _summed(rows: pa.ListArray, length: int) -> IntArray:
-    """Add up rows of one length; a row without numbers adds nothing."""
-    numbers: IntArray = rows.flatten().to_numpy(zero_copy_only=False)
-    return numbers.reshape(-1, length).sum(axis=0, dtype=np.int64) if len(numbers) else np.zeros(length, np.int64)
+def _tally(sums: DiagnosisSums) -> DiagnosisTally | None:
+    """Return what a diagnoser said, none where it was in no run."""
+    if not sums.names:
+        return None
+    return DiagnosisTally(
+        names=sums.names,
+        confusion=sums.confusion.reshape(len(sums.names), -1).tolist(),
+        delays=dict(sorted(sums.delays.items())),
+        missed=sums.missed,
+        roc=receiver_operating_characteristic(*sums.evidence) if sums.evidence.sum(axis=1).all() else None,
+    )
 
 
 def receiver_operating_characteristic(healthy: FloatArray, faulty: FloatArray) -> Roc:
@@ -227,14 +189,18 @@ def receiver_operating_characteristic(healthy: FloatArray, faulty: FloatArray) -
     healthy, faulty : (n,) ndarray
         Samples in each bin of evidence while the truth was healthy, and while it was not.
     """
-    false_alarm, detection = (np.append(0.0, np.cumsum(counts[::-1]) / counts.sum()) for counts in (healthy, faulty))
-    corner = np.append(True, np.diff(false_alarm) + np.diff(detection) > 0.0)
-    thresholds = np.append(EVIDENCE[::-1], -np.inf)[np.flatnonzero(corner[1:])]
+    counts = np.array([healthy, faulty])[:, ::-1]
+    moved = counts.any(axis=0)
+    sofar = np.cumsum(counts[:, moved], axis=1)
+    shares = np.zeros((2, sofar.shape[1] + 1))
+    np.divide(sofar, sofar[:, -1:], out=shares[:, 1:])
+    false_alarm, detection = shares
+    steps, heights = false_alarm[1:] - false_alarm[:-1], detection[1:] + detection[:-1]
     return Roc(
-        false_alarm=false_alarm[corner].tolist(),
-        detection=detection[corner].tolist(),
-        log10_odds=[float(max(value, EVIDENCE[0])) for value in thresholds],
-        area=float(np.trapezoid(detection, false_alarm)),
+        false_alarm=false_alarm.tolist(),
+        detection=detection.tolist(),
+        log10_odds=FALLING[moved].tolist(),
+        area=0.5 * float((steps * heights).sum()),
     )
 
 
@@ -253,4 +219,4 @@ def tally(sweep: Sweep, outcomes: Mapping[str, Outcome]) -> list[PointTally]:
     rows: list[Row] = [(number, key, outcomes[key]) for number, key in keys if key in outcomes]
     if rows:
         tallies.add(columns(sweep, rows))
-    return [tallies.tally(number, point.labels) for number, point in enumerate(sweep.points)]
+    return tallies.tallies(point.labels for point in sweep.points)

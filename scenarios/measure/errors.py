@@ -4,23 +4,38 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from core.block import FloatArray
 from core.kernel import kernel
+from scenarios.measure.blocks import BLOCK, blocks, loaded
 
 
-@kernel
 def rms(values: FloatArray) -> float:
     """Return the root mean square."""
     total = 0.0
-    for i in range(len(values)):
-        total += values[i] * values[i]
+    for (block,) in blocks(values):
+        total = _squares(block, total)
     return math.sqrt(total / len(values))
 
 
 @kernel
+def _squares(values: FloatArray, total: float) -> float:
+    for i in range(len(values)):
+        total += values[i] * values[i]
+    return total
+
+
 def swing(values: FloatArray) -> float:
     """Return the largest size; what is not a number counts, so that nothing is taken for settled."""
-    largest = 0.0
+    found = 0.0
+    for (block,) in blocks(values):
+        found = _swing(block, found)
+    return found
+
+
+@kernel
+def _swing(values: FloatArray, largest: float) -> float:
     for i in range(len(values)):
         size = abs(values[i])
         if not size <= largest:
@@ -28,10 +43,18 @@ def swing(values: FloatArray) -> float:
     return largest
 
 
-@kernel
 def errors(x: FloatArray, model: FloatArray, band: float) -> tuple[float, float, int]:
     """Return the root mean square of the error, its peak, and the samples to the last one outside a band (um)."""
     total, peak, settled = 0.0, 0.0, 0
+    for number, (moved, wanted) in enumerate(blocks(x, model)):
+        total, peak, outside = _errors(moved, wanted, band, total, peak)
+        settled = number * BLOCK + outside if outside else settled
+    return math.sqrt(total / len(x)), peak, settled
+
+
+@kernel
+def _errors(x: FloatArray, model: FloatArray, band: float, total: float, peak: float) -> tuple[float, float, int]:
+    settled = 0
     for i in range(len(x)):
         error = x[i] - model[i]
         size = abs(error)
@@ -40,36 +63,53 @@ def errors(x: FloatArray, model: FloatArray, band: float) -> tuple[float, float,
             peak = size
         if size > band:
             settled = i + 1
-    return math.sqrt(total / len(x)), peak, settled
+    return total, peak, settled
+
+
+def last_step(values: FloatArray) -> int:
+    """Return the sample at which a signal takes its last value, 0 if it always had it."""
+    for end in range(len(values), 1, -BLOCK):
+        first = max(end - BLOCK - 1, 0)
+        if step := _last_step(loaded(values[first:end])):
+            return first + step
+    return 0
 
 
 @kernel
-def last_step(values: FloatArray) -> int:
-    """Return the sample at which a signal takes its last value, 0 if it always had it."""
+def _last_step(values: FloatArray) -> int:
     for i in range(len(values) - 1, 0, -1):
         if values[i] != values[i - 1]:
             return i
     return 0
 
 
-@kernel
 def first_peaks(x: FloatArray, model: FloatArray) -> tuple[float, float]:
     """Return the first peak of the model and the largest of x until the model turns again; 0 if it does not.
 
     Both count in the direction in which the model begins to move.
     """
-    way, turned, top = 0.0, 0, 0.0
-    largest = -math.inf
+    found = np.array([0.0, 0.0, 0.0, -math.inf, -math.inf])
+    for moved, wanted in blocks(x, model, more=1):
+        if _first_peaks(moved, wanted, found):
+            way, _, top, *largest = found.tolist()
+            return (top, largest[0 if way > 0.0 else 1]) if top > 0.0 else (0.0, 0.0)
+    return 0.0, 0.0
+
+
+@kernel
+def _first_peaks(x: FloatArray, model: FloatArray, found: FloatArray) -> bool:
+    """Go on looking; return whether the model has turned twice.
+
+    What is found is the direction, whether the model turned, its peak, and the largest of x in either direction.
+    """
     for i in range(len(model) - 1):
         slope = model[i + 1] - model[i]
-        if way == 0.0 and slope != 0.0:
-            way = 1.0 if slope > 0.0 else -1.0
-            for k in range(i):
-                largest = max(largest, x[k] * way)
-        if way != 0.0:
-            largest = max(largest, x[i] * way)
-        if turned == 0 and slope * way < 0.0:
-            turned, top = 1, model[i] * way
-        elif turned == 1 and slope * way > 0.0:
-            return (top, largest) if top > 0.0 else (0.0, 0.0)
-    return 0.0, 0.0
+        if found[0] == 0.0 and slope != 0.0:
+            found[0] = 1.0 if slope > 0.0 else -1.0
+        found[3] = max(found[3], x[i])
+        found[4] = max(found[4], -x[i])
+        if found[1] == 0.0 and slope * found[0] < 0.0:
+            found[1], found[2] = 1.0, model[i] * found[0]
+        elif found[1] == 1.0 and slope * found[0] > 0.0:
+            return True
+    return False

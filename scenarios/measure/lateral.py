@@ -55,7 +55,6 @@ def device_pull_in(device: Device, stiffness_scale: float = 1.0) -> float | None
     return None if volts is None else volts * math.sqrt(stiffness_scale)
 
 
-@lru_cache(maxsize=256)
 def aligned_pull_in(device: Device) -> float | None:
     """Return the bias of pull-in of a resonator as it was made."""
     if device.capacitance_gradient == 0.0:

@@ -13,6 +13,7 @@ from core.board.board import Board
 from core.board.spec import Spec
 from core.kernel import kernel
 from core.loop.score import Scores
+from scenarios.measure.blocks import BLOCK, blocks, largest, last_where, loaded, mean, stretches, width
 from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing
 from scenarios.measure.lateral import lateral_metrics
 from scenarios.measure.rate import rate_metrics
@@ -27,16 +28,31 @@ SETTLED = 0.02
 
 
 def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tick: int = 0) -> complex:
-    r"""Return the phasor of one tone by least squares, :math:`x\approx\mathrm{Im}\{Ce^{j\omega t}\}`."""
-    return complex(*weighed(_projection(frequency_hz, dt_ms, first_tick, len(signal)), signal))
+    r"""Return the phasor of one tone by least squares, :math:`x\approx\mathrm{Im}\{Ce^{j\omega t}\}`.
+
+    The normal equations of a long signal are added up block by block.
+    """
+    if len(signal) <= BLOCK:
+        return complex(*weighed(_projection(frequency_hz, dt_ms, first_tick, len(signal)), loaded(signal)))
+    squares: FloatArray = np.zeros((3, 3))
+    products: FloatArray = np.zeros(3)
+    for number, (block,) in enumerate(blocks(signal)):
+        rows = _tones(frequency_hz, dt_ms, first_tick + number * BLOCK, len(block))
+        squares += rows.T @ rows
+        products += rows.T @ block
+    return complex(*np.linalg.lstsq(squares, products)[0][:2])
 
 
 @lru_cache(maxsize=32)
 def _projection(frequency_hz: float, dt_ms: float, first_tick: int, samples: int) -> FloatArray:
     """Return the two rows that make sine and cosine of a signal, which may have an offset."""
+    return np.ascontiguousarray(np.linalg.pinv(_tones(frequency_hz, dt_ms, first_tick, samples))[:2], np.float64)
+
+
+def _tones(frequency_hz: float, dt_ms: float, first_tick: int, samples: int) -> FloatArray:
+    """Return the columns that a tone with an offset is made of."""
     angle = 2.0 * math.pi * frequency_hz * (first_tick + np.arange(samples)) * dt_ms / 1e3
-    rows: FloatArray = np.linalg.pinv(np.column_stack([np.sin(angle), np.cos(angle), np.ones(samples)]))[:2]
-    return np.ascontiguousarray(rows)
+    return np.column_stack([np.sin(angle), np.cos(angle), np.ones(samples)])
 
 
 @kernel
@@ -80,9 +96,9 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     }
     step = last_step(r)
     before = float(model[step - 1]) if step else 0.0
-    rise = float(np.mean(model[tail])) - before
-    if abs(rise) > 1e-9 and np.ptp(r[tail]) == 0.0:
-        peak = float(np.max((x[step:] - before) * math.copysign(1.0, rise)))
+    rise = mean(model[tail]) - before
+    if abs(rise) > 1e-9 and width(r[tail]) == 0.0:
+        peak = largest(lambda values: (values - before) * math.copysign(1.0, rise), x[step:])
         figures["control.overshoot_pct"] = 100.0 * (peak / abs(rise) - 1.0)
     if (peak_of := first_peak(x, model)) is not None:
         figures["control.first_peak_pct"] = peak_of
@@ -142,9 +158,9 @@ def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch:
         "identifiable": board.value(f"{name}.identifiable"),
     }
     if error is not None:
-        outside = np.flatnonzero(error[stretch.start(len(error), board.dt_ms) :] > IDENTIFIED_PCT)
-        last["settling_ms"] = (float(outside[-1]) + 1.0) * board.dt_ms if len(outside) else 0.0
-        last["error_pct"] = float(np.mean(error[stretch.tail(len(error))]))
+        counted = error[stretch.start(len(error), board.dt_ms) :]
+        last["settling_ms"] = last_where(lambda values: values > IDENTIFIED_PCT, counted) * board.dt_ms
+        last["error_pct"] = mean(error[stretch.tail(len(error))])
         for part in ("mass", "stiffness", "damping"):
             estimate, truth = (board.value(f"{name}.{port}.{part}") for port in ("estimate", "truth"))
             last[f"{part}_error_pct"] = 100.0 * (estimate / truth - 1.0)
@@ -153,14 +169,7 @@ def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch:
 
 def step_lengths(truth: FloatArray) -> list[int]:
     """Return the number of samples of each stretch in which one hypothesis is true."""
-    ends = [*stretches(truth), len(truth)]
-    return [end - start for start, end in itertools.pairwise([0, *ends]) if truth[start] >= 0.0]
-
-
-@kernel
-def stretches(values: FloatArray) -> list[int]:
-    """Return the samples at which a signal takes another value."""
-    return [i for i in range(1, len(values)) if values[i] != values[i - 1]]
+    return [end - start for start, end in itertools.pairwise([*stretches(truth), len(truth)]) if truth[start] >= 0.0]
 
 
 def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from collections.abc import Callable
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.device.two_axis import TwoAxis
 from core.units import MS_PER_S, PM_PER_UM
+from scenarios.measure.blocks import BLOCK, blocks, is_zero, last_where, mean, stretches, total, width
 from scenarios.measure.rate_noise import rate_noise_metrics
 from scenarios.measure.stretch import Stretch
 
@@ -21,6 +23,10 @@ SHORTEST = 0.01
 """Share of a run that a rate must stay the same for to count as a level."""
 LONGER = 4
 """Length of a spectrum over that of its record: how finely the frequencies lie."""
+LONGEST = 1 << 18
+"""Samples of a step response that are transformed."""
+FINE = 0.01
+"""Bandwidth over the rate of the samples up to which those between them are not missed."""
 READ = ("rate", "quadrature", "angle", "trusted")
 """Outputs of a controller that figures are made of."""
 
@@ -49,13 +55,13 @@ def rate_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -
         figures |= _reading(board, true, read, pieces, stretch)
     driving = board.spec.active
     if (quadrature := trace.get(f"{driving}.quadrature")) is not None:
-        figures["rate.quadrature_dps"] = float(np.mean(quadrature[_settled(pieces[-1], stretch)]))
+        figures["rate.quadrature_dps"] = mean(quadrature[_settled(pieces[-1], stretch)])
     if (trusted := trace.get(f"{driving}.trusted")) is not None:
         figures["gyro.trusted"] = float(trusted[-1])
     if (angle := trace.get(f"{driving}.angle")) is not None and isinstance(device := board.spec.nominal, TwoAxis):
         gain = device.coriolis_mass / math.sqrt(device.mass * device.mass_y)
         first = pieces[0][0]
-        turned = gain * float(np.sum(true[first:-1])) * board.dt_ms / MS_PER_S
+        turned = gain * float(total(np.asarray, true[first:-1])) * board.dt_ms / MS_PER_S
         figures["rate.angle_error_deg"] = float(angle[-1] - angle[first]) + turned
     figures |= _in_step(trace, _settled(pieces[-1], stretch))
     for name, section in board.spec.readouts.items():
@@ -67,8 +73,7 @@ def rate_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -
 
 def levels(rate: FloatArray, start: int = 0) -> Levels:
     """Return first and last sample, the latter not included, of every level of a rate; all of it if it has none."""
-    steps = np.flatnonzero(np.diff(rate)) + 1
-    edges = [0, *steps.tolist(), len(rate)]
+    edges = chain(stretches(rate), [len(rate)])
     found = [(max(first, start), end) for first, end in pairwise(edges) if end - first >= SHORTEST * len(rate)]
     return [(first, end) for first, end in found if end > first] or [(start, len(rate))]
 
@@ -88,37 +93,45 @@ def _reading(board: Board, true: FloatArray, read: FloatArray, pieces: Levels, s
     for step, piece in enumerate(pieces, 1):
         at, first, end = _settled(piece, stretch), *piece
         known, told = true[at], read[at]
-        mean, meant = float(np.mean(told)), float(np.mean(known))
-        figures |= _both("rate.read_dps", step, len(pieces), mean)
-        figures["rate.rms_error_dps"] = float(np.sqrt(np.mean((told - known) ** 2)))
-        if not np.any(known):
-            figures["rate.zero_dps"] = mean
-        elif meant * meant > 0.5 * float(np.mean(known * known)):  # neither noise alone nor a swing around 0
-            figures |= _both("rate.error_pct", step, len(pieces), 100.0 * (mean / meant - 1.0))
-        change, scatter = mean - float(read[first]), float(np.ptp(told))
-        if np.ptp(known) == 0.0 and (np.any(known) or first) and abs(change) > scatter:
-            outside = np.flatnonzero(~(np.abs(read[first:end] - mean) <= SETTLED * abs(change)))
-            settling = (float(outside[-1]) + 1.0) * board.dt_ms if len(outside) else 0.0
-            figures |= _both("rate.settling_ms", step, len(pieces), settling)
+        at_end, meant, is_still = mean(told), mean(known), is_zero(known)
+        figures |= _both("rate.read_dps", step, len(pieces), at_end)
+        figures["rate.rms_error_dps"] = math.sqrt(_mean_square(np.subtract, told, known))
+        if is_still:
+            figures["rate.zero_dps"] = at_end
+        elif meant * meant > 0.5 * _mean_square(np.asarray, known):  # neither noise alone nor a swing around 0
+            figures |= _both("rate.error_pct", step, len(pieces), 100.0 * (at_end / meant - 1.0))
+        change, scatter = at_end - float(read[first]), width(told)
+        if width(known) == 0.0 and (not is_still or first) and abs(change) > scatter:
+            band = at_end, SETTLED * abs(change)
+            outside = last_where(lambda values, of=band: ~(np.abs(values - of[0]) <= of[1]), read[first:end])
+            figures |= _both("rate.settling_ms", step, len(pieces), outside * board.dt_ms)
             if scatter < SETTLED * abs(change) and first and true[first] != true[first - 1]:
-                response = (read[first:end] - read[first]) / change
-                figures["rate.bandwidth_hz"] = bandwidth_hz(response, board.dt_ms)
+                figures["rate.bandwidth_hz"] = bandwidth_hz(read[first:end], change, board.dt_ms)
     return figures
 
 
-def bandwidth_hz(response: FloatArray, dt_ms: float) -> float:
+def bandwidth_hz(read: FloatArray, change: float, dt_ms: float) -> float:
     r"""Return the frequency at which a step response passes :math:`1/\sqrt2`, Hz; nan if it never does.
 
-    The transfer function is the Fourier transform of the response's slope.
+    The transfer function is the Fourier transform of the response's slope. Of a long record only every so many samples
+    are taken. Where they do not show its first half period well, its first quarter is taken instead.
 
     Parameters
     ----------
-    response : ndarray, shape (samples,)
-        From 0 to 1.
+    read : ndarray, shape (samples,)
+        What is read from the step on.
+    change : float
+        By how much it changes.
     """
+    every = 1
+    while len(read) > every * LONGEST:
+        every *= 2
+    response = (np.concatenate([block[::every] for (block,) in blocks(read)]) - read[0]) / change
     passed = np.abs(np.fft.rfft(np.diff(response), LONGER * len(response)))
     below = np.flatnonzero(passed < math.sqrt(0.5))
-    return float(below[0]) / (LONGER * len(response) * dt_ms / MS_PER_S) if len(below) else math.nan
+    if every > 1 and not (len(below) and below[0] <= FINE * LONGER * len(response)):
+        return bandwidth_hz(read[: len(read) // 4], change, dt_ms)
+    return float(below[0]) / (LONGER * len(response) * every * dt_ms / MS_PER_S) if len(below) else math.nan
 
 
 def _both(name: str, step: int, steps: int, value: float) -> dict[str, float]:
@@ -131,15 +144,20 @@ def _phasor(q: FloatArray, v: FloatArray, omega: float) -> Any:
     return q - 1j * v / omega
 
 
+def _mean_square(of: Callable[..., FloatArray], *columns: FloatArray) -> float:
+    """Return the mean square of what a function makes of columns."""
+    return float(total(lambda *block: np.square(of(*block)), *columns) / len(columns[0]))
+
+
 def _size(swing: FloatArray) -> float:
     """Return the amplitude of a sine."""
-    return math.sqrt(2.0 * float(np.mean(swing * swing)))
+    return math.sqrt(2.0 * _mean_square(np.asarray, swing))
 
 
 def _frequency(x: FloatArray, v: FloatArray) -> float:
     """Return the frequency of a swing in rad/ms; nan at rest."""
-    size = float(np.dot(x, x))
-    return math.sqrt(float(np.dot(v, v)) / size) if size > 0.0 else math.nan
+    size, speed = (float(total(lambda block: np.dot(block, block), q)) for q in (x, v))
+    return math.sqrt(speed / size) if size > 0.0 else math.nan
 
 
 def _over(trace: dict[str, FloatArray], at: slice, one: str, other: str) -> complex:
@@ -147,10 +165,23 @@ def _over(trace: dict[str, FloatArray], at: slice, one: str, other: str) -> comp
     omega = _frequency(trace["plant.x"][at], trace["plant.x_velocity"][at])
     if not omega > 0.0:
         return complex(math.nan, math.nan)
-    a, b = (_phasor(trace[f"plant.{q}"][at], trace[f"plant.{q}_velocity"][at], omega) for q in (one, other))
-    window = np.hanning(len(a) + 2)[1:-1]
-    power = float(np.sum(window * np.abs(b) ** 2))
-    return complex(np.sum(window * a * np.conj(b)) / power) if power > 0.0 else complex(math.nan, math.nan)
+    columns = [trace[f"plant.{q}{of}"][at] for q in (one, other) for of in ("", "_velocity")]
+    common, power, samples = 0.0j, 0.0, len(columns[0])
+    for number, (q, v, other_q, other_v) in enumerate(blocks(*columns)):
+        a, b = _phasor(q, v, omega), _phasor(other_q, other_v, omega)
+        before = number * BLOCK
+        window = _hanning(before, before + len(q), samples)
+        common, power = (
+            common + complex(np.sum(window * a * np.conj(b))),
+            power + float(np.sum(window * np.abs(b) ** 2)),
+        )
+    return common / power if power > 0.0 else complex(math.nan, math.nan)
+
+
+def _hanning(first: int, end: int, samples: int) -> FloatArray:
+    """Return a part of numpy's window of so many samples, but for its ends, which are 0."""
+    at: FloatArray = np.cos(math.pi * (2.0 * np.arange(first, end) + (1 - samples)) / (samples + 1))
+    return 0.5 + 0.5 * at
 
 
 def _locus(trace: dict[str, FloatArray], at: slice) -> dict[str, float]:
@@ -173,15 +204,15 @@ def _scale(
     """
     last = _settled(pieces[-1], stretch)
     device = board.spec.nominal
-    if np.any(trace["drive.y.force"][last]) or not isinstance(device, TwoAxis):
+    if not is_zero(trace["drive.y.force"][last]) or not isinstance(device, TwoAxis):
         return {}
     x = trace["plant.x"][last]
-    now, rate = _over(trace, last, "y", "x"), float(np.mean(true[last]))
+    now, rate = _over(trace, last, "y", "x"), mean(true[last])
     first = _settled(pieces[0], stretch)
-    before, start = _over(trace, first, "y", "x"), float(np.mean(true[first]))
+    before, start = _over(trace, first, "y", "x"), mean(true[first])
     if start == rate:
         before, start = device.coupled(_frequency(x, trace["plant.x_velocity"][last])), 0.0
-    if start == rate or np.ptp(true[last]) > 0.0:
+    if start == rate or width(true[last]) > 0.0:
         return {}
     return {"rate.scale_pm_per_dps": PM_PER_UM * _size(x) * abs(now - before) / abs(rate - start)}
 
@@ -192,8 +223,8 @@ def _in_step(trace: dict[str, FloatArray], at: slice) -> dict[str, float]:
     for axis, name in (("y", "sync.force_un"), ("x", "sync.drive_force_un")):
         figures[name] = _size(trace[f"drive.{axis}.force"][at])
     if "plant.partner_y" in trace:
-        apart = trace["plant.y"][at] - trace["plant.partner_y"][at]
-        figures["sync.error_rms_nm"] = 1e3 * float(np.sqrt(np.mean(apart * apart)))
+        apart = _mean_square(np.subtract, trace["plant.y"][at], trace["plant.partner_y"][at])
+        figures["sync.error_rms_nm"] = 1e3 * math.sqrt(apart)
         g = _over(trace, at, "y", "partner_y")
         figures["rate.phase_difference_deg"] = math.degrees(math.atan2(g.imag, g.real))
     return figures

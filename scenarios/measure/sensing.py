@@ -2,32 +2,43 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.block import FloatArray
+from core.block import BoolArray, FloatArray
 from core.board.board import Board
 from core.board.commands import Set
+from scenarios.measure.blocks import blocks
 from scenarios.measure.stretch import Stretch
 
 
-def lost_samples(error: FloatArray, ambiguity_um: float) -> tuple[NDArray[np.bool_], int]:
-    """Return the samples whose error exceeds half of the sensor's ambiguity, and the offset of its count of periods.
+def lost_samples(error: FloatArray, ambiguity_um: float, whole: int) -> BoolArray:
+    """Return the samples whose error, less whole periods, exceeds half of the sensor's ambiguity.
 
-    A grating does not show in which of its periods the motion began: the whole number of periods with the fewest bad
-    samples is taken off the error first. An absolute sensor loses only samples that are not numbers.
+    An absolute sensor loses only samples that are not numbers.
     """
     if ambiguity_um == 0.0:
-        return ~np.isfinite(error), 0
-    finite = error[np.isfinite(error)]
-    turns, counts = np.unique(np.floor(finite / ambiguity_um + 0.5), return_counts=True)
+        return ~np.isfinite(error)
+    return ~(np.abs(error - whole * ambiguity_um) <= 0.5 * ambiguity_um)
+
+
+def whole_periods(errors: Iterable[FloatArray], ambiguity_um: float) -> int:
+    """Return the offset of a sensor's count of periods, that with the fewest bad samples.
+
+    A grating does not show in which of its periods the motion began.
+    """
+    if ambiguity_um == 0.0:
+        return 0
+    counted = Counter[float]()
+    for error in errors:
+        turns, counts = np.unique(np.floor(error[np.isfinite(error)] / ambiguity_um + 0.5), return_counts=True)
+        counted.update(dict(zip(turns.tolist(), counts.tolist(), strict=True)))
     # the smallest of equally good numbers
-    order = np.lexsort((np.abs(turns), -counts))
-    whole = int(turns[order[0]]) if len(turns) else 0
-    bad = ~(np.abs(error - whole * ambiguity_um) <= 0.5 * ambiguity_um)
-    return bad, whole
+    return int(min(counted, key=lambda turn: (-counted[turn], abs(turn), turn), default=0.0))
 
 
 def sensing_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
@@ -41,13 +52,18 @@ def sensing_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     """
     samples = len(trace["plant.displacement"])
     start = max(stretch.start(samples, board.dt_ms), min(_chosen_at(board), samples - 1))
-    error = (trace["sensor.displacement"] - trace["plant.displacement"])[start:]
+    columns = trace["sensor.displacement"][start:], trace["plant.displacement"][start:]
     ambiguity = _ambiguity_um(board)
-    bad, whole = lost_samples(error, ambiguity)
-    figures = {"sensing.direction_lost_fraction": float(np.mean(bad))}
-    good = error[~bad] - whole * ambiguity
-    if len(good):
-        figures["sensing.rms_error_nm"] = 1e3 * float(np.sqrt(np.mean(good * good)))
+    whole = whole_periods((measured - true for measured, true in blocks(*columns)), ambiguity)
+    lost, squares = 0, 0.0
+    for measured, true in blocks(*columns):
+        error = measured - true
+        bad = lost_samples(error, ambiguity, whole)
+        good = error[~bad] - whole * ambiguity
+        lost, squares = lost + int(np.count_nonzero(bad)), squares + float(np.sum(good * good))
+    figures = {"sensing.direction_lost_fraction": lost / (samples - start)}
+    if lost < samples - start:
+        figures["sensing.rms_error_nm"] = 1e3 * math.sqrt(squares / (samples - start - lost))
     return figures
 
 

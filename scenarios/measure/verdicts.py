@@ -6,10 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.block import FloatArray
+from core.block import BoolArray, FloatArray
 from core.board.board import Board
 from core.board.commands import Heal, Inject
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, NORMAL, UNKNOWN
+from scenarios.measure.blocks import first_where, total
 
 TRACED_VERDICTS = ("truth", "winner", "verdict", "alarm", "region", "loss", "estimate")
 """Outputs of diagnosers that figures are made of."""
@@ -31,9 +32,9 @@ def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, flo
         verdict, alarm = trace.get(f"{name}.verdict"), trace.get(f"{name}.alarm")
         if verdict is not None:
             figures |= _verdicts(prefix, verdict, trace[f"{name}.winner"], trace[f"{name}.truth"], edges)
-            alarm = (verdict != NORMAL).astype(np.float64)
-        if alarm is not None:
-            figures |= _alarms(prefix, alarm, trace[f"{name}.truth"], edges)
+            figures |= _alarms(prefix, verdict, NORMAL, trace[f"{name}.truth"], edges)
+        elif alarm is not None:
+            figures |= _alarms(prefix, alarm, 0, trace[f"{name}.truth"], edges)
         region = trace.get(f"{name}.region")
         if region is not None:
             loss = trace[f"{name}.loss"]
@@ -67,17 +68,19 @@ def _verdicts(
     }
 
 
-def _alarms(prefix: str, alarm: FloatArray, truth: FloatArray, edges: list[int]) -> dict[str, float]:
+def _alarms(prefix: str, alarm: FloatArray, rest: int, truth: FloatArray, edges: list[int]) -> dict[str, float]:
+    def rings(values: FloatArray) -> BoolArray:
+        return np.not_equal(values, rest)
+
     delays, false, quiet = [], 0.0, 0
     was_healthy = True
     for start, end in pairwise(edges):
         healthy = truth[end - 1] == 0.0
         if healthy:
             late = alarm[(start + end) // 2 : end]
-            false, quiet = false + float(late.sum()), quiet + len(late)
+            false, quiet = false + float(total(rings, late)), quiet + len(late)
         elif was_healthy:
-            raised = np.flatnonzero(alarm[start:end])
-            delays.append(float(raised[0]) if len(raised) else float(end - start))
+            delays.append(float(first_where(rings, alarm[start:end])))
         was_healthy = healthy
     figures = {f"{prefix}.detection_samples": float(np.mean(delays))} if delays else {}
     return figures | ({f"{prefix}.false_alarm_fraction": false / quiet} if quiet else {})

@@ -152,8 +152,8 @@ def _profiles(survey: Survey, across: dict[str, MetricScale], up: dict[str, Metr
 
 def _diagnoser(name: str, points: Sequence[PointTally]) -> dict[str, Any]:
     """Return one diagnoser: curves of all points, then confusion point by point."""
-    entries = [(name_of(point.labels), point.diagnosis[name]) for point in points if name in point.diagnosis]
-    drawn = entries[:MOST_CURVES]
+    entries = [point for point in points if name in point.diagnosis]
+    drawn = [(name_of(point.labels), point.diagnosis[name]) for point in entries[:MOST_CURVES]]
     curves = [
         Series(f"{label} (area {format_share(entry.roc.area)})", entry.roc.false_alarm, entry.roc.detection)
         for label, entry in drawn

@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
+from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -21,6 +22,7 @@ from core.board.board import Board
 from core.format import format_figure
 from core.theory.rate_noise import LEAST_TIMES, averaging_times
 from core.units import DEG_H_PER_DEG_S
+from scenarios.measure.blocks import BLOCK, blocks, largest, loaded, mean
 from scenarios.report.axis import Axis
 from scenarios.report.metric_name import metric_title, micro
 from scenarios.report.palette import Look, hypothesis, signal
@@ -36,7 +38,7 @@ MANY = 8
 """Periods of a motion above which one sees no more than a block on a card."""
 LEAST_ERROR_UM = 1e-6
 """Errors below it are drawn as it: what is left in the end is the rounding of the computer."""
-DONE = ("inject", "heal", "set", "switch", "reset_trip", "tripped")
+DONE = ("inject", "heal", "set", "switch", "reset_trip", "tripped", "make_safe")
 """Kinds of log entries that are marked."""
 TIME = "time"
 
@@ -45,7 +47,7 @@ def figure(result: Result) -> Chart:
     """Return the figure of a run."""
     if result.scenario.study is not None:
         return _study(result) or _expected(result)
-    if len(result.outputs) < 2:
+    if result.samples < 2:
         return _expected(result)
     asked = [re.sub(r"^twins\.[^.]+\.", "", entry.metric) for entry in result.scenario.head.expect]
     for start, shape in SHAPES:
@@ -70,26 +72,30 @@ def _names(result: Result) -> set[str]:
     return {one.name for one in result.kept}
 
 
-def _time(result: Result, at: slice = slice(None)) -> FloatArray:
-    time: FloatArray = (np.arange(float(len(result.outputs))) * result.board.dt_ms)[at]
-    return time
+def _thin(
+    result: Result, of: Callable[..., FloatArray], *names: str, at: slice = slice(None)
+) -> tuple[list[float], list[float]]:
+    """Return the times, ms, and the values of a line made from signals."""
+    samples, values = thin(of, *(result.signal(name)[at] for name in names), most=COLUMNS)
+    return (((at.start or 0) + samples) * result.board.dt_ms).tolist(), values
 
 
 def _trace(result: Result, name: str, said: str = "", at: slice = slice(None), number: int = 0) -> Series:
     """Return a signal as a line."""
-    x, y = thin(_time(result, at), result.signal(name)[at], COLUMNS)
+    x, y = _thin(result, np.asarray, name, at=at)
     return Series(said or name, x, y, look=signal(name.rpartition(":")[2], number) if ":" not in name else None)
 
 
 def _last_periods(values: FloatArray, periods: int = PERIODS) -> slice:
     """Return the last so many periods of a swing; all of it where it has fewer."""
-    centred = values - np.mean(values[-len(values) // 4 :])
-    rising = np.flatnonzero((centred[:-1] < 0.0) & (centred[1:] >= 0.0))
-    return slice(int(rising[-periods - 1]), None) if len(rising) > periods else slice(None)
+    centre, rising = mean(values[-len(values) // 4 :]), deque[int](maxlen=periods + 1)
+    for number, (block,) in enumerate(blocks(values, more=1)):
+        rising.extend((number * BLOCK + np.flatnonzero((block[:-1] < centre) & (block[1:] >= centre))).tolist())
+    return slice(rising[0], None) if len(rising) > periods else slice(None)
 
 
 def _periods(values: FloatArray) -> int:
-    return int(np.count_nonzero(np.diff(np.signbit(values)))) // 2
+    return sum(int(np.count_nonzero(np.diff(np.signbit(block)))) for (block,) in blocks(values, more=1)) // 2
 
 
 def _study(result: Result) -> Chart | None:
@@ -140,7 +146,7 @@ def _locus(result: Result) -> Chart | None:
     for x, y, said in pairs:
         if {x, y} <= _names(result):
             every = max(1, len(result.signal(x)[at]) // 600)
-            across, up = (result.signal(name)[at][::every].tolist() for name in (x, y))
+            across, up = (loaded(result.signal(name)[at], slice(None, None, every)).tolist() for name in (x, y))
             lines.append(Series(said, across, up, look=signal(x, 0)))
     return Chart(_title(result), Axis("x", "um"), Axis("y", "um"), lines)
 
@@ -183,20 +189,21 @@ def _lanes(result: Result) -> Chart | None:
     for name in list(scores)[:MOST_LANES]:
         areas = _areas(result, f"{name}.truth", is_truth=True) + _areas(result, f"{name}.winner", is_truth=False)
         lanes.append(Lane(name.replace("_", " "), areas))
-        seen |= {int(v) for kind in ("truth", "winner") for v in np.unique(result.signal(f"{name}.{kind}")) if v >= 0}
+        for said in blocks(result.signal(f"{name}.truth"), result.signal(f"{name}.winner")):
+            seen |= {int(value) for value in np.unique(said) if value >= 0}
     keys = [(names[i], hypothesis(i)) for i in sorted(seen) if i < len(names)]
-    span = (0.0, float(_time(result)[-1]))
+    span = (0.0, (result.samples - 1) * result.board.dt_ms)
     return Chart(_title(result), Axis(TIME, "ms", span), marks=marks(result), lanes=lanes, keys=keys)
 
 
 def _areas(result: Result, name: str, *, is_truth: bool) -> list[tuple[float, float, Look, bool]]:
     """Return the hypothesis named at each moment; moments without one stay empty."""
-    time, values = _time(result), result.signal(name)
+    values = result.signal(name)
     picked = np.linspace(0, len(values) - 1, 2 * COLUMNS).astype(np.int64)
-    verdict = values[picked]
+    time, verdict = picked * result.board.dt_ms, loaded(values, picked)
     edges = [0, *(np.flatnonzero(np.diff(verdict)) + 1).tolist(), len(verdict) - 1]
     return [
-        (float(time[picked[first]]), float(time[picked[end]]), hypothesis(int(verdict[first])), is_truth)
+        (float(time[first]), float(time[end]), hypothesis(int(verdict[first])), is_truth)
         for first, end in itertools.pairwise(edges)
         if end > first and verdict[first] >= 0
     ]
@@ -207,7 +214,7 @@ def _identified(result: Result) -> Chart | None:
     shown = [name for name in result.board.spec.identifiers if f"{name}.error_pct" in _names(result)]
     lines = []
     for name in shown:
-        x, y = thin(_time(result), np.minimum(result.signal(f"{name}.error_pct"), 150.0), COLUMNS)
+        x, y = _thin(result, lambda error: np.minimum(error, 150.0), f"{name}.error_pct")
         lines.append(Series(name.replace("_", " "), x, y))
     return Chart(_title(result), Axis(TIME, "ms"), Axis("error", "%"), lines, marks(result)) if lines else None
 
@@ -223,8 +230,8 @@ def _motion(result: Result) -> Chart:
 def _sensed(result: Result) -> Chart:
     """Show how far the sensor is from the truth over some periods."""
     at = _last_periods(result.signal("plant.displacement"))
-    error = (result.signal("sensor.displacement") - result.signal("plant.displacement"))[at]
-    line = Series("error", *thin(_time(result, at), error, COLUMNS), look=Look(3))
+    error = _thin(result, np.subtract, "sensor.displacement", "plant.displacement", at=at)
+    line = Series("error", *error, look=Look(3))
     return Chart(_title(result), Axis(TIME, "ms"), Axis("measured less true", "um"), [line])
 
 
@@ -248,28 +255,30 @@ def _aside(result: Result) -> Chart | None:
 def _followed(result: Result) -> Chart:
     """Show the model and the shuttle; where their periods cannot be told apart, the error or the amplitudes."""
     names, time = _names(result), Axis(TIME, "ms")
-    model, plant = result.signal("model.displacement"), result.signal("plant.displacement")
-    periods = _periods(plant)
+    periods = _periods(result.signal("plant.displacement"))
     if periods <= MANY:
         shown = [("plant.displacement", "shuttle"), ("model.displacement", "model")]
         shown += [(f"{name}:plant.displacement", f"shuttle, {name}") for name in result.scenario.twins]
         lines = [_trace(result, name, said) for name, said in shown if name in names]
         return Chart(_title(result), time, Axis("displacement", "um"), lines, marks(result))
     if result.board.spec.active == "open_loop":
-        amplitudes = [("shuttle", "plant.displacement", plant), ("model", "model.displacement", model)]
-        lines = [Series(said, *_peaks(_time(result), v, periods), look=signal(name, 0)) for said, name, v in amplitudes]
+        amplitudes = [("shuttle", "plant.displacement"), ("model", "model.displacement")]
+        lines = [
+            Series(said, *_peaks(result, periods, np.asarray, name), look=signal(name, 0)) for said, name in amplitudes
+        ]
         top = 1.08 * max(max(one.y) for one in lines) or 1.0
         return Chart(_title(result), time, Axis("amplitude", "um", (0.0, top)), lines, marks(result))
-    at, peaks = _peaks(_time(result), model - plant, periods)
+    at, peaks = _peaks(result, periods, np.subtract, "model.displacement", "plant.displacement")
     error = Series("error", at, np.maximum(peaks, LEAST_ERROR_UM).tolist(), look=signal("plant.displacement", 0))
     return Chart(_title(result), time, Axis("peak error", "um", is_log=True), [error], marks(result))
 
 
-def _peaks(time: FloatArray, values: FloatArray, periods: int) -> tuple[list[float], list[float]]:
-    """Return the largest size of each period, or of each column where there are more periods."""
-    edges = np.linspace(0, len(values), min(COLUMNS, periods) + 1).astype(np.int64)
-    pieces = list(itertools.pairwise(edges.tolist()))
-    return [float(time[first]) for first, _ in pieces], [float(np.max(np.abs(values[a:b]))) for a, b in pieces]
+def _peaks(result: Result, periods: int, of: Callable[..., FloatArray], *names: str) -> tuple[list[float], list[float]]:
+    """Return the largest size of each period, or of each column where there are more periods, with its time, ms."""
+    edges = np.linspace(0, result.samples, min(COLUMNS, periods) + 1).astype(np.int64).tolist()
+    pieces = [[result.signal(name)[first:end] for name in names] for first, end in itertools.pairwise(edges)]
+    sizes = [largest(lambda *values: np.abs(of(*values)), *piece) for piece in pieces]
+    return [first * result.board.dt_ms for first in edges[:-1]], sizes
 
 
 SHAPES: tuple[tuple[tuple[str, ...], Callable[[Result], Chart | None]], ...] = (

@@ -1,4 +1,4 @@
-"""Files kept of a run: its trace, its summary, a report, a drawing, and a script that repeats it."""
+"""Files kept of a run beside its trace: its summary, a report, a drawing, and a script that repeats it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from core.signals import CLOCK
 from scenarios.report.figure import figure
 from scenarios.report.run import run_report
 from scenarios.report.script import script
 from scenarios.report.svg import picture_file
-from scenarios.report.traces import write_json, write_parquet, write_text
+from scenarios.report.traces import write_json, write_text
 from scenarios.run import Result
 
 
@@ -33,13 +30,6 @@ def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) 
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
     document = json.loads(json.dumps(result.scenario.document, default=str))
-    ticks = np.arange(len(result.outputs))
-    columns: dict[str, np.ndarray[Any, Any]] = dict(zip(CLOCK, (ticks, ticks * result.board.dt_ms), strict=True))
-    for signal in result.kept:
-        columns[signal.name] = result.signal(signal.name)
-    about = {"scenario": document, "seed": result.seed}
-    units = {signal.name: signal.unit for signal in result.kept}
-    write_parquet(stem.with_suffix(".parquet"), columns, about, units)
     write_text(stem.with_suffix(".html"), run_report(result, summary))
     write_text(stem.with_suffix(".svg"), picture_file(figure(result)))
     write_text(stem.with_suffix(".py"), script(document, seeds, summary["digest"], stem.name + ".py"))

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from core.format import format_beside, format_count, format_figure, format_in, format_number, format_short, unit_text
+from scenarios.measure.blocks import is_zero
 from scenarios.report.axis import Axis
 from scenarios.report.figure import TIME, figure, marks
 from scenarios.report.html import as_toml, page
 from scenarios.report.metric_name import metric_scale, metric_title, micro
-from scenarios.report.palette import hypothesis, signal
+from scenarios.report.palette import Look, hypothesis, signal
 from scenarios.report.svg import Chart, Series, thin
 from scenarios.run import Result
 
@@ -91,44 +92,47 @@ def _expectation(entry: dict[str, Any]) -> list[str]:
 
 def _charts(result: Result) -> list[Chart]:
     """Return the figure of the run, and its traces, each column of pixels with its smallest and largest value."""
-    if len(result.outputs) < 2:
+    if result.samples < 2:
         return [figure(result)]
-    time_ms = np.arange(float(len(result.outputs))) * result.board.dt_ms
-    time = Axis(TIME, "ms", (0.0, float(time_ms[-1])))
+    dt_ms = result.board.dt_ms
+    time = Axis(TIME, "ms", (0.0, (result.samples - 1) * dt_ms))
     signals = {signal.name: signal for signal in result.kept}
     done = marks(result)
     charts = [figure(result)]
     for title, names in _groups(result):
-        chosen = [name for name in names if name in signals and np.any(result.signal(name))]
+        chosen = [name for name in names if name in signals and not is_zero(result.signal(name))]
         looks = [signal(name, number) for number, name in enumerate(chosen)]
-        lines = [
-            Series(name, *thin(time_ms, result.signal(name)), look=look)
-            for name, look in zip(chosen, looks, strict=True)
-        ]
+        lines = [_series(name, result, name, look) for name, look in zip(chosen, looks, strict=True)]
         if lines:
             units = list(dict.fromkeys(signals[name].unit for name in chosen))
             y = Axis("", units[0]) if len(units) == 1 else Axis(", ".join(map(unit_text, units)))
             charts.append(Chart(title, time, y, lines, done))
-            if len(time_ms) > 4 * CLOSE_UP:  # too many periods for one picture
-                end = slice(-CLOSE_UP, None)
+            if result.samples > 4 * CLOSE_UP:  # too many periods for one picture
+                end = (np.arange(result.samples - CLOSE_UP, result.samples) * dt_ms).tolist()
                 lines = [
-                    Series(name, time_ms[end].tolist(), result.signal(name)[end].tolist(), look=look)
+                    Series(name, end, result.signal(name)[-CLOSE_UP:].tolist(), look=look)
                     for name, look in zip(chosen, looks, strict=True)
                 ]
                 charts.append(Chart(f"{title}, the last {CLOSE_UP} ticks", Axis(TIME, "ms"), y, lines))
     for name in result.board.spec.identifiers:
         if f"{name}.error_pct" in signals:
-            line = Series(name, *thin(time_ms, result.signal(f"{name}.error_pct")))
+            line = _series(name, result, f"{name}.error_pct")
             charts.append(Chart(f"Identifier {name}", time, Axis("error", "%"), [line], done))
     for name, scores in result.board.scores().items():
         chosen = [f"{name}.probability.{label}" for label in scores.names]
         if all(column in signals for column in chosen):
             lines = [
-                Series(label, *thin(time_ms, result.signal(column)), look=hypothesis(number))
+                _series(label, result, column, hypothesis(number))
                 for number, (label, column) in enumerate(zip(scores.names, chosen, strict=True))
             ]
             charts.append(Chart(f"Diagnoser {name}", time, Axis("probability", "", (0.0, 1.0)), lines, done))
     return charts
+
+
+def _series(said: str, result: Result, name: str, look: Look | None = None) -> Series:
+    """Return a signal as a line."""
+    samples, values = thin(np.asarray, result.signal(name))
+    return Series(said, (samples * result.board.dt_ms).tolist(), values, look=look)
 
 
 def _groups(result: Result) -> Sequence[tuple[str, tuple[str, ...]]]:

@@ -13,7 +13,8 @@ from html import escape
 
 import numpy as np
 
-from core.block import FloatArray
+from core.block import FloatArray, IntArray
+from scenarios.measure.blocks import loaded
 from scenarios.report.axis import Axis, Scale
 from scenarios.report.palette import Look, line, style
 
@@ -90,24 +91,30 @@ class Size:
 REPORT, CARD = Size(460, 300), Size(400, 180, has_title=False)
 
 
-def thin(x: FloatArray, y: FloatArray, columns: int = 400) -> tuple[list[float], list[float]]:
-    """Return the smallest and the largest value of each of so many columns, in the order they came.
+def thin(of: Callable[..., FloatArray], *columns: FloatArray, most: int = 400) -> tuple[IntArray, list[float]]:
+    """Return the smallest and the largest value of each of so many columns of a picture, in order, and their samples.
 
     Parameters
     ----------
-    x, y : ndarray, shape (n,)
-        A trace; one that is short enough stays unchanged.
-    columns : int
-        Pixels of its width.
+    of : callable
+        Makes the values from the traces.
+    columns : ndarray, shape (n,)
+        The traces; if they are short enough, all samples are returned.
+    most : int
+        Pixels of the width.
     """
-    if len(y) <= 2 * columns:
-        return x.tolist(), y.tolist()
-    edges = np.linspace(0, len(y), columns + 1).astype(np.int64)
+    samples = len(columns[0])
+    if samples <= 2 * most:
+        return np.arange(samples), of(*columns).tolist()
+    edges = np.linspace(0, samples, most + 1).astype(np.int64)
     kept: list[int] = []
-    for first, end in itertools.pairwise(edges):
-        piece = y[first:end]
-        kept += sorted({first + int(np.argmin(piece)), first + int(np.argmax(piece))})
-    return x[kept].tolist(), y[kept].tolist()
+    values: list[float] = []
+    for first, end in itertools.pairwise(edges.tolist()):
+        piece = of(*(loaded(column[first:end]) for column in columns))
+        chosen = sorted({int(np.argmin(piece)), int(np.argmax(piece))})
+        kept += [first + at for at in chosen]
+        values += piece[chosen].tolist()
+    return np.array(kept), values
 
 
 def picture_file(chart: Chart, size: Size = CARD) -> str:

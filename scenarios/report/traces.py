@@ -5,11 +5,16 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+
+from core.block import FloatArray
+from core.board.board import Board
+from core.board.rows import Rows
+from core.signals import CLOCK, Signal
 
 PIECE_TICKS = 1 << 15
 
@@ -23,22 +28,64 @@ def packing(schema: pa.Schema) -> dict[str, Any]:
     return {"use_dictionary": False, "use_byte_stream_split": floats, "compression": "zstd"}
 
 
-def write_parquet(
-    path: Path, columns: dict[str, np.ndarray[Any, Any]], metadata: dict[str, Any], units: dict[str, str]
-) -> None:
-    """Write columns of one length with metadata under ``combbench``, piece by piece: no trace is in memory twice."""
-    fields = [
-        pa.field(name, pa.from_numpy_dtype(values.dtype), metadata={"unit": units[name]} if name in units else None)
-        for name, values in columns.items()
-    ]
-    schema = pa.schema(fields, metadata={"combbench": json.dumps(metadata)})
-    temporary = path.with_name(path.name + ".part")
-    length = max((len(values) for values in columns.values()), default=0)
-    with pq.ParquetWriter(temporary, schema, **packing(schema)) as writer:
-        for start in range(0, max(length, 1), PIECE_TICKS):
-            pieces = [np.ascontiguousarray(values[start : start + PIECE_TICKS]) for values in columns.values()]
-            writer.write_table(pa.table(pieces, schema=schema))
-    os.replace(temporary, path)
+class TraceFile:
+    """The trace of a run as Parquet, written piece by piece while it runs; a context that renames it at the end.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its folder is created when the run begins.
+    scenario : dict
+        The document of the scenario, kept as metadata under ``combbench`` with the seed.
+    """
+
+    def __init__(self, path: Path, scenario: dict[str, Any]) -> None:
+        self._path, self._scenario = path, scenario
+        self._part = path.with_name(path.name + ".part")
+        self._writer: pq.ParquetWriter | None = None
+        self._rows: list[FloatArray] = []
+        self._tick = 0
+
+    def begin(self, board: Board, signals: list[Signal]) -> None:
+        """Open the file."""
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        self._dt_ms, split = board.dt_ms, board.signals.outputs
+        self._outputs = [signal.index for signal in signals if signal.kind == "output"]
+        self._taps = [signal.index - split for signal in signals if signal.kind == "tap"]
+        fields = [pa.field(name, kind) for name, kind in zip(CLOCK, (pa.int64(), pa.float64()), strict=True)]
+        fields += [pa.field(signal.name, pa.float64(), metadata={"unit": signal.unit}) for signal in signals]
+        about = {"scenario": json.loads(json.dumps(self._scenario, default=str)), "seed": board.spec.seed}
+        self._schema = pa.schema(fields, metadata={"combbench": json.dumps(about)})
+        self._writer = pq.ParquetWriter(self._part, self._schema, **packing(self._schema))
+
+    def add(self, rows: Rows) -> None:
+        """Take rows, and write a piece when there are enough."""
+        self._rows.append(np.hstack([rows.outputs[:, self._outputs], rows.taps[:, self._taps]]))
+        if sum(map(len, self._rows)) >= PIECE_TICKS:
+            self._write()
+
+    def _write(self) -> None:
+        assert self._writer is not None
+        samples = np.vstack(self._rows) if self._rows else np.empty((0, len(self._outputs) + len(self._taps)))
+        ticks = np.arange(self._tick, self._tick + len(samples))
+        columns = [ticks, ticks * self._dt_ms, *np.ascontiguousarray(samples.T)]
+        self._writer.write_table(pa.table(columns, schema=self._schema))
+        self._rows, self._tick = [], self._tick + len(samples)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if self._writer is None:
+            return
+        try:
+            if kind is None and (self._rows or not self._tick):
+                self._write()
+            self._writer.close()
+            if kind is None:
+                os.replace(self._part, self._path)
+        finally:
+            self._part.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -10,11 +10,14 @@ from pydantic import BaseModel, Field, model_validator
 from scenarios.schema import Scenario
 from server.api.bodies import Body as StrictBody
 from server.api.bodies import StrictRoute
-from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
+from server.api.deps import CallerDep, PersonDep, RateLimited, SeenDep, ServiceDep, SessionDep
+from server.bench.blind import HINT
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.events import Event
+from server.bench.hiding import BlindView
 from server.bench.portrait import document_of
 from server.bench.status import Bench
+from server.errors import ApiError
 
 router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
 
@@ -41,6 +44,18 @@ class NewBench(StrictBody):
             "Bits are the same"
         ),
     )
+
+    def wanted(self) -> dict[str, Any]:
+        """Return what `Benches.create` takes."""
+        return {
+            "source": self.scenario,
+            "values": self.set,
+            "seed": self.seed,
+            "paused": self.paused,
+            "time_scale": self.time_scale,
+            "own_scale": "time_scale" not in self.model_fields_set,
+            "quiet_lead": self.quiet_lead,
+        }
 
     @model_validator(mode="after")
     def _has_a_pace(self) -> Self:
@@ -91,33 +106,35 @@ class Variant(StrictBody):
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
-async def create_bench(body: NewBench, service: ServiceDep, response: Response) -> Bench:
-    """Make a bench and let it run."""
-    given = "time_scale" in body.model_fields_set
-    session = await service.benches.create(
-        body.scenario,
-        body.set,
-        body.seed,
-        body.paused,
-        body.time_scale,
-        own_scale=not given,
-        quiet_lead=body.quiet_lead,
-    )
-    session.keep = body.keep
+async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, response: Response) -> Bench:
+    """Make a bench and let it run; a student's takes the place of the one before."""
+    if person.role == "watcher":
+        raise ApiError(403, "forbidden", "a link to watch opens one bench")
+    if person.role == "student":
+        if service.is_blind(person, (await service.student_benches.get(person)).id):  # it may be on its way back
+            raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
+        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+        session = await service.student_benches.replace(person, body.wanted())
+    else:
+        session = await service.benches.create(**body.wanted())
+        session.keep = body.keep
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return await service.opened(session)
+    return await service.opened(session, person)
 
 
 @router.get("")
-async def list_benches(service: ServiceDep) -> BenchList:
-    """List the live benches."""
-    return BenchList(benches=service.views())
+async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
+    """List the live benches, without those of students, which are listed with their class; to them, their own."""
+    if person.is_teacher:
+        return BenchList(benches=service.views(person))
+    found = service.benches.find(service.people.bench_of(person))
+    return BenchList(benches=[service.view(found, person)] if found is not None else [])
 
 
 @router.get("/{bench_id}")
-async def get_bench(session: SessionDep, service: ServiceDep) -> Bench:
+async def get_bench(session: SessionDep, service: ServiceDep, person: PersonDep) -> Bench:
     """Describe a bench."""
-    return service.view(session)
+    return service.view(session, person)
 
 
 @router.delete("/{bench_id}", status_code=204, dependencies=[RateLimited])
@@ -127,16 +144,16 @@ async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
 
 
 @router.post("/{bench_id}/reopen", dependencies=[RateLimited])
-async def reopen_bench(bench_id: str, service: ServiceDep) -> Bench:
+async def reopen_bench(bench_id: str, service: ServiceDep, person: PersonDep) -> Bench:
     """Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running."""
     session = await service.bring_back(bench_id)
     service.idling.saw(bench_id)
-    return service.view(session)
+    return service.view(session, person)
 
 
 @router.post("/{bench_id}/commands", dependencies=[RateLimited])
 async def command(
-    command: Annotated[Command, Body()], session: SessionDep, service: ServiceDep, caller: CallerDep
+    command: Annotated[Command, Body()], session: SessionDep, service: ServiceDep, person: PersonDep, caller: CallerDep
 ) -> CommandResult:
     """Carry out a command at the next tick edge.
 
@@ -144,12 +161,14 @@ async def command(
     reset_trip, is still read.
     """
     entry = await service.benches.command(session, command, caller)
+    if isinstance(seen := service.seen(session, person), BlindView):
+        entry = seen.told(entry)
     return CommandResult(tick=entry.tick, time_ms=entry.tick * session.dt_ms, entry=entry)
 
 
 @router.get("/{bench_id}/events")
 async def list_events(
-    session: SessionDep,
+    session: SeenDep,
     after: Annotated[int, Query(ge=0, le=2**53)] = 0,
     limit: Annotated[int | None, Query(ge=1, le=100_000)] = None,
 ) -> EventList:
@@ -180,16 +199,20 @@ async def get_digest(session: SessionDep, service: ServiceDep) -> Digest:
 
 
 @router.post("/{bench_id}/fork", status_code=201, dependencies=[RateLimited])
-async def fork_bench(body: ForkFrom, session: SessionDep, service: ServiceDep, response: Response) -> Bench:
+async def fork_bench(
+    body: ForkFrom, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
+) -> Bench:
     """Make a second bench that goes on from this moment or a snapshot, bit for bit."""
     twin = await service.benches.fork(session, body.snapshot)
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
-    return await service.opened(twin)
+    return await service.opened(twin, person)
 
 
 @router.post("/{bench_id}/variant", status_code=201, dependencies=[RateLimited])
-async def vary_bench(body: Variant, session: SessionDep, service: ServiceDep, response: Response) -> Bench:
+async def vary_bench(
+    body: Variant, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
+) -> Bench:
     """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed."""
     made = await service.benches.variant(session, body.set)
     response.headers["Location"] = f"/api/v1/benches/{made.id}"
-    return await service.opened(made)
+    return await service.opened(made, person)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Annotated, cast
 
 from fastapi import Depends, Request, WebSocket
+from starlette.requests import HTTPConnection
 
-from server.bench.session import Session
+from server.bench.session import Seen, Session
 from server.errors import ApiError
+from server.people.person import Person
 from server.service import Service
 from server.settings import Settings
 
@@ -36,17 +38,35 @@ def get_session(bench_id: str, service: ServiceDep) -> Session:
 SessionDep = Annotated[Session, Depends(get_session)]
 
 
-def get_caller(request: Request) -> str:
-    """Name the caller for the event log and the limits by address, because all callers share one token."""
+def get_person(connection: HTTPConnection) -> Person:
+    """Return whom the gate has let in."""
+    return cast(Person, connection.scope["person"])
+
+
+PersonDep = Annotated[Person, Depends(get_person)]
+
+
+def get_caller(request: Request, person: PersonDep) -> str:
+    """Name the caller for the event log: a student by name, the teacher by address, as all programs share one token."""
+    if not person.is_teacher:
+        return person.name
     return f"api {request.client.host}" if request.client else "api"
+
+
+def get_seen(session: SessionDep, service: ServiceDep, person: PersonDep) -> Seen:
+    """Return the bench in the path as whoever asks may see it."""
+    return service.seen(session, person)
+
+
+SeenDep = Annotated[Seen, Depends(get_seen)]
 
 
 CallerDep = Annotated[str, Depends(get_caller)]
 
 
-def check_rate(service: ServiceDep, caller: CallerDep) -> None:
+def check_rate(service: ServiceDep, caller: CallerDep, person: PersonDep) -> None:
     """Refuse a caller whose commands exceed the rate limit."""
-    if not service.commands.take(caller):
+    if not service.commands.take(caller if person.is_teacher else person.id):
         raise rate_limited(service.settings)
 
 

@@ -28,8 +28,9 @@ async def ready(service: ServiceDep, response: Response) -> Health:
     """Answer 200 when the engine turns, the database can be written and the kernels of a bench are loaded."""
     checks = {
         "started": service.is_ready,
-        "engine": service.engine.is_alive,
-        "database": await service.database.is_writable(),
+        "engine": service.engine.is_alive and not service.watchdog.barks,
+        "watchdog": service.watchdog.is_alive,
+        "database": all([await database.is_writable() for database in service.databases]),
         "kernels": service.kernels.are_loaded,
     }
     ok = all(checks.values())

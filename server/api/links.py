@@ -9,9 +9,9 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import RateLimited, ServiceDep
-from server.bench.benches import prepare, usual_scale
+from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.bench.experiment import beginning_of, experiment_of
+from server.bench.making import prepare, usual_scale
 from server.bench.recordings import Layout
 from server.bench.status import Bench
 from server.errors import ApiError
@@ -46,7 +46,7 @@ class LinkList(BaseModel):
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
-async def make_link(body: NewLink, service: ServiceDep, response: Response) -> LinkDetail:
+async def make_link(body: NewLink, service: ServiceDep, person: PersonDep, response: Response) -> LinkDetail:
     """Keep an experiment or a layout; it stays when the bench goes."""
     if body.bench is not None and body.scenario is not None:
         raise ApiError(422, "invalid", "give a bench or a scenario, not both", "scenario")
@@ -55,7 +55,7 @@ async def make_link(body: NewLink, service: ServiceDep, response: Response) -> L
     await service.keeping.room()
     experiment, title = None, body.title
     if body.bench is not None:
-        session = service.benches.get(body.bench)
+        session = service.whole(body.bench, person)
         experiment = await service.engine.call(experiment_of, session)
         title = title or session.scenario.head.title or session.scenario.id
     elif body.scenario is not None:
@@ -94,11 +94,11 @@ async def delete_link(link_id: str, service: ServiceDep) -> None:
 
 
 @router.post("/{link_id}/open", status_code=201, dependencies=[RateLimited])
-async def open_link(link_id: str, service: ServiceDep, response: Response) -> Bench:
+async def open_link(link_id: str, service: ServiceDep, person: PersonDep, response: Response) -> Bench:
     """Open a fresh bench that repeats an experiment to its tick, and goes on or stands as it did.
 
     `opened` says whether its bits are those of then.
     """
     session = await service.open_link(await service.links.get(link_id))
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return await service.opened(session)
+    return await service.opened(session, person)

@@ -11,8 +11,9 @@ from core.board.commands import Set
 from core.board.tuning import absent, difference, tuned
 from server.api.benches import CommandResult
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
+from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
 from server.errors import ApiError
+from server.people.access import Need
 from server.store.parameter_sets import ParameterSet, ParameterSetDetail
 
 router = APIRouter(tags=["parameter sets"], route_class=StrictRoute)
@@ -92,6 +93,7 @@ async def get_parameter_set(set_id: str, service: ServiceDep) -> ParameterSetDet
 async def compare_parameter_sets(
     set_id: str,
     service: ServiceDep,
+    person: PersonDep,
     other: Annotated[str | None, Query(description="Id of another set")] = None,
     bench: Annotated[str | None, Query(description="Id of a bench, whose values of now are compared")] = None,
 ) -> Difference:
@@ -102,7 +104,9 @@ async def compare_parameter_sets(
     if other is not None:
         second = (await service.parameter_sets.get(other)).values
     else:
-        session = service.benches.get(bench or "")
+        if not service.people.may(person, Need.WATCH, bench or ""):
+            raise ApiError(403, "forbidden", "only whoever has this bench may do that", "bench")
+        session = service.whole(bench or "", person)
         second = await service.engine.call(lambda: tuned(session.board.spec))
     rows = [
         Differs(path=path, first=first.get(path), second=second.get(path))

@@ -9,10 +9,13 @@ from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
+from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
 from server.bench.recordings import Wanted
 from server.bench.status import Bench
+from server.errors import not_found
+from server.people.person import Person
+from server.service import Service
 from server.store.compare import Comparison, compare
 from server.store.recordings import Recording, RecordingDetail
 from server.store.traces import Format
@@ -60,19 +63,22 @@ async def stop_recording(recording_id: str, session: SessionDep, service: Servic
 @router.get("/benches/{bench_id}/recordings")
 async def list_bench_recordings(session: SessionDep, service: ServiceDep) -> RecordingList:
     """List the recordings of a bench."""
-    return RecordingList(recordings=await service.recordings.all(session.id))
+    return RecordingList(recordings=await service.recordings.all([session.id]))
 
 
 @router.get("/recordings")
-async def list_recordings(service: ServiceDep) -> RecordingList:
-    """List all recordings, of benches that are gone as well."""
-    return RecordingList(recordings=await service.recordings.all())
+async def list_recordings(service: ServiceDep, person: PersonDep) -> RecordingList:
+    """List all recordings, of benches that are gone as well; to a student those of the own benches."""
+    benches = None if person.is_teacher else service.people.benches_of(person)
+    return RecordingList(recordings=await service.recordings.all(benches))
 
 
 @router.get("/recordings/{recording_id}")
-async def get_recording(recording_id: str, service: ServiceDep) -> RecordingDetail:
+async def get_recording(recording_id: str, service: ServiceDep, person: PersonDep) -> RecordingDetail:
     """Describe a recording: scenario, seed, events, versions, layout."""
-    return await service.recordings.get(recording_id)
+    recording = await service.recordings.get(recording_id)
+    _must_see(service, person, recording)
+    return recording
 
 
 @router.delete("/recordings/{recording_id}", status_code=204, dependencies=[RateLimited])
@@ -82,12 +88,14 @@ async def delete_recording(recording_id: str, service: ServiceDep) -> None:
 
 
 @router.post("/recordings/{recording_id}/replay", status_code=201, dependencies=[RateLimited])
-async def replay_recording(recording_id: str, body: Replay, service: ServiceDep, response: Response) -> Bench:
+async def replay_recording(
+    recording_id: str, body: Replay, service: ServiceDep, person: PersonDep, response: Response
+) -> Bench:
     """Play a recording on a bench of its own: the same streams; commands start, pause, step, seek, loop, time_scale."""
     recording, path = await service.recordings.finished(recording_id)
     session = await service.benches.replay(recording, path, body.speed, body.paused)
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return await service.opened(session)
+    return await service.opened(session, person)
 
 
 @router.post("/recordings/{recording_id}/compare")
@@ -103,8 +111,19 @@ async def compare_recordings(recording_id: str, body: CompareWith, service: Serv
 
 @router.get("/recordings/{recording_id}/trace", response_class=Response, responses=FORMAT_RESPONSES)
 async def get_recording_trace(
-    recording_id: str, service: ServiceDep, cut: CutDep, kind: Annotated[Format, Query(alias="format")] = "parquet"
+    recording_id: str,
+    service: ServiceDep,
+    person: PersonDep,
+    cut: CutDep,
+    kind: Annotated[Format, Query(alias="format")] = "parquet",
 ) -> Response:
     """Download a recording, or a part of it."""
     recording, path = await service.recordings.finished(recording_id)
+    _must_see(service, person, recording)
     return await stored_trace(service, path, recording.name, kind, cut)
+
+
+def _must_see(service: Service, person: Person, recording: RecordingDetail) -> None:
+    """Refuse a recording of another's bench, as if it were not there."""
+    if not service.people.may_see_recordings(person, recording.bench_id):
+        raise not_found("recording", recording.id)

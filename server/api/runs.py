@@ -15,7 +15,7 @@ from scenarios.seeds import parse_seeds
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
-from server.bench.benches import prepare
+from server.bench.making import prepare
 from server.runs.compare import MOST, RunComparison, RunTraces, compare_runs, traces
 from server.runs.listing import Run, RunFilter, clean_label
 from server.store.traces import Format
@@ -33,6 +33,11 @@ class NewRun(Body):
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
     seed: int | None = Field(None, ge=0, le=2**53)
     label: str = Field("", max_length=1000, description="Name for the run, at most 120 characters")
+    all: bool = Field(
+        False,
+        description="Also run the controllers that never drive, and keep all signals, those of sensors that are never "
+        "in use as well; no figure and no digest depends on it",
+    )
     seeds: str | Annotated[list[int], Field(min_length=2, max_length=2)] | None = Field(
         None,
         max_length=100,
@@ -81,7 +86,7 @@ async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Ru
         seeds = _seeds(body.seeds, service.settings.max_run_seeds)
     label = clean_label(body.label)
     await service.keeping.room()
-    run, is_new = await service.jobs.start(scenario, seeds, label)
+    run, is_new = await service.jobs.start(scenario, seeds, label, everything=body.all)
     response.status_code = 202 if is_new else 200
     response.headers["Location"] = f"/api/v1/runs/{run.id}"
     return run

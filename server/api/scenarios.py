@@ -8,12 +8,14 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from core.board.document import plant_of
+from core.errors import InputError
 from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
-from server.bench.benches import prepare
+from server.bench.making import prepare
 from server.errors import ApiError, not_found
+from server.people.blind_class import check as check_hidden
 
 router = APIRouter(prefix="/scenarios", tags=["scenarios"], route_class=StrictRoute)
 
@@ -30,6 +32,7 @@ class ScenarioCard(BaseModel):
     samples: int | None
     plant: str | None = Field(description="Plant of the bench; null for a study")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
+    can_hide: bool = Field(description="Whether a fault can be hidden on its bench, for a class to find")
 
 
 class ScenarioList(BaseModel):
@@ -65,7 +68,16 @@ def card(scenario: Scenario) -> ScenarioCard:
         samples=scenario.samples,
         plant=plant_of(scenario.document).name if head.study is None else None,
         study=str(head.study["kind"]) if head.study is not None else None,
+        can_hide=_can_hide(scenario),
     )
+
+
+def _can_hide(scenario: Scenario) -> bool:
+    try:
+        check_hidden(scenario)
+    except InputError:
+        return False
+    return True
 
 
 @router.get("")

@@ -6,7 +6,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import CallerDep, RateLimited, ServiceDep, SessionDep
+from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
 from server.bench.status import Bench, Snapshot
 
 router = APIRouter(prefix="/benches/{bench_id}/snapshots", tags=["snapshots"], route_class=StrictRoute)
@@ -46,7 +46,9 @@ async def delete_snapshot(snapshot_id: str, session: SessionDep, service: Servic
 
 
 @router.post("/{snapshot_id}/restore", dependencies=[RateLimited])
-async def restore_snapshot(snapshot_id: str, session: SessionDep, service: ServiceDep, caller: CallerDep) -> Bench:
+async def restore_snapshot(
+    snapshot_id: str, session: SessionDep, service: ServiceDep, person: PersonDep, caller: CallerDep
+) -> Bench:
     """Go back to a moment; from there the bench computes the same bits again."""
     await service.engine.call(session.restore, snapshot_id, caller)
-    return service.view(session)
+    return service.view(session, person)

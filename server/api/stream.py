@@ -15,7 +15,10 @@ from core.errors import InputError
 from server.api.bodies import strict_json
 from server.api.deps import SocketServiceDep, rate_limited
 from server.bench.events import Event
+from server.bench.session import Session
 from server.errors import ApiError, ErrorBody, body_of, clear_line
+from server.people.access import Need
+from server.people.person import Person
 from server.security.limits import Bucket
 from server.service import Service
 from server.stream.client import CLOSE_FAILED, Client
@@ -31,6 +34,7 @@ from server.stream.wire import (
     CommandMessage,
     ErrorMessage,
     Hello,
+    Pong,
     Rearm,
     Reply,
     Resume,
@@ -73,18 +77,24 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         await socket.close(*(refusal or (CLOSE_NO_BENCH, "")))
         return
     await socket.accept(subprotocol=SUBPROTOCOL)
-    bench, hub, line = service.view(session), service.hub, Line.of(socket)
-    room = hub.room(session)
-    client = Client(line, session, service.metrics.sent, room.news, room.cuts, bench.last_event)
-    conversation = Conversation(client, service)
+    person: Person = socket.scope["person"]
+    seen, bench = service.seen(session, person), service.view(session, person)
+    hub, line = service.hub, Line.of(socket)
+    room = hub.room(seen)
+    client = Client(line, seen, service.metrics.sent, room.news, room.cuts, bench.last_event, person)
+    conversation = Conversation(client, session, service, person)
     hub.add(client)
+    if not person.is_teacher:
+        client.name = person.name
     line.hear, line.drained = conversation.hear, client.flush
     client.post(Hello(server=service.id, bench=bench, last_event=bench.last_event))
+    service.driving.come(bench_id, person)
     tasks = [asyncio.create_task(part) for part in (conversation.run(socket), client.closed.wait())]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
         hub.remove(client)
+        service.driving.go(bench_id, person)
         if service.benches.find(bench_id):
             service.idling.saw(bench_id)
         for task in tasks:
@@ -117,12 +127,16 @@ class Conversation:
     ----------
     client : Client
         The sending half.
+    bench : Session
+        The bench that commands go to.
     service : Service
         Benches and limits.
+    person : Person
+        Whose page it is.
     """
 
-    def __init__(self, client: Client, service: Service) -> None:
-        self._client, self._service = client, service
+    def __init__(self, client: Client, bench: Session, service: Service, person: Person) -> None:
+        self._client, self._bench, self._service, self._person = client, bench, service, person
         settings = service.settings
         self._messages = Bucket(FLOOD_RATE, FLOOD_BURST)
         self._commands = Bucket(settings.command_rate_per_s, settings.command_burst)
@@ -195,16 +209,21 @@ class Conversation:
             client.offer(frame=True)
         elif isinstance(message, Resume):
             client.resume(message.after)
+        elif isinstance(message, Pong):
+            self._service.driving.heard(client.session.id, self._person)
 
     async def _command(self, message: CommandMessage) -> None:
         """Carry out a command and reply with its tick; further messages are read while a step runs."""
         if not self._commands.take():
             raise rate_limited(self._service.settings)
+        if not self._service.people.may(self._person, Need.DRIVE, self._client.session.id):
+            raise ApiError(403, "forbidden", "you watch this bench and may not change it")
+        self._service.driving.check(self._client.session.id, self._person)
 
         def done(event: Event) -> None:
             self._client.answer(Reply(id=message.id, ok=True, tick=event.tick))
 
-        outcome = await self._service.benches.begin(self._client.session, message.command, self._client.name)
+        outcome = await self._service.benches.begin(self._bench, message.command, self._client.name)
         if isinstance(outcome, Event):
             done(outcome)
         else:

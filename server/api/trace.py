@@ -10,9 +10,9 @@ from pydantic import BaseModel
 
 from core.errors import InputError
 from server.api.bodies import StrictRoute
-from server.api.deps import ServiceDep, SessionDep
+from server.api.deps import SeenDep, ServiceDep
 from server.api.files import table_response
-from server.bench.session import Session
+from server.bench.session import Seen
 from server.errors import ApiError
 from server.store.traces import MEDIA_TYPES, Format, schema_of, table_of
 from server.stream.view import Span
@@ -46,7 +46,7 @@ class Trace(BaseModel):
     responses={200: {"model": Trace, "content": {media: {} for media in MEDIA_TYPES.values()}}},
 )
 async def get_trace(
-    session: SessionDep,
+    session: SeenDep,
     service: ServiceDep,
     signals: Annotated[str, Query(description="Names, separated by commas; all when empty", max_length=8000)] = "",
     start_tick: Tick = None,
@@ -82,14 +82,14 @@ async def get_trace(
         most = service.settings.max_trace_ticks
         raise ApiError(422, "too_long", f"{end - start} ticks; at most {most} at once", "end_tick")
     table = await asyncio.to_thread(_table, session, names, indices, start, end)
-    return await table_response(service, table, f"{session.scenario.id}-{start}-{end}", kind)
+    return await table_response(service, table, f"{session.scenario_id}-{start}-{end}", kind)
 
 
-def _table(session: Session, names: list[str], indices: list[int], start: int, end: int) -> object:
+def _table(session: Seen, names: list[str], indices: list[int], start: int, end: int) -> object:
     """Read every sample of a span."""
     samples = session.history.read(indices, start, end)
     # Ticks that the bench overwrote during the read are missing at the old end.
     first = end - samples.shape[1]
-    units = {session.signals[index].name: session.signals[index].unit for index in indices}
-    about = {"version": VERSION, "scenario": session.scenario.document, "bench": session.id}
+    units = {signal.name: signal.unit for signal in session.signals}
+    about = {"version": VERSION, **session.about}
     return table_of(schema_of({name: units[name] for name in names}, about), first, session.dt_ms, samples)

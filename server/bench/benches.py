@@ -3,43 +3,40 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import math
+import secrets
 from collections import Counter
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
-
-import pyarrow.parquet as pq
 
 from core.board.board import Board
 from core.board.history import History
 from core.errors import InputError
 from core.format import format_count
-from scenarios.edit import with_values
-from scenarios.library import get
-from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Reset, Seek
+from server.bench.blind import Blind
+from server.bench.checkpoints import Kept
+from server.bench.commands import MAX_SCALE, MIN_SCALE, Reset, Seek
 from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.experiment import Experiment, rebuilt, repeat
+from server.bench.hiding import STOPPED
+from server.bench.making import prepare, usual_scale
 from server.bench.portrait import design_of
 from server.bench.recorder import Recorder
-from server.bench.replay import Replay
+from server.bench.replay import Replay, played
 from server.bench.session import Session
 from server.bench.status import Opened
 from server.bench.tape import REFUSAL, Tape
 from server.bench.tick_source import TickSource
+from server.bench.watch import KeptWatch
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
 from server.store.recordings import RecordingDetail
-
-AXES_SCALE = 0.1
-"""Device seconds per wall second of a plant with axes."""
 
 
 class Benches:
@@ -53,10 +50,18 @@ class Benches:
         Limits.
     metrics : Metrics
         Where benches and commands are counted.
+    witness : callable, optional
+        Hears of every event of every bench.
     """
 
-    def __init__(self, engine: Engine, settings: Settings, metrics: Metrics) -> None:
-        self._engine, self._settings, self._metrics = engine, settings, metrics
+    def __init__(
+        self,
+        engine: Engine,
+        settings: Settings,
+        metrics: Metrics,
+        witness: Callable[[Session, Event], None] | None = None,
+    ) -> None:
+        self._engine, self._settings, self._metrics, self._witness = engine, settings, metrics, witness
         self._sessions: dict[str, Session] = {}
         self._coming = 0
 
@@ -90,10 +95,13 @@ class Benches:
         *,
         own_scale: bool = False,
         quiet_lead: bool = False,
+        class_id: str = "",
+        hide: Callable[[Board], Blind] | None = None,
     ) -> Session:
         """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
 
-        With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario.
+        With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario. That of
+        a student of a class has less room for its history. ``hide`` chooses a fault that is hidden from the first tick.
 
         Raises
         ------
@@ -105,15 +113,22 @@ class Benches:
 
         def made() -> Session:
             scenario, board = prepare(source, values, seed)
-            session = self._session(scenario, board, usual_scale(board) if own_scale else time_scale)
+            scale = usual_scale(board) if own_scale else time_scale
+            kept = self._kept(board, self._settings.student_history_mb if class_id else None)
+            session = Session(scenario, board, scale, kept, self._metrics, self._engine.clock)
+            if class_id:
+                session.belong(class_id, self._settings.student_ticks_per_s)
             session.fast_forward.leads = quiet_lead
+            if hide is not None:
+                session.hiding.begin(hide(board))
+                session.hiding.inject("teacher")
             return session
 
-        return await self._admit(asyncio.to_thread(made), not paused)
+        return await self.admit(asyncio.to_thread(made), not paused, is_counted=not class_id)
 
     async def fork(self, session: Session, snapshot_id: str | None) -> Session:
         """Make a second bench that goes on from a moment of another."""
-        return await self._admit(self._engine.call(session.fork, snapshot_id), session.is_started)
+        return await self.admit(self._engine.call(session.fork, snapshot_id), session.is_started)
 
     async def variant(self, session: Session, values: dict[str, Any]) -> Session:
         """Make a second bench that begins as this one is set now, with values written over it.
@@ -137,7 +152,15 @@ class Benches:
         ApiError
             If there are too many benches, or this version cannot read its scenario.
         """
-        return await self._admit(asyncio.to_thread(self._play, recording, path, speed), not paused)
+
+        def made() -> Session:
+            scenario, tape, recorded = played(recording, path)
+            pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
+            session = Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
+            session.recorded_scale = recorded
+            return session
+
+        return await self.admit(asyncio.to_thread(made), not paused)
 
     async def repeat(self, experiment: Experiment, opened: Opened, bench_id: str | None = None) -> Session:
         """Make a bench that has done what an experiment has, and goes on or stands as it did.
@@ -159,47 +182,72 @@ class Benches:
 
         def made() -> Session:
             scenario, board = rebuilt(experiment, self._settings.max_run_ticks)
-            session = self._session(scenario, board, experiment.time_scale)
-            session.id = bench_id or session.id
+            session = self.around(scenario, board, experiment.time_scale)
+            session.id = bench_id or ""
             same = repeat(session, experiment)
             session.opened = opened.model_copy(update={"same_bits": same})
             return session
 
-        return await self._admit(asyncio.to_thread(made), experiment.running)
+        return await self.admit(asyncio.to_thread(made), experiment.running)
 
-    def _session(self, scenario: Scenario, board: Board, time_scale: float | None) -> Session:
-        """Put a bench around a board."""
+    async def revive(self, kept: Kept, before: Callable[[Session, KeptWatch | None], None]) -> Session:
+        """Make a bench that goes on from what was kept, by the same id; ``before`` is called before it does.
+
+        Raises
+        ------
+        InputError
+            If this version of the code cannot go on from it.
+        """
+
+        def made() -> Session:
+            scenario, board = kept.board_of()
+            ticks = self._kept(board, self._settings.student_history_mb if class_id else None)
+            session = Session(scenario, board, kept.head.time_scale, ticks, self._metrics, self._engine.clock)
+            kept.put_into(session)
+            if class_id:
+                session.belong(class_id, self._settings.student_ticks_per_s)
+            return session
+
+        async def coming() -> Session:
+            session = await asyncio.to_thread(made)
+            before(session, kept.watch)
+            return session
+
+        class_id = kept.head.class_id
+        return await self.admit(coming(), kept.head.running, is_counted=not class_id)
+
+    def around(self, scenario: Scenario, board: Board, time_scale: float | None) -> Session:
+        """Put a bench around a board; nobody has it yet."""
         return Session(scenario, board, time_scale, self._kept(board), self._metrics, self._engine.clock)
 
-    async def _admit(self, coming: Coroutine[Any, Any, Session], start: bool) -> Session:
-        """Take in a bench that is being made, if there is room."""
+    async def admit(self, coming: Coroutine[Any, Any, Session], start: bool, *, is_counted: bool = True) -> Session:
+        """Take in a bench that is being made, if there is room; those of students are limited by their number."""
         try:
-            self._check_room()
+            if is_counted:
+                self._check_room()
         except ApiError:
             coming.close()
             raise
+        self._coming += is_counted
+        try:
+            return await self._enter(await coming, start)
+        finally:
+            self._coming -= is_counted
+
+    async def take_in(self, session: Session, start: bool) -> Session:
+        """Take in a bench that is made already, if there is room."""
+        self._check_room()
         self._coming += 1
         try:
-            session = await coming
-            await self._engine.call(self._open, session, start and session.board.trip is None)
+            return await self._enter(session, start)
         finally:
             self._coming -= 1
-        self._sessions[session.id] = session
-        return session
 
-    def _play(self, recording: RecordingDetail, path: Path, speed: float) -> Session:
-        """Build the bench of a replay."""
-        try:
-            scenario = Scenario.load(recording.scenario or {})
-            tape = Tape(build(scenario), path)
-        except InputError as error:
-            text = f"this version cannot play it: {error}"
-            raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
-        about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
-        recorded = about.get("time_scale") or DEFAULT_SCALE
-        pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
-        session = Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
-        session.recorded_scale = recorded
+    async def _enter(self, session: Session, start: bool) -> Session:
+        session.id = session.id or f"{self._settings.shard}{secrets.token_hex(6)}"
+        session.witness = self._witness
+        await self._engine.call(self._open, session, start and session.board.trip is None)
+        self._sessions[session.id] = session
         return session
 
     async def close_bench(self, session: Session) -> None:
@@ -229,6 +277,8 @@ class Benches:
         """Carry out a command at the next tick edge; for a step, return a future that holds its event at its end."""
         kind = command.kind
         event: Event | Future[Event]
+        if (blind := session.hiding.blind) is not None:
+            blind.check(command)
         try:
             if isinstance(command, Reset) and isinstance(session.board, Tape):
                 if command.values:
@@ -245,6 +295,8 @@ class Benches:
         except (InputError, ApiError) as error:
             self._metrics.commands.labels(kind, "refused").inc()
             if isinstance(error, InputError):
+                if blind is not None and error.code == "tripped":
+                    error = InputError(STOPPED, hint=error.hint, code=error.code)
                 raise as_written(error, type(command)) from None
             raise
         self._metrics.commands.labels(kind, "done").inc()
@@ -256,14 +308,16 @@ class Benches:
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
 
-    def _kept(self, board: TickSource) -> int:
+    def _kept(self, board: TickSource, megabytes: int | None = None) -> int:
         """Return for how many ticks the signals of a board are kept."""
-        affordable = History.ticks_within(self._settings.history_mb, board.signals.outputs, len(board.signals.taps))
+        most = megabytes or self._settings.history_mb
+        affordable = History.ticks_within(most, board.signals.outputs, len(board.signals.taps))
         return min(self._settings.history_ticks, affordable)
 
     def _check_room(self) -> None:
         """Refuse a new bench if the limit is reached."""
-        if len(self) + self._coming >= self._settings.max_benches:
+        live = sum(not session.class_id for session in self._sessions.values())
+        if live + self._coming >= self._settings.max_benches:
             most, minutes = self._settings.max_benches, self._settings.idle_minutes
             wait = (
                 f"; one that nobody watches is let go after {format_count(math.ceil(minutes), 'minute')}"
@@ -286,29 +340,3 @@ class Benches:
         """Take a bench from the engine (a job)."""
         self._engine.remove(session.id)
         return session.close()
-
-
-def prepare(source: str | dict[str, Any], values: dict[str, Any], seed: int | None) -> tuple[Scenario, Board]:
-    """Read a scenario, write values over it, wire its board."""
-    scenario = with_values(read_scenario(source), values)
-    return scenario, build(scenario, seed)
-
-
-def read_scenario(source: str | dict[str, Any]) -> Scenario:
-    """Read a scenario: a document, a library id, or a TOML text (which has an equals sign)."""
-    if isinstance(source, dict):
-        return Scenario.load(source)
-    if "=" in source or "\n" in source:
-        return Scenario.load(source)
-    return get(source)
-
-
-def usual_scale(board: Board) -> float:
-    """Return the time scale that suits a device.
-
-    That of a resonator; near real time for a plant in seconds; between them for a plant with axes, whose amplitude and
-    rate take some hundred periods to settle.
-    """
-    if board.spec.axes:
-        return AXES_SCALE
-    return min(MAX_SCALE, DEFAULT_SCALE * max(1.0, board.spec.device.oscillator().time_unit_ms))

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from core.board.commands import COMMANDS, FIELDS, Heal, Inject, ResetTrip, Set, Switch, parse_command
+from core.board.commands import COMMANDS, FIELDS, Heal, Inject, MakeSafe, ResetTrip, Set, Switch, parse_command
 from core.errors import InputError, from_validation, unknown
 from server.bench.earlier import KINDS, parse_earlier
 
@@ -168,6 +168,7 @@ Command = Annotated[
     | Heal
     | Set
     | Switch
+    | MakeSafe
     | ResetTrip,
     BeforeValidator(parse),
 ]

@@ -3,7 +3,7 @@
 The event loop serves clients; the engine thread advances boards. A busy loop or a slow client delays frames but no
 board. A command, a snapshot and a new bench are jobs: the engine runs them between two slices, and the loop awaits
 their results. The compiled ticks run without the interpreter's lock, so benches do not wait for each other. One thread
-at a time advances a bench.
+at a time advances a bench. Where these threads hang, the watchdog lets others take their place.
 """
 
 from __future__ import annotations
@@ -15,9 +15,12 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
+from server.bench.crew import Crew, LeftBehind
+from server.bench.job import Job
+from server.errors import ApiError
 from server.lag import Lateness
 from server.metrics import Metrics
 
@@ -82,30 +85,40 @@ class Engine:
         self._metrics, self._on_round, self.clock = metrics, on_round, clock
         self.lateness = Lateness(metrics.wake_lateness)
         self._work: dict[str, Workload] = {}
-        self._jobs: deque[Callable[[], None]] = deque()
+        self._jobs: deque[Job] = deque()
+        self._urgent: deque[Callable[[], None]] = deque()
         self._wake = threading.Condition()
         self._stopping = False
-        self._thread = threading.Thread(target=self._run, name="combbench-engine", daemon=True)
-        self._workers = ThreadPoolExecutor(PROCESSORS, thread_name_prefix="combbench-bench")
-        self._beat = clock()
+        self.crew: Crew[Workload | Job] = Crew(self._run, PROCESSORS - 1)
+        self._beat, self._due = clock(), 0.0
         self._silent_until = 0.0
 
     def start(self) -> None:
-        """Start the thread."""
-        self._thread.start()
+        """Start the threads."""
+        self.crew.start()
 
     def stop(self) -> None:
-        """End the thread after the slice in hand; jobs still waiting are done first."""
+        """End the threads after the slice in hand; jobs still waiting are done first."""
         with self._wake:
             self._stopping = True
             self._wake.notify()
-        self._thread.join(timeout=5.0)
-        self._workers.shutdown()
+        self.crew.main.join(timeout=5.0)
+        self.crew.leave()
 
     @property
     def is_alive(self) -> bool:
         """Whether the thread turns: it wakes at least once a second."""
-        return self._thread.is_alive() and self.clock() - self._beat < 3.0
+        return self.crew.main.is_alive() and self.clock() - self._beat < 3.0
+
+    @property
+    def expected(self) -> float:
+        """The moment of its last sign of life, the beginning of a round, a slice or a job; or of the next due."""
+        return max(self._beat, self._due)
+
+    @property
+    def running(self) -> list[Workload]:
+        """The benches whose time runs."""
+        return [work for work in list(self._work.values()) if work.is_running]
 
     async def call(self, function: Callable[..., T], *arguments: Any) -> T:
         """Run a function between two slices and return its result.
@@ -119,22 +132,40 @@ class Engine:
 
     def submit(self, function: Callable[..., T], *arguments: Any) -> Future[T]:
         """Queue a function to run between two slices."""
-        future: Future[T] = Future()
-
-        def job() -> None:
-            if not future.set_running_or_notify_cancel():
-                return
-            try:
-                future.set_result(function(*arguments))
-            except Exception as error:
-                future.set_exception(error)
-
+        job = Job(lambda: function(*arguments))
         with self._wake:
             if self._stopping:
                 raise RuntimeError("the engine has stopped")
             self._jobs.append(job)
             self._wake.notify()
-        return future
+        return job.future
+
+    def interrupt(self, function: Callable[[], None]) -> None:
+        """Run a function before the next slice of any bench and before every job; it must not raise an error."""
+        self._urgent.appendleft(function)
+        with self._wake:
+            self._wake.notify()
+
+    def take_over(self, lost: Callable[[list[Workload]], None]) -> None:
+        """Go on with other threads; called by another one, once those of the engine have ended or hang.
+
+        Parameters
+        ----------
+        lost : callable
+            Called with the benches that those have in hand, which are given up, before any other job is done.
+        """
+        before = self.crew
+        held = before.held
+        before.leave()
+        for thing in held:
+            if isinstance(thing, Job):
+                thing.fail(ApiError(503, "engine_hung", "the engine hung at this and has given it up"))
+            else:
+                self._work.pop(thing.id, None)
+        lost([thing for thing in held if not isinstance(thing, Job)])
+        self.crew = Crew(self._run, PROCESSORS - 1)
+        self._beat, self._due = self.clock(), 0.0
+        self.crew.start()
 
     def add(self, workload: Workload) -> None:
         """Add a bench (a job)."""
@@ -145,6 +176,15 @@ class Engine:
         self._work.pop(workload_id, None)
 
     def _run(self) -> None:
+        """Turn until the end, or until another thread turns instead."""
+        try:
+            self._turn()
+        except LeftBehind:
+            log.warning("the thread that hung came back and ended; another turns the engine")
+        except BaseException:
+            log.critical("the thread of the engine broke off", exc_info=True)
+
+    def _turn(self) -> None:
         """Wait for a deadline or a job, serve it, and repeat."""
         deadline = self.clock()
         while True:
@@ -174,17 +214,29 @@ class Engine:
     def _wait(self, deadline: float | None) -> bool:
         """Sleep until the deadline, a job or the end."""
         with self._wake:
-            if not self._jobs and not self._stopping:
-                pause = 1.0 if deadline is None else deadline - self.clock()
+            if not self._jobs and not self._urgent and not self._stopping:
+                now = self.clock()
+                pause = 1.0 if deadline is None else deadline - now
                 if pause > 0:
+                    self._due = now + pause
                     self._wake.wait(pause)
+                    self._due = 0.0
             return self._stopping
 
     def _run_jobs(self) -> bool:
-        """Run every job that waits; true if there was one."""
+        """Run all that is urgent, and every job that waits; true if there was one."""
         done = False
-        while self._jobs:
-            self._jobs.popleft()()
+        while self._urgent or self._jobs:
+            if self._urgent:
+                self._urgent.popleft()()
+            else:
+                job = self._jobs.popleft()
+                self.crew.in_hand[threading.get_ident()] = job
+                self._beat = self.clock()
+                try:
+                    job()
+                finally:
+                    self.crew.in_hand.pop(threading.get_ident(), None)
             done = True
         return done
 
@@ -222,19 +274,20 @@ class Engine:
                 if self._slice(work, target):
                     waiting.append((work, target, False))
 
-        others = [self._workers.submit(share) for _ in range(min(len(pairs), PROCESSORS) - 1)]
-        share()
-        for other in others:
-            other.result()
+        self.crew.together(share, max(0, min(len(pairs), PROCESSORS) - 1))
         return not self._run_jobs()
 
     def _slice(self, work: Workload, target: int | None) -> bool:
         """Advance one bench; an unexpected error stops that bench alone."""
-        if not work.is_running:
+        if self._urgent or not work.is_running:
             return False
+        self.crew.in_hand[threading.get_ident()] = work
+        self._beat = self.clock()
         try:
             return work.slice(target)
         except Exception as error:
             log.exception("bench %s failed", work.id)
             work.fail(error)
             return False
+        finally:
+            self.crew.in_hand.pop(threading.get_ident(), None)

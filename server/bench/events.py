@@ -62,10 +62,16 @@ class EventLog(Log):
     def keep(self, **fields: Any) -> Event:
         """Append an event of the past and return it."""
         with self._lock:
-            event = Event(seq=self.last + 1, at=datetime.now(UTC), **fields)
+            event = Event(**{"seq": self.last + 1, "at": datetime.now(UTC), **fields})
             self._entries.append(event)
             self.last = event.seq
         return event
+
+    def go_on(self, events: list[Event]) -> None:
+        """Go on from the events of another log, which ended with these."""
+        with self._lock:
+            self._entries.extend(events)
+            self.last = events[-1].seq if events else 0
 
     def copy(self) -> Log:
         """Return the log of a copy of the board, which has nothing in it."""

@@ -6,6 +6,7 @@ from datetime import datetime
 from itertools import islice
 from typing import Any, Protocol
 
+from core.board.spec import Section
 from core.board.words import describe
 from core.faults.fault import FaultParams
 from scenarios.schema import Scenario
@@ -123,10 +124,7 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
             name: DiagnoserInfo(
                 kind=section.block.name,
                 names=[item.name for item in getattr(section.params, "hypotheses", ())],
-                factors=[
-                    item.model_dump(exclude_defaults=True, exclude={"name"})
-                    for item in getattr(section.params, "hypotheses", ())
-                ],
+                factors=factors_of(section),
             )
             for name, section in bench.board.diagnosers.items()
         },
@@ -137,6 +135,12 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
         opened=bench.opened,
         keep=bench.keep,
     )
+
+
+def factors_of(section: Section) -> list[dict[str, float]]:
+    """Return how each hypothesis of a diagnoser differs from the nominal device."""
+    hypotheses = getattr(section.params, "hypotheses", ())
+    return [item.model_dump(exclude_defaults=True, exclude={"name"}) for item in hypotheses]
 
 
 def document_of(bench: ShownBench) -> dict[str, Any]:

@@ -2,20 +2,44 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from concurrent.futures import Future
+from pathlib import Path
+
+import pyarrow.parquet as pq
 
 from core.errors import InputError
+from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.commands import Loop, RunsBench, Seek, Start
+from server.bench.commands import DEFAULT_SCALE, Loop, RunsBench, Seek, Start
 from server.bench.events import Event
 from server.bench.session import Session
 from server.bench.tape import Tape
+from server.errors import ApiError
 from server.metrics import Metrics
 from server.store.recordings import RecordingDetail
 
 LEAST_LOOP = 100
 """Ticks of the shortest span that can be looped."""
+
+
+def played(recording: RecordingDetail, path: Path) -> tuple[Scenario, Tape, float]:
+    """Return the scenario of a recording, its tape, and the device seconds per wall second it was recorded at.
+
+    Raises
+    ------
+    ApiError
+        If this version cannot read its scenario.
+    """
+    try:
+        scenario = Scenario.load(recording.scenario or {})
+        tape = Tape(build(scenario), path)
+    except InputError as error:
+        text = f"this version cannot play it: {error}"
+        raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
+    about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
+    return scenario, tape, about.get("time_scale") or DEFAULT_SCALE
 
 
 class Replay(Session):

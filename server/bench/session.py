@@ -6,7 +6,7 @@ that is replaced whole.
 
 from __future__ import annotations
 
-import secrets
+import math
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import replace
@@ -14,6 +14,7 @@ from datetime import UTC, datetime
 from typing import Any, get_args
 
 from core.board.board import Board
+from core.board.commands import MakeSafe
 from core.board.document import Document
 from core.errors import InputError
 from core.format import format_short
@@ -22,20 +23,24 @@ from server.bench import commands
 from server.bench.changes import Changes
 from server.bench.events import Event, EventLog
 from server.bench.fast_forward import FastForwarding
+from server.bench.hiding import BlindView, Hiding
 from server.bench.moment import Moment
 from server.bench.pacing import Pacer
-from server.bench.portrait import status_of
+from server.bench.portrait import bench_of, document_now, status_of
 from server.bench.recorder import Recorder
 from server.bench.recordings import Recordings
 from server.bench.snapshots import Snapshots
-from server.bench.status import Opened
+from server.bench.status import Bench, Opened
 from server.bench.steps import Steps
 from server.bench.tick_source import TickSource
 from server.bench.timeline import Timeline
+from server.bench.watch import Watch
 from server.errors import not_found
 from server.metrics import Metrics
 
 STATUS_S = 0.2
+STUDENT_PAST_TICKS = 2000
+"""Ticks of the past that a jump on the bench of a student brings along."""
 
 
 class Session(Timeline):
@@ -65,6 +70,14 @@ class Session(Timeline):
     """The experiment it was opened from, if it was."""
     keep = False
     """Whether it is never let go."""
+    class_id = ""
+    """The class whose student has it."""
+    most_scale = math.inf
+    """The highest time scale allowed."""
+    witness: Callable[[Session, Event], None] | None = None
+    """Hears of every event."""
+    watch: Watch | None = None
+    """Looks at the bench for a step of a lab sheet."""
 
     def __init__(
         self,
@@ -76,12 +89,13 @@ class Session(Timeline):
         clock: Callable[[], float],
     ) -> None:
         super().__init__(scenario, board, history_ticks, clock)
-        self.id = secrets.token_hex(6)
+        self.id = ""  # given when it is taken in
         self.created = datetime.now(UTC)
         self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
         self.changes = Changes(self, clock)
         self.snapshots = Snapshots(self)
         self.recordings = Recordings(self)
+        self.hiding = Hiding(self)
         self._metrics = metrics
         self.events = EventLog(self._happened)
         self.steps = Steps(self)
@@ -140,6 +154,13 @@ class Session(Timeline):
         self.note("board", "failed", f"stopped by an internal error: {error}")
         self.refresh_status()
 
+    def belong(self, class_id: str, most_ticks_per_s: float) -> None:
+        """Be the bench of a student: one of many, so it stays, is no faster than all can be, and keeps less."""
+        self.class_id, self.keep, self.past_ticks = class_id, True, STUDENT_PAST_TICKS
+        self.most_scale = most_ticks_per_s * self.dt_ms * 1e-3
+        if self.pacer.scale is not None and self.pacer.scale > self.most_scale:
+            self.pacer = Pacer(self.dt_ms * 1e-3, self.most_scale)
+
     def begin(self, start: bool) -> None:
         """Begin, running or paused."""
         self._running = start
@@ -165,7 +186,7 @@ class Session(Timeline):
             if isinstance(event, Future):  # its end refreshes the status
                 return event
         else:
-            if len(self.board.pending) >= commands.MAX_PENDING:
+            if len(self.board.pending) >= commands.MAX_PENDING and not isinstance(command, MakeSafe):
                 raise InputError(f"{commands.MAX_PENDING} commands wait for their moment already", code="limit")
             event = self.changes.apply(command, actor)
             self.fast_forward.end()
@@ -194,6 +215,30 @@ class Session(Timeline):
         self.fast_forward.begin(before_tick)
         self.refresh_status()
         return event
+
+    def has_signals_of(self, other: Timeline) -> bool:
+        """Whether another bench could take the place of this one."""
+        return list(other._index) == list(self._index)
+
+    def become(self, other: Session, actor: str, text: str, start: bool) -> Event:
+        """Go on as another bench of the same signals that nobody has, with its past and its pace."""
+        assert isinstance(other.board, Board)
+        before = self.moment(with_past=True)
+        self._begin_again(other.scenario, other.board)
+        self.history, self.pacer = other.history, other.pacer
+        self._ends_at = other.ends_at
+        self._jumped(text)
+        event = self.note(actor, "reset", text, tick=0)
+        self._share_log()
+        self.changes.jumped(event, before)
+        self._running = start and self.board.trip is None
+        self.refresh_status()
+        return event
+
+    @property
+    def ends_at(self) -> int | None:
+        """The end of its scenario, if that is ahead."""
+        return self._ends_at if self._ends_at is not None and self.board.tick < self._ends_at else None
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
         """Go back to a snapshot."""
@@ -244,6 +289,9 @@ class Session(Timeline):
             raise InputError("only a recording that is played can do that", "kind", code="conflict")
         if isinstance(command, commands.TimeScale):
             old, new = self.pacer.scale, command.value
+            if new is not None and new > self.most_scale:
+                most = format_short(self.most_scale, "s/s")
+                raise InputError(f"the benches of a class run at {most} at most", "value", code="limit")
             self.pacer.rescale(new, self.board.tick, self._clock(), self._running)
             text = f"time scale set to {format_short(new, 's/s')}" if new else "time runs as fast as possible"
             return self.events.add(self.board.tick, actor, "time_scale", text, document, old, new)
@@ -268,10 +316,13 @@ class Session(Timeline):
 
     def advance(self, ticks: int) -> int:
         """Run ticks, as many as a slice has; keep them, record them, note what happened; return how many there were."""
-        rows = self._advance_slice(ticks)
+        watch = self.watch if self.hiding.blind is None else None  # what holds would tell what is hidden
+        rows = self._advance_slice(ticks if watch is None else watch.room(self.board.tick, ticks))
         if rows.count:
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)
+            if watch is not None:
+                watch.look(self)
         if self.board.trip is not None and self._running and not self._has_due():
             self._running = False
             self.refresh_status()
@@ -284,9 +335,12 @@ class Session(Timeline):
         self.board.log = self.events
 
     def _happened(self, event: Event) -> None:
-        """Count an event and write it into the recordings under way."""
-        self._metrics.events.labels(event.kind).inc()
+        """Count an event, tell of it, and write it into the recordings under way."""
+        if not self.hiding.hear(event):
+            self._metrics.events.labels(event.kind).inc()
         self.recordings.record(event)
+        if self.witness is not None:
+            self.witness(self, event)
 
     def _finish(self) -> None:
         """Pause at the end of the scenario; starting again goes beyond it."""
@@ -299,6 +353,8 @@ class Session(Timeline):
         self.steps.end()
         self.fast_forward.end()
         self.recordings.close(why)
+        if self.watch is not None:
+            self.watch.jumped(self.board.tick)
         if self.board.dt_ms * 1e-3 != self.pacer.dt_s:
             self.pacer = Pacer(self.board.dt_ms * 1e-3, self.pacer.scale)
         self._running = self._running and self.board.trip is None
@@ -308,6 +364,29 @@ class Session(Timeline):
         """Add an event of the bench itself, of now unless a tick is given."""
         return self.events.add(self.board.tick if tick is None else tick, actor, kind, text, command)
 
+    @property
+    def document(self) -> Document:
+        """The document of the bench as it is now."""
+        return document_now(self)
+
+    @property
+    def scenario_id(self) -> str:
+        """Of its scenario, for the names of files."""
+        return self.scenario.id
+
+    @property
+    def about(self) -> Document:
+        """What a file of its trace says of it."""
+        return {"scenario": self.scenario.document, "bench": self.id}
+
+    def describe(self, around: dict[str, Any], view3d: str | None) -> Bench:
+        """Describe the bench in full."""
+        return bench_of(self, around, view3d)
+
     def refresh_status(self) -> None:
         """Replace the status by that of now."""
         self.status = status_of(self)
+
+
+Seen = Session | BlindView
+"""A bench as somebody sees it."""

@@ -11,6 +11,7 @@ from core.board.commands import Trip
 from core.board.document import Document
 from core.loop.score import Scores
 from core.signals import Signal
+from server.bench.blind import Question
 
 State = Literal["running", "paused", "tripped"]
 
@@ -51,6 +52,26 @@ class Undoable(BaseModel):
     text: str = Field(description="The change in words")
 
 
+class Somebody(BaseModel):
+    """Somebody at a bench."""
+
+    id: str
+    name: str
+
+
+class Company(BaseModel):
+    """Who is at a bench that several have open."""
+
+    is_leased: bool = Field(description="Two or more who may drive have it open, so only one of them does")
+    driver: Somebody | None = Field(description="Who drives; null: whoever does something next")
+    drivers: list[Somebody] = Field(description="Who is there and may drive")
+    asking: list[Somebody] = Field(description="Who has asked for the bench")
+    lent_by: str = Field(description="Id of whoever handed it over and may take it back; empty: nobody did")
+    watching: list[str] = Field(description="Names of students who look on")
+    more_watching: int = Field(description="And so many more")
+    links: int = Field(description="Pages opened by links to watch")
+
+
 class BenchStatus(BaseModel):
     """The changing part of a bench."""
 
@@ -77,6 +98,7 @@ class BenchStatus(BaseModel):
     recording: list[str] = Field(description="Recordings under way")
     armed: list[str] = Field(description="Recordings that wait for their condition")
     watchers: int = 0
+    company: Company | None = Field(None, description="Who is there; null while it is one person")
     loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")
     wake_late_ms: float = Field(0.0, description="99th percentile of the engine's lateness, last minute")
 
@@ -122,6 +144,7 @@ class Bench(BenchStatus):
     replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")
     recorded_scale: float | None = Field(None, description="Device seconds per wall second it was recorded at")
     opened: Opened | None = Field(None, description="The experiment it was opened from, if it was")
+    blind: Question | None = Field(None, description="Asked while a fault is hidden here; little else is served then")
     keep: bool = Field(False, description="It is never let go")
     let_go_in_s: float | None = Field(
         None, description="Until it is let go if nobody watches it or asks for it; null: it stays"

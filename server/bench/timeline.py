@@ -18,7 +18,9 @@ from server.bench.tick_source import TickSource
 PAST_TICKS = 20_000
 """Ticks of the past that a fork brings along, or a jump that is undone."""
 SLICE_S = 0.005
-"""Longest slice, by what a tick of the one before took; other benches and commands wait for it."""
+"""Longest slice, by what a tick takes; other benches and commands wait for it."""
+MOST_SLOWER = 4.0
+"""Times as long as before that a tick is taken to need: more is the wait of a thread, and the bench as fast as ever."""
 
 
 class Timeline:
@@ -36,10 +38,12 @@ class Timeline:
         The engine's clock.
     """
 
+    past_ticks = PAST_TICKS
+
     def __init__(self, scenario: Scenario, board: TickSource, history_ticks: int, clock: Callable[[], float]) -> None:
         self.scenario, self.board = scenario, board
         self._history_ticks, self._clock = history_ticks, clock
-        self._slice_ticks = board.chunk
+        self._tick_s = SLICE_S / board.chunk
         self.history = self._empty_history()
         self._branches = Branches()
         self._index = {signal.name: signal.index for signal in board.signals}
@@ -86,10 +90,10 @@ class Timeline:
     def _advance_slice(self, ticks: int) -> Rows:
         """Run ticks, as many as a slice has, and keep their rows in the history."""
         began = self._clock()
-        rows = self.board.advance(min(ticks, self._slice_ticks))
+        rows = self.board.advance(min(ticks, max(1, int(SLICE_S / self._tick_s))))
         if rows.count:
             took = max(self._clock() - began, 1e-9)
-            self._slice_ticks = max(1, int(SLICE_S * rows.count / took))
+            self._tick_s = min(took / rows.count, MOST_SLOWER * self._tick_s)
             self.history.append(rows)
         return rows
 
@@ -117,7 +121,7 @@ class Timeline:
 
     def _past(self, tick: int) -> Rows | None:
         """Return the last ticks before a tick, as far as the history has them."""
-        first = max(self.history.first_tick, tick - PAST_TICKS)
+        first = max(self.history.first_tick, tick - self.past_ticks)
         if not first < tick <= self.history.end_tick:
             return None
         past = self.history.read(list(range(len(self._index))), first, tick).T

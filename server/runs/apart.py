@@ -1,4 +1,4 @@
-"""Runs the long computations of campaigns with thousands of points in a process of lower priority.
+"""Makes rows of the results of campaigns with thousands of runs in a process of lower priority.
 
 In a thread of the server they would hold the interpreter's lock against the live benches.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -15,7 +14,7 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from scenarios.campaign.executor import prepare
+from scenarios.campaign.executor import pool
 from scenarios.campaign.parts import Parts
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
@@ -24,10 +23,10 @@ from server.runs.worker import NICE
 from server.store.database import Database
 from server.store.results import Results
 
-FEW_POINTS, FEW_RUNS = 20, 300
-"""So many points or runs are handled in this process; they do not slow the live benches."""
+FEW_RUNS = 300
+"""So many runs are handled in this process; they do not slow the live benches."""
 IDLE_S = 60.0
-"""A process without work for so long is ended; starting one takes seconds."""
+"""A process without work for so long is ended; it has a library of its own to load."""
 
 T = TypeVar("T")
 Document = dict[str, Any]
@@ -49,20 +48,20 @@ class Apart:
         self._end: asyncio.TimerHandle | None = None
 
     async def call(self, size: int, function: Callable[..., T], *arguments: object, **named: object) -> T:
-        """Call a function on so many points or runs of a campaign, in a thread or in the process."""
+        """Call a function on so many runs of a campaign, in a thread or in the process."""
         function = partial(function, **named)
         if size <= self._few:
             return await asyncio.to_thread(function, *arguments)
         if self._end is not None:
             self._end.cancel()
-        if self._pool is None:  # spawned, because forking a process with threads is not safe
-            self._pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), prepare, (NICE,))
-        pool = self._pool
+        if self._pool is None:
+            self._pool = pool(1, NICE)
+        used = self._pool
         self._waiting += 1
         try:
-            return await asyncio.wrap_future(pool.submit(function, *arguments))
+            return await asyncio.wrap_future(await asyncio.to_thread(used.submit, function, *arguments))
         except BrokenProcessPool:
-            self._pool = None if self._pool is pool else self._pool
+            self._pool = None if self._pool is used else self._pool
             raise
         finally:
             self._waiting -= 1
@@ -71,31 +70,20 @@ class Apart:
 
     def close(self) -> None:
         """End the process and its work."""
-        pool, self._pool = self._pool, None
-        if pool is not None:
-            for process in list((pool._processes or {}).values()):
+        ended, self._pool = self._pool, None
+        if ended is not None:
+            for process in list((ended._processes or {}).values()):
                 process.kill()
-            pool.shutdown(wait=False, cancel_futures=True)
+            ended.shutdown(wait=False, cancel_futures=True)
 
 
-def examine(document: Document) -> tuple[int, Document]:
-    """Check every point of a campaign; return the number of different runs, and the longest scenario."""
-    sweep = _swept(json.dumps(document, default=str))
-    longest = sweep.longest(sweep.points)
-    return len(set(sweep.contents)) * len(sweep.seeds), longest.document
-
-
-def contents(document: Document) -> list[str]:
-    """Return the hashes of the points of a campaign."""
-    return list(_swept(json.dumps(document, default=str)).contents)
-
-
-def keep_up(document: str, folder: Path, database_url: str, *, to_end: bool) -> None:
-    """Write the results of a campaign that its files lack."""
+def keep_up(document: str, folder: Path, database_url: str, *, to_end: bool, begin: bool = False) -> None:
+    """Write the results of a campaign that its files lack, or only the first of them."""
     _, parts = campaign(document, folder)
     database = Database(database_url)
     try:
-        parts.keep_up(Results(database).outcomes, to_end=to_end)
+        read = Results(database).outcomes
+        parts.begin(read) if begin else parts.keep_up(read, to_end=to_end)
     finally:
         database.close()
 
@@ -103,14 +91,8 @@ def keep_up(document: str, folder: Path, database_url: str, *, to_end: bool) -> 
 @lru_cache(2)
 def campaign(document: str, folder: Path) -> tuple[Sweep, Parts]:
     """Return a campaign and its files; which of them are whole stays known."""
-    sweep = _swept(document)
+    sweep = Sweep(json.loads(document))
     return sweep, Parts(sweep, folder)
-
-
-@lru_cache(2)
-def _swept(document: str) -> Sweep:
-    """Return a campaign; the hashes of its points stay known."""
-    return Sweep(json.loads(document))
 
 
 def report(document: str, folder: Path) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pyarrow.parquet as pq
 from pydantic import BaseModel, Field
 
@@ -95,8 +96,8 @@ def traces(runs: Sequence[Run], paths: Sequence[Path], signal: str, columns: int
     for run, path in zip(runs, paths, strict=True):
         table = pq.read_table(path, columns=[CLOCK[1], signal])
         time, values = (table.column(name).to_numpy().astype(float) for name in (CLOCK[1], signal))
-        time_ms, thinned = thin(time, values, columns)
-        found.append(RunTrace(id=run.id, time_ms=time_ms, values=thinned))
+        kept, thinned = thin(np.asarray, values, most=columns)
+        found.append(RunTrace(id=run.id, time_ms=time[kept].tolist(), values=thinned))
     return RunTraces(signal=signal, unit=common[signal].unit, runs=found)
 
 

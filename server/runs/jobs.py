@@ -32,13 +32,17 @@ class Jobs(Requested[Run]):
 
     kind = "run"
 
-    async def start(self, scenario: Scenario, seeds: list[int], label: str = "") -> tuple[Run, bool]:
+    async def start(
+        self, scenario: Scenario, seeds: list[int], label: str = "", *, everything: bool = False
+    ) -> tuple[Run, bool]:
         """Queue a run, or return the same one if it exists; true when it is new. A name it is given is its name then.
+
+        One that exists without the signals that are asked for is computed once more, for its trace.
 
         Raises
         ------
         ApiError
-            If too many wait, or the run is too long, or its trace too large.
+            If too many wait, or the run is too long, or the same run is under way and keeps fewer signals.
         """
         if self._settings.run_workers == 0:
             raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
@@ -54,6 +58,7 @@ class Jobs(Requested[Run]):
             label=label,
             document=document,
             seeds=seeds,
+            everything=everything,
             runs=len(seeds),
         )
         found, is_new = await self._queue.start(row)
@@ -67,7 +72,7 @@ class Jobs(Requested[Run]):
             await asyncio.to_thread(lambda: single(Scenario.load(row.document), row.seeds or [])),
             self._queue.results,
             processes=self._queue.processes,
-            trace=Keep(str(folder), self._settings.max_run_mb * 1_000_000),
+            trace=Keep(str(folder), self._settings.max_run_mb * 1_000_000, row.everything),
             on_progress=on_progress,
         )
 
@@ -82,9 +87,10 @@ class Jobs(Requested[Run]):
 
     async def file(self, run_id: str, ending: str) -> tuple[Run, Path]:
         """Return a run that is done, and one of its files."""
-        run = await self.get(run_id)
-        path = (self._requests.folders[self.kind] / run.id / STEM).with_suffix(ending)
+        row = await self._requests.get(self.kind, run_id)
+        run, path = self.shown(row), (self._requests.folders[self.kind] / row.id / STEM).with_suffix(ending)
         if run.state != "done" or not path.is_file():
+            self._requests.check_here(row)
             raise not_found(f"{ending[1:]} file of run", run_id, "a run has its files once it is done")
         return run, path
 

@@ -1,8 +1,8 @@
-"""Limits of a headless run: its ticks, and the memory of the signals it keeps."""
+"""The limit of a headless run: its ticks."""
 
 from __future__ import annotations
 
-from scenarios.run import DEFAULT_SAMPLES, build, run_bytes
+from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from server.errors import ApiError
 from server.settings import Settings
@@ -25,15 +25,9 @@ def check_length(scenario: Scenario, seeds: int, settings: Settings, what: str, 
     Raises
     ------
     ApiError
-        If it has too many ticks, or takes too much memory though it keeps only what figures are made of.
+        If it has too many ticks.
     """
     samples = scenario.samples or DEFAULT_SAMPLES
     if samples * seeds > settings.max_run_ticks:
         text = f"{what} has {samples * seeds} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
-        raise ApiError(422, "too_long", text, field)
-    if scenario.study is not None:
-        return
-    needed = run_bytes(build(scenario), samples, figures_only=True) / 1e6
-    if needed > settings.max_run_mb:
-        text = f"{what} takes {needed:.0f} MB, the limit is {settings.max_run_mb} (max_run_mb)"
         raise ApiError(422, "too_long", text, field)

@@ -11,13 +11,14 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import Delete, Select, delete, or_, select, update
+from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, defer
 
 from core.errors import InputError
 from scenarios.key import code_version
-from server.errors import ApiError, not_found
+from server.errors import ApiError, Elsewhere, not_found
 from server.store.database import Database
-from server.store.models import RequestRow, now
+from server.store.models import RequestRow, now, of_process
 
 ACTIVE = ("queued", "running")
 MOST = 200
@@ -39,6 +40,9 @@ class Run(BaseModel):
     title: str
     label: str = Field("", description="Name that somebody gave it")
     seeds: list[int]
+    all: bool = Field(
+        validation_alias="everything", description="Whether the trace has the signals of blocks that only look on too"
+    )
     created: datetime
     finished: datetime | None
     progress: float
@@ -88,26 +92,46 @@ class Requests:
         Where it is.
     data : Path
         The data folder, in which each run and each campaign has a folder of its own.
+    shard : str
+        Letter of this process, where several share the table: each carries its own requests out.
     """
 
-    def __init__(self, database: Database, data: Path) -> None:
-        self._database = database
+    def __init__(self, database: Database, data: Path, shard: str = "") -> None:
+        self._database, self._shard = database, shard
         self.folders: dict[Kind, Path] = {"run": data / "runs", "campaign": data / "sweeps"}
 
     async def settle(self, row: RequestRow, has_room: bool) -> RequestRow | None:
-        """Return the same request if it waits, is under way or done, named anew; otherwise put it there if it may."""
+        """Return the same request if it waits, is under way or done, named anew; otherwise put it there if it may.
+
+        A run is not the same if its trace lacks signals that are asked for now.
+
+        Raises
+        ------
+        ApiError
+            If such a run waits or is under way.
+        """
+        row.shard = self._shard
 
         def work(session: Session) -> RequestRow | None:
-            known = session.get(RequestRow, row.id)
-            if known is not None and known.state in (*ACTIVE, "done"):
+            known = session.get(RequestRow, row.id, with_for_update=True)
+            lacks = known is not None and row.everything and not known.everything
+            if known is not None and lacks and known.state in ACTIVE:
+                text = f"the same run is {known.state} and keeps fewer signals; ask again once it has ended"
+                raise ApiError(409, "conflict", text, "all")
+            if known is not None and not lacks and known.state in (*ACTIVE, "done"):
                 known.label = row.label or known.label
                 return known
             row.label = row.label or (known.label if known is not None else "")
-            if has_room:
+            if has_room and known is None:
+                session.add(row)  # which another process may have done meanwhile
+            elif has_room:
                 session.merge(row)
             return None
 
-        return await self._database.run(work)
+        try:
+            return await self._database.run(work)
+        except IntegrityError:  # another process was asked for the same at the same moment
+            return await self._database.run(work)
 
     async def all(self, kind: Kind, wanted: RunFilter) -> list[RequestRow]:
         """List those that are asked for, newest first, without their documents."""
@@ -117,11 +141,27 @@ class Requests:
         """Return those of some that are known."""
         return await self._rows(select(RequestRow).where(RequestRow.id.in_(ids), RequestRow.kind == kind))
 
-    async def active(self) -> list[RequestRow]:
-        """Return those that wait or are under way, in the order in which they were asked for."""
-        return await self._rows(
-            select(RequestRow).where(RequestRow.state.in_(ACTIVE)).order_by(RequestRow.created, RequestRow.id)
-        )
+    async def recover(self) -> list[RequestRow]:
+        """Return those of this process that wait or are under way, in the order in which they were asked for.
+
+        What was asked for before processes had letters belongs to the first that starts with one.
+        """
+        if self._shard:
+            adopted = update(RequestRow).where(RequestRow.shard == "").values(shard=self._shard)
+            await self._database.run(lambda session: session.execute(adopted))
+        active = select(RequestRow).where(RequestRow.state.in_(ACTIVE), of_process(self._shard))
+        return await self._rows(active.order_by(RequestRow.created, RequestRow.id))
+
+    def check_here(self, row: RequestRow) -> None:
+        """Send whoever asks to the process that carries a request out and has its files, if it is another.
+
+        Raises
+        ------
+        Elsewhere
+            Naming it.
+        """
+        if self._shard and row.shard != self._shard:
+            raise Elsewhere(row.shard)
 
     async def get(self, kind: Kind, row_id: str) -> RequestRow:
         """Return one, or refuse with 404."""
@@ -141,20 +181,25 @@ class Requests:
         return await self.get(kind, row_id)
 
     async def remove(self, kind: Kind, ids: Sequence[str] | None) -> int:
-        """Remove some that have ended, or all if none is named; return how many. If one of them cannot be, none is.
+        """Remove some that have ended, or all of this process if none is named; return how many.
+
+        If one of them cannot be removed, none is.
 
         Files go first: on a full disk the row can be deleted only after they have made room. Results stay, for others
         share them.
         """
-        query = select(RequestRow.id, RequestRow.state).where(RequestRow.kind == kind)
-        rows = await self._database.run(lambda session: dict(session.execute(query).all()))
         if ids is None:
-            ids = [row_id for row_id, state in rows.items() if state not in ACTIVE]
-        for row_id in ids:
-            if row_id not in rows:
-                raise not_found(kind, row_id)
-            if rows[row_id] in ACTIVE:
-                raise ApiError(409, "conflict", f"the {kind} {row_id} is {rows[row_id]}; cancel it first", "ids")
+            ended = (RequestRow.kind == kind, RequestRow.state.not_in(ACTIVE), of_process(self._shard))
+            query = select(RequestRow.id).where(*ended)
+            ids = await self._database.run(lambda session: list(session.scalars(query)))
+        else:
+            rows = {row.id: row for row in await self.some(kind, ids)}
+            for row_id in ids:
+                if row_id not in rows:
+                    raise not_found(kind, row_id)
+                self.check_here(rows[row_id])
+                if (state := rows[row_id].state) in ACTIVE:
+                    raise ApiError(409, "conflict", f"the {kind} {row_id} is {state}; cancel it first", "ids")
         for row_id in dict.fromkeys(ids):
             await asyncio.to_thread(shutil.rmtree, self.folders[kind] / row_id, ignore_errors=True)
             statement: Delete = delete(RequestRow).where(RequestRow.id == row_id, RequestRow.state.not_in(ACTIVE))

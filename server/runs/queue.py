@@ -38,8 +38,6 @@ log = logging.getLogger(__name__)
 
 Shown = TypeVar("Shown")
 CANCEL_S = 5.0
-CALM_S = 5.0
-"""Time from the start of the server to that of idle worker processes; a first visitor comes first."""
 
 
 class Requested(ABC, Generic[Shown]):
@@ -58,9 +56,6 @@ class Requested(ABC, Generic[Shown]):
     def __init__(self, queue: Queue, settings: Settings) -> None:
         self._queue, self._requests, self._settings = queue, queue.requests, settings
         queue.kinds[self.kind] = self
-
-    async def check(self, row: RequestRow) -> None:
-        """Refuse what could not be checked when it was asked for."""
 
     @abstractmethod
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
@@ -113,7 +108,7 @@ class Queue:
         workers = max(1, settings.run_workers)
         self.kinds: dict[str, Requested[Any]] = {}
         self.results, self.processes = Results(database), Processes(workers, NICE)
-        self.requests = Requests(database, settings.data)
+        self.requests = Requests(database, settings.data, settings.shard)
         self._turns = {"run": asyncio.Semaphore(workers), "campaign": asyncio.Semaphore(1)}
         self._threads = ThreadPoolExecutor(workers + 2, thread_name_prefix="combbench-campaign")  # figures are made too
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -145,20 +140,20 @@ class Queue:
         """
         row, task = await self.requests.get(kind, row_id), self._tasks.get(row_id)
         if task is None:
+            self.requests.check_here(row)
             raise ApiError(409, "conflict", f"the {kind} is {row.state}; it cannot be cancelled any more")
         self._cancel(row_id, task)
         await asyncio.wait([task], timeout=CANCEL_S)
 
     async def warm(self, ready: Callable[[], Awaitable[None]]) -> None:
-        """Start the worker processes before somebody waits for them, once the server is ready and has calmed down."""
+        """Start the worker processes before somebody waits for them, once the kernels are compiled."""
         await ready()
-        await asyncio.sleep(CALM_S)
         for _ in range(self._settings.run_workers):
-            self.processes.submit(os.getpid)
+            await asyncio.to_thread(self.processes.submit, os.getpid)
 
     async def recover(self) -> None:
         """Go on with what the end of the server interrupted; give up what was begun too often."""
-        for row in await self.requests.active():
+        for row in await self.requests.recover():
             text, has_workers = "", self._settings.run_workers or (row.kind == "campaign" and self._settings.scheduler)
             if row.version != code_version():
                 text = "was begun by another version of the code; start it again"
@@ -203,7 +198,6 @@ class Queue:
         error: dict[str, Any] | None = None
         campaign: Campaign | None = None
         try:
-            await kind.check(row)
             async with self._turns[row.kind]:
                 await self.requests.update(row.id, state="running", attempts=RequestRow.attempts + 1)
                 campaign = self.campaigns[row.id] = await kind.campaign(row, self._first_result(row.id))

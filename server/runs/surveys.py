@@ -112,10 +112,16 @@ class Surveys:
         async with self._turn:
             _, parts = await asyncio.to_thread(campaign, text, folder)
             whole = await asyncio.to_thread(parts.whole)
-            if whole < len(parts) and known.get(sweep_id) != (done, await asyncio.to_thread(parts.rows)):
-                size = done - PART * whole
-                await self._apart.call(size, keep_up, text, folder, self._database.url, to_end=not is_active)
-            known[sweep_id] = (done, await asyncio.to_thread(parts.rows))
+            rows = await asyncio.to_thread(parts.rows)
+            if whole < len(parts) and known.get(sweep_id) != (done, rows):
+                # somebody waits for the first results, and the process may have to be started
+                begin = is_active and not rows
+                size = 0 if begin else done - PART * whole
+                options = {"to_end": not is_active, "begin": begin}
+                await self._apart.call(size, keep_up, text, folder, self._database.url, **options)
+                rows = await asyncio.to_thread(parts.rows)
+                done = rows if begin else done
+            known[sweep_id] = (done, rows)
 
 
 def _tell(task: asyncio.Task[None]) -> None:

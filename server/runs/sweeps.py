@@ -1,4 +1,4 @@
-"""Campaigns of the service: on this machine or on a cluster, their points checked and read apart."""
+"""Campaigns of the service: on this machine or on a cluster, their results read in place."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field
 
 from scenarios.campaign.campaign import Campaign
+from scenarios.campaign.check import check
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
-from scenarios.schema import Scenario
 from server.errors import ApiError
-from server.runs.apart import FEW_POINTS, Apart, contents, examine
 from server.runs.length import check_length
 from server.runs.listing import fresh
 from server.runs.queue import Queue, Requested
@@ -39,7 +38,7 @@ class SweepRun(BaseModel):
     title: str
     label: str = Field("", description="Name that somebody gave it")
     version: str
-    runs: int = Field(description="Different runs; until all points have been checked, at most")
+    runs: int = Field(description="Different runs, as far as is known: points are compared in their turn")
     done: int = 0
     created: datetime
     finished: datetime | None
@@ -63,19 +62,17 @@ class Sweeps(Requested[SweepRun]):
 
     def __init__(self, queue: Queue, settings: Settings, database: Database) -> None:
         super().__init__(queue, settings)
-        self._expanding = Apart(FEW_POINTS)
         self._surveys = Surveys(database, self._requests.folders[self.kind])
 
     async def start(self, document: dict[str, Any], label: str = "") -> tuple[SweepRun, bool]:
         """Queue a campaign, or return the same one if it exists; true when it is new. A name it is given is its name.
 
-        Of a campaign with many points only some are checked now. The others are checked while it waits; if one of them
-        is wrong, the campaign fails.
+        What somebody wrote is checked now; a point that cannot be carried out gives runs with an error.
 
         Raises
         ------
         ApiError
-            If too many wait, or it has too many runs.
+            If too many wait, or it has too many runs, or one of them is too long.
         """
         settings = self._settings
         if settings.run_workers == 0 and not settings.scheduler:
@@ -84,9 +81,7 @@ class Sweeps(Requested[SweepRun]):
         if len(sweep) > settings.max_sweep_runs:
             text = f"this campaign has {len(sweep)} runs, the limit is {settings.max_sweep_runs} (max_sweep_runs)"
             raise ApiError(422, "too_long", text, "sweep")
-        some = sweep.points[:FEW_POINTS]
-        await self._check_length(await asyncio.to_thread(sweep.longest, some))
-        is_checked = len(some) == len(sweep.points)
+        await asyncio.to_thread(lambda: check_length(check(sweep), 1, settings, "a run of this campaign", "sweep"))
         key = run_key(content_hash({"sweep": document}))
         row = fresh(
             id=key[:32],
@@ -98,23 +93,14 @@ class Sweeps(Requested[SweepRun]):
             label=label,
             document=json.loads(json.dumps(document, default=str)),
             seeds=None,
-            runs=len(set(sweep.contents)) * len(sweep.seeds) if is_checked else len(sweep),
+            runs=len(sweep),
         )
         found, is_new = await self._queue.start(row)
         return self.shown(found), is_new
 
-    async def check(self, row: RequestRow) -> None:
-        """Check the points of a campaign, if there are many."""
-        points = len((await asyncio.to_thread(Sweep, row.document)).points)
-        if points > FEW_POINTS and row.state == "queued":
-            runs, longest = await self._expanding.call(points, examine, row.document)
-            await self._check_length(await asyncio.to_thread(Scenario.load, longest))
-            await self._requests.update(row.id, runs=runs)
-
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a campaign as it is carried out: on the cluster if there is one."""
         sweep = await asyncio.to_thread(Sweep, row.document)
-        sweep.contents = await self._expanding.call(len(sweep.points), contents, row.document)
         scheduler = self._settings.scheduler
         processes = None if scheduler else self._queue.processes
         follow = self._surveys.follow(row.id, row.document)
@@ -156,15 +142,12 @@ class Sweeps(Requested[SweepRun]):
         return row
 
     def close(self) -> None:
-        """End the processes that check and read."""
-        self._expanding.close()
+        """End the process that writes files."""
         self._surveys.close()
-
-    async def _check_length(self, longest: Scenario) -> None:
-        """Refuse a campaign whose longest run is too long."""
-        await asyncio.to_thread(check_length, longest, 1, self._settings, "a run of this campaign", "sweep")
 
     def shown(self, row: RequestRow) -> SweepRun:
         """Return a campaign as the interface shows it, with its progress while it is under way."""
         sweep, campaign = SweepRun.model_validate(row), self._queue.campaigns.get(row.id)
-        return sweep if campaign is None else sweep.model_copy(update={"done": campaign.done})
+        if campaign is None or not campaign.total:
+            return sweep
+        return sweep.model_copy(update={"done": campaign.done, "runs": campaign.total})

@@ -11,8 +11,9 @@ from scenarios.campaign.campaign import Others
 from scenarios.campaign.outcome import Outcome, outcome_of
 from scenarios.campaign.signs import tell
 from scenarios.campaign.single import counterparts, summary
-from scenarios.run import DEFAULT_SAMPLES, Result, build, run, run_bytes
+from scenarios.run import DEFAULT_SAMPLES, Result, build, run
 from scenarios.schema import Scenario
+from scenarios.signals import traced
 
 NICE = 10
 STEM = "run"
@@ -31,11 +32,14 @@ class Keep:
     folder : str
         Where the files go, each under a temporary name first.
     most_bytes : int
-        Memory of the process; taps that would not fit are left out, then outputs that no figure is made of.
+        Of the numbers of a trace; taps that have no room are left out, then outputs that no figure is made of.
+    everything : bool
+        Keep the signals of blocks that only look on as well.
     """
 
     folder: str
     most_bytes: int
+    everything: bool = False
 
     def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, dict[str, Any]]:
         """Run a scenario; return its outcome, and the summary of all its seeds, counterparts beside each expectation.
@@ -48,14 +52,20 @@ class Keep:
             When the disk failed.
         """
         from scenarios.report.keeping import keep
+        from scenarios.report.traces import TraceFile
 
         scenario = Scenario.load(document)
-        board, samples = build(scenario), scenario.samples or DEFAULT_SAMPLES
-        taps = run_bytes(board, samples, taps=True) <= self.most_bytes
-        result = run(scenario, seed, taps=taps, figures_only=run_bytes(board, samples) > self.most_bytes, on_tick=tell)
-        runs, told = _summary(result, others)
+        room = self.most_bytes // (8 * (scenario.samples or DEFAULT_SAMPLES))
+        board, everything, stem = build(scenario), self.everything, Path(self.folder) / STEM
+        taps = len(traced(board, everything=everything)) <= room
+        few = len(traced(board, taps=False, everything=everything)) > room
         try:
-            keep(result, told, [one.seed for one in runs], Path(self.folder) / STEM)
+            with TraceFile(stem.with_suffix(".parquet"), scenario.document) as trace:
+                result = run(
+                    scenario, seed, taps=taps, figures_only=few, everything=everything, trace=trace, on_tick=tell
+                )
+                runs, told = _summary(result, others)
+                keep(result, told, [one.seed for one in runs], stem)
         except OSError as error:
             raise NotKept(error.strerror or str(error)) from None
         return runs[0], told

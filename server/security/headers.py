@@ -2,28 +2,41 @@
 
 from __future__ import annotations
 
+import secrets
+
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from server.security.frames import Frames
+from server.security.visitor import STYLE_HASH
+
 POLICY = "Content-Security-Policy"
 
-# The component library of the page writes <style> elements and style attributes; scripts stay strict.
-APP_POLICY = "; ".join(
-    (
-        "default-src 'self'",
-        "script-src 'self'",
-        "style-src 'self' 'unsafe-inline'",
-        "img-src 'self' data: blob:",
-        "font-src 'self' data:",
-        "connect-src 'self'",
-        "worker-src 'self' blob:",
-        "frame-src 'self'",
-        "frame-ancestors 'none'",
-        "base-uri 'none'",
-        "form-action 'self'",
-        "object-src 'none'",
+
+def app_policy(nonce: str) -> str:
+    """Return the policy of the page: scripts from files alone, styles from files or by the nonce of this answer.
+
+    Attributes of style stay allowed, because formulas are set with them.
+    """
+    return "; ".join(
+        (
+            "default-src 'self'",
+            "script-src 'self'",
+            "style-src 'self' 'unsafe-inline'",  # for browsers that do not know the next two
+            f"style-src-elem 'self' 'nonce-{nonce}' '{STYLE_HASH}'",
+            "style-src-attr 'unsafe-inline'",
+            "img-src 'self' data: blob:",
+            "font-src 'self' data:",
+            "connect-src 'self'",
+            "worker-src 'self' blob:",
+            "frame-src 'self'",
+            "frame-ancestors 'none'",
+            "base-uri 'none'",
+            "form-action 'self'",
+            "object-src 'none'",
+        )
     )
-)
+
 
 FIXED = {
     "X-Content-Type-Options": "nosniff",
@@ -43,10 +56,12 @@ class SecurityHeaders:
         The application to wrap.
     prefix : str
         The prefix a proxy takes off every path; redirects put it on again.
+    frames : Frames, optional
+        Knows which pages of other sites may show ours.
     """
 
-    def __init__(self, app: ASGIApp, prefix: str = "") -> None:
-        self._app, self._prefix = app, prefix
+    def __init__(self, app: ASGIApp, prefix: str = "", frames: Frames | None = None) -> None:
+        self._app, self._prefix, self._frames = app, prefix, frames
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the call on, adding headers to the start of an HTTP response."""
@@ -54,10 +69,14 @@ class SecurityHeaders:
             await self._app(scope, receive, send)
             return
 
+        nonce = scope["nonce"] = secrets.token_urlsafe(16)
+
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
-                headers.setdefault(POLICY, APP_POLICY)
+                headers.setdefault(POLICY, app_policy(nonce))
+                if self._frames is not None:
+                    headers[POLICY] = self._frames.policy(scope["path"], headers[POLICY])
                 for name, value in FIXED.items():
                     headers.setdefault(name, value)
                 if headers.get("location", "").startswith("/"):

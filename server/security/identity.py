@@ -1,21 +1,24 @@
-"""The identity of callers: one access token, shown once in the address, then a cookie."""
+"""The identity of callers: an access token, shown once in the address, then a cookie; or the secret of a session."""
 
 from __future__ import annotations
 
 import hashlib
 import hmac
-import os
 import secrets
-import tempfile
 from pathlib import Path
 
 from starlette.requests import HTTPConnection
 from starlette.responses import Response
 
+from server.errors import SHARD
+from server.security.ends import is_from_this_machine
 from server.security.public import DIRECT, PublicOrigin
+from server.store.privacy import write_private
 
 TOKEN_FILE = "token"
 COOKIE_S = 30 * 86400
+SHARD_COOKIE = "combbench_shard"
+BEARER_PROTOCOL = "combbench.session."
 
 
 class Identity:
@@ -30,14 +33,20 @@ class Identity:
         The access token.
     public : PublicOrigin
         Where the page is behind a proxy.
+    loopback_only : bool
+        Whether the token is accepted from this machine alone; from elsewhere the right one is refused like a wrong one.
+    shard : str
+        Letter of this process, where several serve one origin: browsers that come in here are to come back here.
     """
 
-    def __init__(self, token: str, public: PublicOrigin = DIRECT) -> None:
-        self._token, self._public = token.encode(), public
+    def __init__(self, token: str, public: PublicOrigin = DIRECT, loopback_only: bool = False, shard: str = "") -> None:
+        self._token, self._public, self._loopback_only = token.encode(), public, loopback_only
+        self._shard = shard
         self.cookie = self._digest(b"combbench session")
         # A browser takes a cookie with one of these names by TLS alone, and __Host- for this host and its root alone.
         prefix = ("__Secure-" if public.prefix else "__Host-") if public.is_secure else ""
-        self.cookie_name = f"{prefix}combbench-{self._digest(b'combbench cookie')[:8]}"
+        name = f"{prefix}combbench-{self._digest(b'combbench cookie')[:8]}"
+        self.cookie_name, self.session_name = name, f"{name}-class"
 
     def _digest(self, purpose: bytes) -> str:
         """Return a digest that only a holder of the token can compute."""
@@ -45,10 +54,23 @@ class Identity:
 
     def give_cookie(self, response: Response) -> None:
         """Set the cookie that lets a browser come in again."""
+        self._set_cookie(response, self.cookie_name, self.cookie, COOKIE_S)
+
+    def give_session(self, response: Response, secret: str, seconds: float) -> None:
+        """Set the cookie of a session that is not the teacher's."""
+        self._set_cookie(response, self.session_name, secret, int(seconds))
+        self.give_shard(response)
+
+    def give_shard(self, response: Response) -> None:
+        """Set the cookie by which a proxy brings a browser back to this process; it opens nothing."""
+        if self._shard:
+            self._set_cookie(response, SHARD_COOKIE, self._shard, COOKIE_S)
+
+    def _set_cookie(self, response: Response, name: str, value: str, seconds: int) -> None:
         response.set_cookie(
-            self.cookie_name,
-            self.cookie,
-            max_age=COOKIE_S,
+            name,
+            value,
+            max_age=seconds,
             path=f"{self._public.prefix}/",
             secure=self._public.is_secure,
             httponly=True,
@@ -64,19 +86,44 @@ class Identity:
         """Return whether ``given`` is the token."""
         return hmac.compare_digest(given.encode(), self._token)
 
+    def is_meant(self, connection: HTTPConnection) -> bool:
+        """Whether the caller opened the page at an address that names this process."""
+        named = connection.query_params.get(SHARD, "")
+        return connection.scope["path"] == "/" and bool(named) and named == self._shard
+
+    def may_use_token(self, connection: HTTPConnection) -> bool:
+        """Whether the token is accepted from where the caller is."""
+        return not self._loopback_only or is_from_this_machine(connection)
+
+    def has_token_in_address(self, connection: HTTPConnection) -> bool:
+        """Whether the caller opened an address with the token."""
+        return self.may_use_token(connection) and self.is_token(connection.query_params.get("token", ""))
+
     def has_bearer(self, connection: HTTPConnection) -> bool:
         """Whether the caller sent the token as a bearer."""
-        scheme, _, value = connection.headers.get("authorization", "").partition(" ")
-        return scheme.lower() == "bearer" and self.is_token(value.strip())
+        return self.may_use_token(connection) and self.is_token(bearer_of(connection))
 
     def has_cookie(self, connection: HTTPConnection) -> bool:
         """Whether the caller sent our cookie."""
         given = connection.cookies.get(self.cookie_name, "")
-        return hmac.compare_digest(given.encode(), self.cookie.encode())
+        return self.may_use_token(connection) and hmac.compare_digest(given.encode(), self.cookie.encode())
 
     def knows(self, connection: HTTPConnection) -> bool:
-        """Whether the caller may come in."""
+        """Whether the caller is the teacher, who may do everything."""
         return self.has_bearer(connection) or self.has_cookie(connection)
+
+    def session_of(self, connection: HTTPConnection) -> str:
+        """Return the secret of the session that the caller sent, as a bearer or as a cookie."""
+        return bearer_of(connection) or connection.cookies.get(self.session_name, "")
+
+
+def bearer_of(connection: HTTPConnection) -> str:
+    """Return what the caller sent as a bearer; a page can give a WebSocket no header, but a protocol more to speak."""
+    scheme, _, value = connection.headers.get("authorization", "").partition(" ")
+    if scheme.lower() == "bearer":
+        return value.strip()
+    offered = connection.scope.get("subprotocols") or ()
+    return next((word.removeprefix(BEARER_PROTOCOL) for word in offered if word.startswith(BEARER_PROTOCOL)), "")
 
 
 def fits_header(token: str) -> bool:
@@ -97,9 +144,5 @@ def token_of(data: Path) -> str:
     if len(kept) >= 32 and fits_header(kept):
         return kept
     token = secrets.token_urlsafe(32)
-    data.mkdir(parents=True, exist_ok=True)
-    descriptor, part = tempfile.mkstemp(dir=data, prefix=f"{TOKEN_FILE}.")  # for the owner alone
-    with os.fdopen(descriptor, "w") as file:
-        file.write(token + "\n")
-    os.replace(part, path)
+    write_private(path, f"{token}\n".encode())
     return token

@@ -24,14 +24,14 @@ class Bucket:
         self._rate, self._burst, self._clock = rate, burst, clock
         self._tokens, self._at = burst, clock()
 
-    def take(self) -> bool:
-        """Take one token if there is one."""
+    def take(self, cost: float = 1.0) -> bool:
+        """Take a token if there is one; something that costs more is paid for by a longer wait."""
         now = self._clock()
         self._tokens = min(self._burst, self._tokens + (now - self._at) * self._rate)
         self._at = now
         if self._tokens < 1.0:
             return False
-        self._tokens -= 1.0
+        self._tokens -= cost
         return True
 
 
@@ -50,10 +50,10 @@ class Buckets:
         self._rate, self._burst, self._most = rate, burst, most
         self._buckets: OrderedDict[str, Bucket] = OrderedDict()
 
-    def take(self, caller: str) -> bool:
-        """Take one token of ``caller``."""
+    def take(self, caller: str, cost: float = 1.0) -> bool:
+        """Take a token of ``caller``, or several."""
         bucket = self._buckets.pop(caller, None) or Bucket(self._rate, self._burst)
         self._buckets[caller] = bucket
         if len(self._buckets) > self._most:
             self._buckets.popitem(last=False)
-        return bucket.take()
+        return bucket.take(cost)

@@ -1,28 +1,50 @@
-"""The page of a visitor who has no token: what this is, and whom to ask."""
+"""The page of a visitor who has no token: what this is, and whom to ask, or where a class is joined."""
 
 from __future__ import annotations
 
 import html
+from base64 import b64encode
 from collections.abc import Iterable
+from hashlib import sha256
+
+STYLE = """<style>
+:root { color-scheme: light dark; color: light-dark(#1a1f26, #e8ecf1); background: light-dark(#e9edf1, #090c0f);
+  --muted: light-dark(#56616e, #9aa6b4); --line: light-dark(#818d99, #6b7886); --accent: light-dark(#2c55c8, #8fb0ff) }
+* { box-sizing: border-box }
+body { display: grid; justify-content: center; margin: 0; padding: 8vh 1rem 2rem; font: 16px/1.55 system-ui }
+main { width: min(29rem, calc(100vw - 2rem)); padding: 1.75rem; border-radius: 8px;
+  background: light-dark(#ffffff, #161b21) }
+h1 { margin: 0 0 .75rem; font-size: 1.4rem }
+p { margin: 0 0 1rem }
+main > :last-child { margin-bottom: 0 }
+a { color: var(--accent); font-weight: 600 }
+form { display: grid; grid-template-columns: minmax(0, 1fr); gap: 1.1rem; margin: 1.5rem 0 }
+label { display: grid; gap: .35rem; min-width: 0; font-size: .95rem; font-weight: 600 }
+input, select, button { width: 100%; min-height: 3rem; padding: 0 .9rem; border-radius: 6px; font: inherit }
+input, select { border: 1px solid var(--line); background: light-dark(#ffffff, #1e252d); color: inherit }
+input, select { font-size: 1.05rem }
+button { border: 0; background: light-dark(#2c55c8, #3f63c4); color: #ffffff; font-weight: 600; cursor: pointer }
+:focus-visible { outline: 2px solid var(--accent); outline-offset: 2px }
+.code { font-size: 1.5rem; font-weight: 650; letter-spacing: .14em; text-transform: uppercase }
+.wrong { color: light-dark(#c4261d, #ff6b60); font-weight: 600 }
+small { color: var(--muted) }
+</style>"""
+"""The look of the pages that need no session: the page's own colours, without its files, which need one."""
+STYLE_HASH = "sha256-" + b64encode(sha256(STYLE[len("<style>") : -len("</style>")].encode()).digest()).decode()
+"""By which the content policy knows it."""
 
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>CombBench</title>
-<style>
-:root {{ color-scheme: light dark; color: CanvasText; background: Canvas }}
-body {{ max-width: 34rem; margin: 12vh auto; padding: 0 1.5rem; font: 16px/1.6 system-ui }}
-h1 {{ font-size: 1.4rem }}
-form {{ display: flex; flex-wrap: wrap; gap: .5rem; align-items: end; margin: 1.5rem 0 }}
-label {{ flex: 1 1 14rem; font-size: .9rem }}
-input, button {{ box-sizing: border-box; min-height: 2.6rem; padding: 0 .8rem; font: inherit }}
-input {{ width: 100% }}
-.wrong {{ color: light-dark(#b3261e, #ff8a80) }}
-small {{ opacity: .75 }}
-</style>
-<h1>CombBench</h1>
+{style}
+<main><h1>CombBench</h1>
 <p>A live lab for tiny comb resonators and gyroscopes etched in silicon. A simulated control board drives the device;
 you inject faults, change controllers and watch the diagnosis find out, in the browser.</p>
-<p>This bench is not open to everyone. Ask whoever runs it, or gave you this address, for the link with its access
-token; it opens everything and needs no account.</p>
+{way_in}</main>
+"""
+
+WITH_TOKEN = """\
+<p>This bench is not open to everyone. Ask the person who runs it, or gave you this address, for the link with its
+access token; it opens everything and needs no account. <a href="{join}">Join a class</a> if you have a code.</p>
 {wrong}<form method="get">{hidden}<label>Access token
 <input name="token" type="password" autocomplete="current-password" required autofocus></label>
 <button>Open</button></form>
@@ -30,21 +52,37 @@ token; it opens everything and needs no account.</p>
 is kept.</small></p>
 """
 
+ELSEWHERE = "The teacher's address, the one at 127.0.0.1 with the access token, works on the teacher's machine only."
 
-def visitor_page(query: Iterable[tuple[str, str]]) -> str:
+OF_A_CLASS = """\
+<p>This bench serves a class. Students <a href="{join}">join with the code</a> that their teacher shows.</p>
+<p{mark}>{elsewhere}</p>
+"""
+
+
+def visitor_page(query: Iterable[tuple[str, str]], may_use_token: bool = True, join: str = "/join") -> str:
     """Build the page; the address goes on to where the visitor wanted once the token is there.
 
     Parameters
     ----------
     query : iterable of (str, str)
         The query of the address that was asked for.
+    may_use_token : bool
+        Whether the token is accepted from where the visitor is; if not, nobody is asked to send it from there.
+    join : str
+        Path of the page by which students join.
     """
     fields = list(query)
+    has_sent_token = any(name == "token" and value for name, value in fields)
+    if not may_use_token:
+        mark = ' class="wrong" role="alert"' if has_sent_token else ""
+        return PAGE.format(
+            style=STYLE, way_in=OF_A_CLASS.format(mark=mark, join=join, elsewhere=html.escape(ELSEWHERE))
+        )
     hidden = "".join(
         f'<input type="hidden" name="{html.escape(name)}" value="{html.escape(value)}">'
         for name, value in fields
         if name != "token"
     )
-    is_wrong = any(name == "token" and value for name, value in fields)
-    wrong = '<p class="wrong" role="alert">This token is not the one of this bench.</p>\n' if is_wrong else ""
-    return PAGE.format(hidden=hidden, wrong=wrong)
+    wrong = '<p class="wrong" role="alert">This token is not the one of this bench.</p>\n' if has_sent_token else ""
+    return PAGE.format(style=STYLE, way_in=WITH_TOKEN.format(hidden=hidden, wrong=wrong, join=join))

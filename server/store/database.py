@@ -19,9 +19,15 @@ from core.errors import InputError
 if TYPE_CHECKING:
     from alembic.config import Config
 
+log = logging.getLogger(__name__)
+
 MIGRATIONS = Path(__file__).parent / "migrations"
-CLAIM = int.from_bytes(b"combben", "big")
-"""Number of the advisory lock of a server; others of the same database have other numbers."""
+CLAIM = b"combben"
+"""Name of the advisory lock of a server, as a number; others of the same database have other numbers."""
+KEEPALIVES = "SET tcp_keepalives_idle = 30; SET tcp_keepalives_interval = 10; SET tcp_keepalives_count = 3"
+"""Within a minute the database notices that a host has lost its power, and frees its lock."""
+MIGRATION = b"combmigr"
+"""Name of the lock of whoever migrates."""
 T = TypeVar("T")
 
 
@@ -58,8 +64,13 @@ class Database:
         except DBAPIError as error:
             raise InputError(f"the database cannot be used: {reason_of(error)}", "database_url") from None
 
-    def claim(self) -> None:
+    def claim(self, shard: str = "") -> None:
         """Lock a PostgreSQL database for this process until `close`; the lock of the data folder protects SQLite.
+
+        Parameters
+        ----------
+        shard : str
+            Letter of the process, which others with other letters use the database beside; empty: it is alone.
 
         Raises
         ------
@@ -68,10 +79,19 @@ class Database:
         """
         if self.url.startswith("sqlite"):
             return
+        locks = {CLAIM: "_shared", CLAIM + shard.encode(): ""} if shard else {CLAIM: ""}
         connection = self._engine.connect()
-        if connection.execute(text("SELECT pg_try_advisory_lock(:key)"), {"key": CLAIM}).scalar():
+        taken = (
+            connection.execute(text(f"SELECT pg_try_advisory_lock{kind}(:key)"), {"key": _number(name)}).scalar()
+            for name, kind in locks.items()
+        )
+        if all(taken):
+            connection.execute(text(KEEPALIVES))
+            connection.commit()  # the locks stay, and what was set
             self._claim = connection
         else:
+            connection.invalidate()  # the pool would keep it, and with it a lock that was free
+            connection.close()
             connection.close()
             raise InputError(
                 "the database is in use by another server", "database_url", "stop that one, or name another database"
@@ -84,6 +104,8 @@ class Database:
         logging.getLogger("alembic").setLevel(logging.WARNING)
         try:
             with self._engine.begin() as connection:
+                if not self.url.startswith("sqlite"):  # several processes may start at once
+                    connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _number(MIGRATION)})
                 command.upgrade(alembic_config(self.url, connection), "head")
         finally:
             logging.getLogger("alembic").setLevel(level)
@@ -103,6 +125,16 @@ class Database:
     async def run(self, work: Callable[[Session], T]) -> T:
         """Run ``work`` in a transaction on the database thread."""
         return await asyncio.get_running_loop().run_in_executor(self._thread, self.transact, work)
+
+    def run_later(self, work: Callable[[Session], object]) -> None:
+        """Run ``work`` on the database thread behind what waits there; what goes wrong is logged."""
+        self._thread.submit(self._try, work)
+
+    def _try(self, work: Callable[[Session], object]) -> None:
+        try:
+            self.transact(work)
+        except Exception:
+            log.exception("something could not be kept in the database")
 
     async def is_writable(self) -> bool:
         """Return whether the database can be written now."""
@@ -133,6 +165,11 @@ class Database:
         self._engine.dispose()
 
 
+def _number(lock: bytes) -> int:
+    """Return a lock as PostgreSQL names it."""
+    return int.from_bytes(lock, "big")
+
+
 def reason_of(error: DBAPIError) -> str:
     """Say in one line why the database refused."""
     return " ".join(str(error.orig).split())[:300]
@@ -158,10 +195,10 @@ def full_url(address: str) -> str:
 
 
 def make_engine(url: str) -> Engine:
-    """Open the database; SQLite with its pragmas."""
+    """Open the database, SQLite with its pragmas; errors, which are logged, do not quote what was to be stored."""
     if not url.startswith("sqlite"):
-        return create_engine(url, pool_pre_ping=True)
-    engine = create_engine(url)
+        return create_engine(url, pool_pre_ping=True, hide_parameters=True)
+    engine = create_engine(url, hide_parameters=True)
 
     @event.listens_for(engine, "connect")
     def _(connection: Any, _record: Any) -> None:

@@ -13,7 +13,7 @@ from sqlalchemy import delete, select, true
 from server.errors import ApiError
 from server.settings import Settings
 from server.store.database import Database
-from server.store.models import RecordingRow, RequestRow
+from server.store.models import RecordingRow, RequestRow, of_process
 from server.store.recording import free_bytes
 
 log = logging.getLogger(__name__)
@@ -27,14 +27,14 @@ class Keeping:
 
     Parameters
     ----------
-    database : Database
-        Where their rows are.
+    database, shared : Database
+        Where the rows of recordings and those of runs are; usually one and the same.
     settings : Settings
         Folder, quota, retention.
     """
 
-    def __init__(self, database: Database, settings: Settings) -> None:
-        self._database, self._settings = database, settings
+    def __init__(self, database: Database, shared: Database, settings: Settings) -> None:
+        self._database, self._shared, self._settings = database, shared, settings
 
     async def room(self) -> int:
         """Return the bytes that may still be written.
@@ -48,7 +48,8 @@ class Keeping:
         if free <= self._settings.disk_reserve_bytes:
             text = f"{free} bytes of the disk are free, which is its reserve (disk_reserve_bytes)"
             raise ApiError(507, "no_space", text, hint="delete recordings, or make room on the disk")
-        used = await asyncio.to_thread(self._used) + await self._database.used_bytes()
+        used = await asyncio.to_thread(self._used)
+        used += sum([await database.used_bytes() for database in {self._database, self._shared}])
         left = self._settings.quota_bytes - used
         if left <= 0:
             quota = f"the quota is {self._settings.quota_bytes} (quota_bytes)"
@@ -71,17 +72,17 @@ class Keeping:
             return 0
         before = datetime.now(UTC) - timedelta(days=self._settings.retention_days)
         count = 0
-        for table, folder, which in (
-            (RecordingRow, "recordings", true()),
-            (RequestRow, "runs", RequestRow.kind == "run"),
+        for database, table, folder, which in (
+            (self._database, RecordingRow, "recordings", true()),
+            (self._shared, RequestRow, "runs", (RequestRow.kind == "run") & of_process(self._settings.shard)),
         ):
             query = select(table.id).where(table.finished < before, which)
-            ids = await self._database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
+            ids = await database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
             for key in ids:
                 # The files go first: on a full disk the row can be deleted only after they have made room.
                 await asyncio.to_thread(_remove, self._settings.data / folder, key)
                 statement = delete(table).filter_by(id=key)
-                await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
+                await database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
             count += len(ids)
         if count:
             log.info("deleted %d recordings and runs older than %g days", count, self._settings.retention_days)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import logging
 import os
+import tempfile
 from pathlib import Path
 
 log = logging.getLogger(__name__)
 
-KEPT = ("token*", "combbench.sqlite3*", "recordings", "runs")
+KEPT = ("token*", "lti-key.pem*", "combbench.sqlite3*", "recordings", "runs")
 OTHERS = 0o077
 
 
@@ -31,3 +32,12 @@ def keep_private(data: Path) -> None:
                 path.chmod(mode & ~OTHERS & 0o7777)
             except PermissionError:  # as on a volume that belongs to somebody else
                 log.warning("%s may be read by others, and is not this user's to change", path)
+
+
+def write_private(path: Path, content: bytes) -> None:
+    """Write a file that its owner alone can read; whatever ends the process, it is whole or as it was before."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    descriptor, part = tempfile.mkstemp(dir=path.parent, prefix=f"{path.name}.")  # for the owner alone
+    with os.fdopen(descriptor, "wb") as file:
+        file.write(content)
+    os.replace(part, path)

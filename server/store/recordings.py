@@ -88,10 +88,12 @@ class Recordings:
         Where the files are.
     reserve_bytes : int
         Free space that recordings must leave.
+    shard : str
+        With which their ids begin.
     """
 
-    def __init__(self, database: Database, folder: Path, reserve_bytes: int) -> None:
-        self._database, self._folder, self._reserve_bytes = database, folder, reserve_bytes
+    def __init__(self, database: Database, folder: Path, reserve_bytes: int, shard: str = "") -> None:
+        self._database, self._folder, self._reserve_bytes, self._shard = database, folder, reserve_bytes, shard
         self._unclosed: dict[str, dict[str, Any]] = {}
 
     def path(self, recording_id: str) -> Path:
@@ -101,7 +103,7 @@ class Recordings:
     async def open(self, about: About, schema: pa.Schema) -> tuple[Recording, RecordingFile]:
         """Make the row and the growing file of a new recording."""
         row = RecordingRow(
-            id=secrets.token_hex(16),
+            id=f"{self._shard}{secrets.token_hex(15)}",
             bench_id=about.bench_id,
             name=about.name,
             title=about.title,
@@ -167,12 +169,12 @@ class Recordings:
                 values["state"] = "cut_short" if values["ticks"] else values["state"]
             await asyncio.to_thread(self._close, recording_id, values)
 
-    async def all(self, bench_id: str | None = None) -> list[Recording]:
-        """List recordings, newest first."""
+    async def all(self, benches: list[str] | None = None) -> list[Recording]:
+        """List recordings, newest first: all of them, or those of some benches."""
         await self._settle()
         query = select(RecordingRow).order_by(RecordingRow.created.desc())
-        if bench_id is not None:
-            query = query.where(RecordingRow.bench_id == bench_id)
+        if benches is not None:
+            query = query.where(RecordingRow.bench_id.in_(benches))
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         return [Recording.model_validate(row).model_copy(update=self._unclosed.get(row.id)) for row in rows]
 

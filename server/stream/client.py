@@ -13,8 +13,9 @@ from collections import deque
 
 from pydantic import BaseModel
 
-from server.bench.session import Session
+from server.bench.session import Seen
 from server.metrics import Sent
+from server.people.person import TEACHER, Person
 from server.stream.codec import encode
 from server.stream.cuts import SharedCuts
 from server.stream.line import Line, binary_head, text_message
@@ -43,8 +44,8 @@ class Client:
     ----------
     line : Line
         The accepted connection.
-    session : Session
-        The bench it watches.
+    session : Session or BlindView
+        The bench it watches, as it may be seen.
     sent : Sent
         Where frames are counted.
     news : News
@@ -53,9 +54,21 @@ class Client:
         The pictures of the bench.
     last_event : int
         Number of the last event the client has.
+    person : Person
+        Whose page it is.
     """
 
-    def __init__(self, line: Line, session: Session, sent: Sent, news: News, cuts: SharedCuts, last_event: int) -> None:
+    def __init__(
+        self,
+        line: Line,
+        session: Seen,
+        sent: Sent,
+        news: News,
+        cuts: SharedCuts,
+        last_event: int,
+        person: Person = TEACHER,
+    ) -> None:
+        self.person = person
         self.line, self.session, self.cuts = line, session, cuts
         self._sent, self._news = sent, news
         self.name = "page"

@@ -8,7 +8,7 @@ from weakref import WeakValueDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from server.bench.session import Session
+from server.bench.session import Seen
 from server.stream.codec import Moment, Picture
 from server.stream.view import View
 from server.stream.wire import Subscribe
@@ -19,11 +19,11 @@ class SharedCuts:
 
     Parameters
     ----------
-    session : Session
-        The bench; its history may be replaced by a reset.
+    session : Session or BlindView
+        The bench as those pages see it; its history may be replaced by a reset.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Seen) -> None:
         self._session = session
         self._views: WeakValueDictionary[str, View] = WeakValueDictionary()
         self._history = session.history

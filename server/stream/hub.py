@@ -5,23 +5,25 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, count
 from typing import Any
 
-from server.bench.session import Session
+from server.bench.session import Seen
+from server.bench.status import Company
 from server.errors import ApiError
 from server.metrics import Metrics
+from server.people.person import Person
 from server.settings import Settings
 from server.stream.client import CLOSE_SLOW, Client
 from server.stream.pace import Pace
 from server.stream.room import Room
-from server.stream.wire import Notice
+from server.stream.wire import Notice, Ping
 
 log = logging.getLogger(__name__)
 
 STATUS_S = 0.2
-CLOSE_FULL, CLOSE_GONE, CLOSE_NO_BENCH = 1013, 1001, 4404
+CLOSE_FULL, CLOSE_GONE, CLOSE_NO_BENCH, CLOSE_TURNED = 1013, 1001, 4404, 4205
 
 
 class Hub:
@@ -40,8 +42,10 @@ class Hub:
     def __init__(self, settings: Settings, metrics: Metrics, lateness: Callable[[], dict[str, Any]]) -> None:
         self._settings, self._metrics, self._lateness = settings, metrics, lateness
         self._numbers = count(1)
-        self._rooms: dict[str, Room] = {}
+        self._rooms: dict[Seen, Room] = {}
         self._pace = Pace(settings.frame_rate_hz)
+        self.company: Callable[[str], Company | None] = lambda _bench_id: None
+        """Returns who is at a bench."""
         self._later: asyncio.TimerHandle | None = None
         self._showing: Iterator[None] | None = None
 
@@ -50,8 +54,7 @@ class Hub:
 
     def watchers(self, bench_id: str) -> int:
         """Count the open streams of a bench."""
-        room = self._rooms.get(bench_id)
-        return len(room.clients) if room else 0
+        return sum(len(room.clients) for seen, room in self._rooms.items() if seen.id == bench_id)
 
     def check_room(self, bench_id: str) -> None:
         """Refuse a new stream if a limit is reached.
@@ -67,11 +70,11 @@ class Hub:
             text = f"{self.watchers(bench_id)} streams of this bench are open, the limit (max_clients_per_bench)"
             raise ApiError(503, "too_many_clients", text)
 
-    def room(self, session: Session) -> Room:
-        """Return the room of a bench."""
-        if session.id not in self._rooms:
-            self._rooms[session.id] = Room(session, lambda: self.around(session))
-        return self._rooms[session.id]
+    def room(self, session: Seen) -> Room:
+        """Return the room of those who see the same of a bench."""
+        if session not in self._rooms:
+            self._rooms[session] = Room(session, lambda: self.around(session))
+        return self._rooms[session]
 
     def add(self, client: Client) -> None:
         """Add a stream, and give it a number that people know it by."""
@@ -81,10 +84,10 @@ class Hub:
 
     def remove(self, client: Client) -> None:
         """Remove a stream."""
-        room = self._rooms[client.session.id]
+        room = self._rooms[client.session]
         room.clients.discard(client)
         if not room.clients:
-            del self._rooms[client.session.id]
+            del self._rooms[client.session]
         self._metrics.clients.set(len(self))
 
     def publish(self) -> None:
@@ -123,15 +126,49 @@ class Hub:
         for client in self._all(bench_id):
             client.close(CLOSE_NO_BENCH, "the bench was closed")
 
+    def turn_bench(self, bench_id: str) -> None:
+        """Close the streams of a bench of which more or less may be seen now; its pages come back at once."""
+        for client in self._all(bench_id):
+            client.close(CLOSE_TURNED, "what may be seen of the bench has changed")
+
     def close_all(self, reason: str) -> None:
         """Close every stream because the server stops."""
         for client in self._all():
             client.post(Notice(code="shutdown", message=reason))
             client.close(CLOSE_GONE, reason)
 
-    def around(self, session: Session) -> dict[str, Any]:
+    def around(self, session: Seen) -> dict[str, Any]:
         """Return the fields of a status that the bench itself does not know."""
-        return {"watchers": self.watchers(session.id), **self._lateness()}
+        return {"watchers": self.watchers(session.id), "company": self.company(session.id), **self._lateness()}
+
+    def ask(self, bench_id: str, person: Person) -> None:
+        """Ask the pages that somebody has of a bench to answer."""
+        for client in self._all(bench_id):
+            if client.person.id == person.id:
+                client.post(Ping())
+
+    def tell(self, bench_id: str) -> None:
+        """Let the next status of a bench, which all its pages get soon, be a new one; also while it stands."""
+        for seen, room in self._rooms.items():
+            if seen.id == bench_id:
+                room.news.renew()
+
+    def show_status(self, benches: Sequence[Seen]) -> None:
+        """Send the status of some benches now."""
+        for session in benches:
+            for client in self._all(session.id):
+                client.offer(status=True)
+
+    def call(self, people: list[Person]) -> None:
+        """Tell all pages of some people to ask what they may do now."""
+        ids = {person.id for person in people}
+        for client in self._all():
+            if client.person.id in ids:
+                client.post(Notice(code="ask_me", message="what you see or may do has changed"))
+
+    def pages_of(self, person: Person) -> int:
+        """Count the open streams of somebody."""
+        return sum(client.person.id == person.id for client in self._all())
 
     async def run(self) -> None:
         """Offer the status, and close stalled streams."""
@@ -148,5 +185,5 @@ class Hub:
 
     def _all(self, bench_id: str | None = None) -> Iterator[Client]:
         """Go through the streams, of one bench or of all; they may close meanwhile."""
-        rooms = self._rooms.values() if bench_id is None else [self._rooms[bench_id]] if bench_id in self._rooms else []
+        rooms = [room for seen, room in self._rooms.items() if bench_id in (None, seen.id)]
         yield from [client for room in rooms for client in room.clients]

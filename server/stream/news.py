@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from server.bench.portrait import document_now
-from server.bench.session import Session
+from server.bench.session import Seen
 from server.stream.line import text_message
 from server.stream.wire import Events, Notice, Status
 
@@ -19,15 +18,15 @@ class News:
 
     Parameters
     ----------
-    session : Session
-        The bench.
+    session : Session or BlindView
+        The bench as those pages see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.
     """
 
-    def __init__(self, session: Session, around: Callable[[], dict[str, Any]]) -> None:
+    def __init__(self, session: Seen, around: Callable[[], dict[str, Any]]) -> None:
         self._session, self._around = session, around
-        self._document = document_now(session)
+        self._document = session.document
         self.edition = 1
         """Number of the present parameters; it rises when they change."""
         self._status: object = None
@@ -41,7 +40,7 @@ class News:
         if self._session.status is not self._status:
             self._status = self._session.status
             self._texts, self._statuses = {}, {}
-            document = document_now(self._session)
+            document = self._session.document
             if document != self._document:
                 self._document = document
                 self.edition += 1
@@ -50,6 +49,10 @@ class News:
             dropped_field = f'"dropped_frames":{dropped}'
             self._statuses[key] = text_message(self._text(key[0]).replace(UNKNOWN_DROPPED, dropped_field))
         return self._statuses[key]
+
+    def renew(self) -> None:
+        """Let the next status be a new one, because what is around the bench has changed."""
+        self._status = None
 
     def events(self, after: int) -> tuple[list[bytes], int]:
         """Return the messages with the oldest events after one, and the number of the last event in them."""

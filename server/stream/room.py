@@ -1,11 +1,11 @@
-"""All pages of one bench, and the news for them."""
+"""All pages that see the same of one bench, and the news for them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from server.bench.session import Session
+from server.bench.session import Seen
 from server.stream.client import Client
 from server.stream.cuts import SharedCuts
 from server.stream.news import News
@@ -23,13 +23,13 @@ class Room:
 
     Parameters
     ----------
-    session : Session
-        The bench.
+    session : Session or BlindView
+        The bench as they see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.
     """
 
-    def __init__(self, session: Session, around: Callable[[], dict[str, Any]]) -> None:
+    def __init__(self, session: Seen, around: Callable[[], dict[str, Any]]) -> None:
         self.session = session
         self.clients: set[Client] = set()
         self.cuts = SharedCuts(session)

@@ -93,6 +93,12 @@ class Resume(Message):
     after: int = Field(ge=0)
 
 
+class Pong(Message):
+    """The answer to a ping."""
+
+    type: Literal["pong"]
+
+
 class CommandMessage(Message):
     """A command; answered by a reply with the same id."""
 
@@ -101,7 +107,9 @@ class CommandMessage(Message):
     command: Command
 
 
-ClientMessage = Annotated[Subscribe | Rearm | Unsubscribe | Ack | Resume | CommandMessage, Field(discriminator="type")]
+ClientMessage = Annotated[
+    Subscribe | Rearm | Unsubscribe | Ack | Resume | Pong | CommandMessage, Field(discriminator="type")
+]
 CLIENT_MESSAGE: TypeAdapter[Any] = TypeAdapter(ClientMessage)
 
 
@@ -151,8 +159,16 @@ class Notice(BaseModel):
     """Something the person should know about this connection."""
 
     type: Literal["notice"] = "notice"
-    code: Literal["slow_client", "events_lost", "shutdown"]
+    code: Literal["slow_client", "events_lost", "shutdown", "ask_me"] = Field(
+        description="ask_me: what this person sees or may do has changed; /me says how"
+    )
     message: str
 
 
-ServerMessage = Hello | Status | Events | Reply | ErrorMessage | Notice
+class Ping(BaseModel):
+    """Asks the page of whoever drives whether it is there; answered at once by a pong."""
+
+    type: Literal["ping"] = "ping"
+
+
+ServerMessage = Hello | Status | Events | Reply | ErrorMessage | Notice | Ping

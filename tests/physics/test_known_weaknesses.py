@@ -12,7 +12,7 @@ from core.device.catalogue import device
 from core.plant.planar import Planar
 from core.plant.suspension import elastic_force
 from core.sense.single_beam import SingleBeam
-from scenarios.measure.sensing import lost_samples
+from scenarios.measure.sensing import lost_samples, whole_periods
 from tests.core.sense.bench import errors
 from tests.lab import do, play, rms
 from tests.physics.large_displacement import Frame
@@ -103,9 +103,8 @@ def lost(hertz: float, positions: int, stiffness: float = 0.0, **unit: float) ->
         "reference.frequency_hz": hertz,
         "reference.amplitude_v": volts,
     }
-    return float(
-        np.mean([lost_samples(row, 4.0)[0] for row in errors(values, range(1, positions + 1), stiffness=stiffness)])
-    )
+    found = errors(values, range(1, positions + 1), stiffness=stiffness)
+    return float(np.mean([lost_samples(row, 4.0, whole_periods([row], 4.0)) for row in found]))
 
 
 def test_one_beam_loses_slow_motion_and_says_what_helps():

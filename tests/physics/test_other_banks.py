@@ -137,7 +137,7 @@ def test_a_moving_bank_follows_a_drift_that_a_fixed_one_cannot():
     fixed = [{"name": f"k{i}", "stiffness": 1 + 0.05 * i} for i in range(5)]
     scenario = with_values(get("ch5-drift"), {"diagnosers.fixed": {"kind": "mmae", "hypotheses": fixed}})
     result = run(scenario, 4)
-    truth = 1.0 + 0.2 * np.arange(len(result.outputs)) / 40_000
+    truth = 1.0 + 0.2 * np.arange(result.samples) / 40_000
     estimate = result.signal("moving.estimate")
     steps = np.array([1 + 0.05 * i for i in range(5)])[result.signal("fixed.winner").astype(int)]
     late = slice(2000, None)

@@ -7,7 +7,7 @@ import re
 import subprocess
 from pathlib import Path
 
-PROMISED = set("run setup test help check fix dev bench load soak image codegen".split())
+PROMISED = set("run classroom setup test help check fix dev bench load soak image codegen".split())
 
 
 def targets(root: Path) -> dict[str, str]:
@@ -24,6 +24,13 @@ def test_help_lists_every_target_with_its_meaning(root: Path) -> None:
     for name, meaning in targets(root).items():
         assert meaning, f"make {name} has no ## comment"
         assert re.search(rf"^  make {name} +{re.escape(meaning)}$", shown, re.M)
+
+
+def test_a_class_is_served_as_everything_else_is(root: Path) -> None:
+    for target, served in ("classroom", "serve --port 1 --classroom "), ("run", "serve --port 1 ||"):
+        command = ["make", "-n", target, "ARGS=--port 1"]
+        planned = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout
+        assert f".venv/bin/combbench {served}" in planned
 
 
 def test_python_keeps_its_bytecode_whatever_the_environment_says(root: Path) -> None:

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from core.registry import block
 from scenarios.library import get, library
-from scenarios.run import run
+from scenarios.run import build, run
 from server.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -108,6 +108,20 @@ def test_out_writes_trace_and_summary(call, tmp_path):
     assert np.array_equal(table["tick"].to_numpy(), np.arange(600))
 
 
+def test_all_signals_are_written_when_they_are_asked_for(call, tmp_path):
+    found = {}
+    for folder, more in (("usual", []), ("every", ["--all"])):
+        asked = ["run", "ch5-seven-step", "--set", "samples=600", *more, "--out", tmp_path / folder, "--json"]
+        summary = json.loads(call(*asked).stdout)
+        names = pq.read_schema(next((tmp_path / folder).glob("*.parquet"))).names
+        found[folder] = names, {key: summary[key] for key in ("digest", "metrics", "warnings")}
+    usual, every = found["usual"], found["every"]
+    assert usual[1] == every[1]
+    assert every[0] == ["tick", "time_ms", *build(get("ch5-seven-step")).signals.names]
+    assert {name.split(".")[0] for name in {*every[0]} - {*usual[0]}} >= {"mrac", "pid", "stvsc", "single_beam"}
+    assert "open_loop.voltage" in usual[0] and "effects.mass_scale" in usual[0]
+
+
 FILE = """schema = 1
 id = "mine"
 samples = 500
@@ -143,6 +157,7 @@ BAD = [
     (["run", "ch5-seven-step", "--seeds", "5:1"], "--seeds"),
     (["run", "ch5-seven-step", "--seeds", "1:2", "--seed", "3"], "--seeds"),
     (["run", "ch5-seven-step", "--seeds", "1:2", "--out", "x"], "--out"),
+    (["run", "ch5-seven-step", "--seeds", "1:2", "--all"], "--all"),
     (["run", "ch5-seven-step", "--seeds", "\N{SUPERSCRIPT TWO}:3"], "--seeds"),
     (["run", "ch5-seven-step", "--seeds", f"0:{2**53 + 1}"], "--seeds"),
     (["run", "ch5-seven-step", "--seed", "-1"], "seed"),

@@ -106,7 +106,7 @@ def main() -> None:
         largest = given.pop("largest_file", None)
         if largest is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
-        serve(Settings(port=0, token=TOKEN, **given))
+        serve(Settings(**{"port": 0, "token": TOKEN, **given}))
         os._exit(0)
 
 

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import textwrap
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -35,22 +35,33 @@ http {{
 """
 
 
-def site(folder: Path, port: int, service: int, prefix: str) -> str:
-    """Return what the document says, with ports, paths and the prefix of here."""
+def site(folder: Path, port: int, services: dict[str, int]) -> str:
+    """Return what the document says, with the ports and paths of here: the port of each service by its prefix."""
     whole, below = re.findall(r"```nginx\n(.*?)```", (ROOT / "docs" / "behind-a-proxy.md").read_text(), re.S)
-    if prefix:
-        here = textwrap.indent(below.replace("/bench/", f"{prefix}/"), "    ")
+    if "" not in services:
+        blocks = [below.replace("/bench/", f"{prefix}/").replace("8000", str(to)) for prefix, to in services.items()]
+        here = textwrap.indent("".join(blocks), "    ")
         whole, count = re.subn(r"    location / \{.*?\n    \}\n", lambda _: here, whole, flags=re.S)
         assert count == 1
     for said, meant in {
         "listen 443 ssl": f"listen 127.0.0.1:{port} ssl",
-        "127.0.0.1:8000": f"127.0.0.1:{service}",
+        "127.0.0.1:8000": f"127.0.0.1:{services.get('')}",
         "/etc/ssl": str(folder),
         "/var/log/nginx": str(folder),
     }.items():
-        assert said in whole, said
+        assert said in whole or ("8000" in said and "" not in services), said
         whole = whole.replace(said, meant)
     return whole
+
+
+def sharded_site(folder: Path, port: int, services: dict[str, int]) -> str:
+    """Return what docs/scaling.md makes of it for two processes: the port of each by its letter."""
+    maps, line = re.findall(r"```nginx\n(.*?)```", (ROOT / "docs" / "scaling.md").read_text(), re.S)
+    first, second = services["a"], services["b"]
+    whole, alone = site(folder, port, {"": first}), f"proxy_pass http://127.0.0.1:{first};"
+    assert whole.count(alone) == 1 and maps.count("127.0.0.1:8000") == maps.count("127.0.0.1:8001") == 1
+    maps = maps.replace("127.0.0.1:8000", f"127.0.0.1:{first}").replace("127.0.0.1:8001", f"127.0.0.1:{second}")
+    return maps + whole.replace(alone, line.strip())
 
 
 def make_certificate(folder: Path) -> None:
@@ -62,13 +73,15 @@ def make_certificate(folder: Path) -> None:
 
 
 @contextmanager
-def nginx(port: int, service: int, prefix: str = "") -> Iterator[Path]:
-    """Run nginx on a port of loopback, in front of the service on another; yield its folder, with its certificate."""
+def nginx(
+    port: int, services: dict[str, int], site: Callable[[Path, int, dict[str, int]], str] = site
+) -> Iterator[Path]:
+    """Run nginx on a port of loopback, in front of services on others; yield its folder, with its certificate."""
     found = subprocess.run([ROOT / "scripts" / "nginx"], stdout=subprocess.PIPE, text=True, check=True)
     with tempfile.TemporaryDirectory(prefix="combbench-nginx-") as name:
         folder = Path(name)
         make_certificate(folder)
-        (folder / "nginx.conf").write_text(WHOLE.format(folder=folder, site=site(folder, port, service, prefix)))
+        (folder / "nginx.conf").write_text(WHOLE.format(folder=folder, site=site(folder, port, services)))
         command = [found.stdout.strip(), "-p", name, "-e", f"{name}/error.log", "-c", f"{name}/nginx.conf"]
         running = subprocess.Popen(command)
         try:
@@ -87,7 +100,7 @@ def nginx(port: int, service: int, prefix: str = "") -> Iterator[Path]:
 
 
 if __name__ == "__main__":
-    with nginx(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]):
+    with nginx(int(sys.argv[1]), {sys.argv[3]: int(sys.argv[2])}):
         sys.stdout.write("ready\n")
         sys.stdout.flush()
         sys.stdin.read()

@@ -20,37 +20,42 @@ def cards(live: Any) -> dict[str, dict[str, Any]]:
     return {card["id"]: card for card in live.http.get("/api/v1/gallery").json()["cards"]}
 
 
-def test_a_card_has_its_claim_before_its_run_and_its_figures_after(live: Any) -> None:
-    before = cards(live)
-    assert list(before) == [scenario.id for scenario in library()]
-    listed = live.http.get("/api/v1/scenarios").json()["scenarios"]
-    assert {entry["id"]: entry["study"] for entry in listed} == {name: card["study"] for name, card in before.items()}
-    chosen = before["ch1-beam-width"]
-    assert chosen["claim"] == get("ch1-beam-width").head.claim and chosen["study"] == "beam_width"
-    assert chosen["state"] == "new" and chosen["ok"] is None and chosen["run"] is None
-    assert chosen["expectations"] and all(one["ok"] is None for one in chosen["expectations"])
-    answer = live.http.post("/api/v1/gallery/run", json={"only": "ch[15]-[bs]e*"})  # beam-width and seven-step
-    assert answer.status_code == 202
-    asked = [card for card in answer.json()["cards"] if card["state"] != "new"]
-    assert {card["id"] for card in asked} >= {"ch1-beam-width", "ch5-seven-step"}
-    for card in asked:
-        wait(live, card["run"])
-    after = cards(live)
-    for name in ("ch1-beam-width", "ch5-seven-step"):
-        card, expected = after[name], run(get(name))
-        assert card["state"] == "done" and card["progress"] == 1.0 and card["ok"] is True
-        assert card["digest"] == expected.digest
-        assert [one["measured"] for one in card["expectations"]] == [one["measured"] for one in expected.expectations()]
-        drawing = live.http.get(f"/api/v1/runs/{card['run']}/thumbnail")
-        assert drawing.headers["content-type"].startswith("image/svg+xml")
-        assert ElementTree.fromstring(drawing.text).attrib["aria-label"] == micro(get(name).head.title)
-        report = live.http.get(f"/api/v1/runs/{card['run']}/report")
-        assert report.headers["content-type"].startswith("text/html") and expected.digest in report.text
-        assert "default-src 'none'" in report.headers["content-security-policy"]
-    again = live.http.post("/api/v1/gallery/run", json={"only": "ch5-seven-step"}).json()["cards"]
-    assert next(card for card in again if card["id"] == "ch5-seven-step")["state"] == "done"
-    assert live.http.post("/api/v1/gallery/run", json={"only": "zz*"}).status_code == 422
-    assert live.http.get("/api/v1/runs/none/thumbnail").status_code == 404
+def test_a_card_has_its_claim_before_its_run_and_its_figures_after(serve: Any) -> None:
+    with serve() as live:  # where nothing has been run
+        before = cards(live)
+        assert list(before) == [scenario.id for scenario in library()]
+        listed = live.http.get("/api/v1/scenarios").json()["scenarios"]
+        assert {entry["id"]: entry["study"] for entry in listed} == {
+            name: card["study"] for name, card in before.items()
+        }
+        chosen = before["ch1-beam-width"]
+        assert chosen["claim"] == get("ch1-beam-width").head.claim and chosen["study"] == "beam_width"
+        assert chosen["state"] == "new" and chosen["ok"] is None and chosen["run"] is None
+        assert chosen["expectations"] and all(one["ok"] is None for one in chosen["expectations"])
+        answer = live.http.post("/api/v1/gallery/run", json={"only": "ch[15]-[bs]e*"})  # beam-width and seven-step
+        assert answer.status_code == 202
+        asked = [card for card in answer.json()["cards"] if card["state"] != "new"]
+        assert {card["id"] for card in asked} >= {"ch1-beam-width", "ch5-seven-step"}
+        for card in asked:
+            wait(live, card["run"])
+        after = cards(live)
+        for name in ("ch1-beam-width", "ch5-seven-step"):
+            card, expected = after[name], run(get(name))
+            assert card["state"] == "done" and card["progress"] == 1.0 and card["ok"] is True
+            assert card["digest"] == expected.digest
+            assert [one["measured"] for one in card["expectations"]] == [
+                one["measured"] for one in expected.expectations()
+            ]
+            drawing = live.http.get(f"/api/v1/runs/{card['run']}/thumbnail")
+            assert drawing.headers["content-type"].startswith("image/svg+xml")
+            assert ElementTree.fromstring(drawing.text).attrib["aria-label"] == micro(get(name).head.title)
+            report = live.http.get(f"/api/v1/runs/{card['run']}/report")
+            assert report.headers["content-type"].startswith("text/html") and expected.digest in report.text
+            assert "default-src 'none'" in report.headers["content-security-policy"]
+        again = live.http.post("/api/v1/gallery/run", json={"only": "ch5-seven-step"}).json()["cards"]
+        assert next(card for card in again if card["id"] == "ch5-seven-step")["state"] == "done"
+        assert live.http.post("/api/v1/gallery/run", json={"only": "zz*"}).status_code == 422
+        assert live.http.get("/api/v1/runs/none/thumbnail").status_code == 404
 
 
 def execute(live: Any, path: Path, text: str) -> subprocess.CompletedProcess[str]:

@@ -26,6 +26,7 @@ from server.settings import Settings
 logs.configure(Settings(log_format="json"))
 logging.getLogger("a").warning("at %s", "postgresql://user:canary@host/name")
 logging.getLogger("a").warning("GET /?token=canary&a=1")
+logging.getLogger("a").warning("GET /join?code=canary&a=1 /join/canary?b=2")
 logging.getLogger("a").error("no word of %s", "it", extra={"link": "http://127.0.0.1:1/?token=canary"})
 warnings.warn("take care", stacklevel=1)
 thread = threading.Thread(target=lambda: 1 / 0)
@@ -51,11 +52,11 @@ def test_whatever_python_has_to_say_is_json_and_keeps_secrets() -> None:
     done = subprocess.run([sys.executable, "-c", WORDS], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 1 and "canary" not in done.stderr and not done.stdout
     said = lines(done.stderr)
-    assert [entry["message"].splitlines()[0][:22] for entry in said[:3]] == [
-        "at postgresql://user:.", "GET /?token=...&a=1", "no word of it",
+    assert [entry["message"].splitlines()[0][:22] for entry in said[:4]] == [
+        "at postgresql://user:.", "GET /?token=...&a=1", "GET /join?code=...&a=1", "no word of it",
     ]  # fmt: skip
-    assert "take care" in said[3]["message"] and said[3]["logger"] == "py.warnings"
-    assert [entry["exception"].splitlines()[-1] for entry in said[4:]] == [
+    assert "take care" in said[4]["message"] and said[4]["logger"] == "py.warnings"
+    assert [entry["exception"].splitlines()[-1] for entry in said[5:]] == [
         "ZeroDivisionError: division by zero", "KeyError: 'odd'", "ValueError: the end of http://user:...@host/",
     ]  # fmt: skip
 

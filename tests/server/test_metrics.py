@@ -54,7 +54,7 @@ def test_health_says_what_is_wrong(serve: Any, monkeypatch: Any) -> None:
         assert good.status_code == 200
         assert good.json() == {
             "ok": True,
-            "checks": {"started": True, "engine": True, "database": True, "kernels": True},
+            "checks": {"started": True, "engine": True, "watchdog": True, "database": True, "kernels": True},
         }
         live.service.kernels.are_loaded = False
         bad = stranger.get("/health/ready")

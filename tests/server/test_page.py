@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ def dist(tmp_path: Path) -> Path:
     return folder
 
 
-def get(page: Page, path: str, method: str = "GET", query: bytes = b"") -> Any:
+def get(page: Page, path: str, method: str = "GET", query: bytes = b"", accepts: str = "") -> Any:
     sent: list[dict[str, Any]] = []
 
     async def send(message: Any) -> None:
@@ -32,7 +33,8 @@ def get(page: Page, path: str, method: str = "GET", query: bytes = b"") -> Any:
     async def receive() -> Any:
         await asyncio.Event().wait()
 
-    scope = {"type": "http", "method": method, "path": path, "headers": [], "query_string": query, "root_path": ""}
+    told = [(b"accept-encoding", accepts.encode())] if accepts else []
+    scope = {"type": "http", "method": method, "path": path, "headers": told, "query_string": query, "root_path": ""}
     asyncio.run(page(scope, receive, send))
     headers = {name.decode(): value.decode() for name, value in sent[0]["headers"]}
     return sent[0]["status"], headers, b"".join(message.get("body", b"") for message in sent[1:])
@@ -57,6 +59,26 @@ def test_assets_with_a_hash_in_their_name_are_kept_by_the_browser(dist: Path) ->
     assert get(Page(dist), "/favicon.svg")[1]["cache-control"] == "no-cache"
 
 
+@pytest.mark.parametrize(
+    ("accepts", "is_compressed"),
+    [
+        ("gzip, deflate, br", True),
+        ("br;q=1.0, GZIP;q=0.5", True),
+        ("", False),
+        ("gzip;q=0, br", False),
+        ("x-gzip", False),
+    ],
+)
+def test_who_takes_gzip_gets_what_the_build_has_compressed(dist: Path, accepts: str, is_compressed: bool) -> None:
+    (dist / "assets" / "app-1a2b.js.gz").write_bytes(gzip.compress(b"let x"))
+    status, headers, body = get(Page(dist), "/assets/app-1a2b.js", accepts=accepts)
+    assert status == 200 and headers["content-type"].startswith("text/javascript") and "immutable" in str(headers)
+    assert headers.get("content-encoding") == ("gzip" if is_compressed else None)
+    assert (gzip.decompress(body) if is_compressed else body) == b"let x"
+    assert headers["vary"] == "Accept-Encoding"
+    assert get(Page(dist), "/favicon.svg", accepts=accepts)[2] == b"<svg/>"  # which the build has not compressed
+
+
 @pytest.mark.parametrize("path", ["/api/v1/nothing", "/assets/nothing.js", "/benches/x/y", "/health/x"])
 def test_what_is_not_there_is_not_the_page(dist: Path, path: str) -> None:
     with pytest.raises(HTTPException) as caught:
@@ -76,3 +98,15 @@ def test_nothing_outside_the_build_is_served(dist: Path, path: str) -> None:
 def test_without_a_build_it_says_what_to_do(tmp_path: Path) -> None:
     status, _, body = get(Page(tmp_path / "none"), "/")
     assert status == 503 and b"make run" in body
+
+
+def test_the_catalogue_is_the_same_with_and_without_compression(live: Any) -> None:
+    plain = live.http.get("/api/v1/catalog", headers={"Accept-Encoding": "identity"})
+    compressed = live.http.get("/api/v1/catalog", headers={"Accept-Encoding": "gzip"})
+    assert "content-encoding" not in plain.headers and compressed.headers["content-encoding"] == "gzip"
+    assert int(compressed.headers["content-length"]) < int(plain.headers["content-length"]) / 5
+    assert plain.headers["vary"] == compressed.headers["vary"] == "Accept-Encoding"
+    assert plain.json() == compressed.json()
+    of_plants = live.http.get("/api/v1/catalog?family=plant").json()["blocks"]
+    assert of_plants == [block for block in plain.json()["blocks"] if block["family"] == "plant"]
+    assert live.http.get("/api/v1/catalog?family=nothing").status_code == 422

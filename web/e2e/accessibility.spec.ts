@@ -22,6 +22,9 @@ for (const colorScheme of ["dark", "light"] as const) {
       await page.goto(`${server.origin}/?page=gallery`);
       await expect(page.getByRole("heading", { name: "First look" })).toBeVisible();
       await seriousViolations(page).then((found) => expect(found).toEqual([]));
+      await page.goto(`${server.origin}/?page=class`);
+      await expect(page.getByRole("button", { name: "Open the class" })).toBeVisible();
+      await seriousViolations(page).then((found) => expect(found).toEqual([]));
       await page.goto(`${server.origin}/?page=runs`);
       await page.getByText("Campaign", { exact: true }).click();
       await expect(page.getByRole("button", { name: /^Start 1 run/ })).toBeVisible();

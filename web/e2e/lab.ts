@@ -32,7 +32,13 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
   drawn: [Boolean(process.env.PICTURES), { option: true }],
   page: async ({ page, drawn }, use) => {
     if (!drawn) await page.route("**/3d/", (route) => route.fulfill({ contentType: "text/html", body: "" }));
+    const refused: string[] = [];
+    page.on("console", (message) => {
+      const text = message.text();
+      if (text.includes("Content Security Policy") && !text.includes("frame-ancestors")) refused.push(text);
+    });
     await use(page);
+    expect(refused, "what the content policy refuses").toEqual([]);
   },
   tidy: [
     async ({ server }, use) => {

@@ -12,6 +12,7 @@ test("a run is started from the page, and its files are offered", async ({ page,
   await expect(page.getByRole("form").getByRole("alert")).toContainText("sensor.noise_um");
 
   await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("0.06");
+  await page.getByRole("checkbox", { name: "Keep all signals" }).check();
   await page.getByRole("form", { name: "Start" }).getByRole("button", { name: "Run", exact: true }).click();
   const result = page.getByRole("region", { name: "Result" });
   await expect(page).toHaveURL(/[?&]run=/);
@@ -19,7 +20,8 @@ test("a run is started from the page, and its files are offered", async ({ page,
   const state = () => server.ask<{ state: string }>("GET", `/runs/${id}`).then((found) => found.state);
   await expect.poll(state, { timeout: 60_000 }).toBe("done");
   await expect(result.getByText("Expectations")).toBeVisible();
-  const run = await server.ask<{ summary: { digest: string } }>("GET", `/runs/${id}`);
+  const run = await server.ask<{ all: boolean; summary: { digest: string } }>("GET", `/runs/${id}`);
+  expect(run.all).toBe(true);
   await expect(result.getByText(run.summary.digest)).toBeVisible();
   for (const format of ["CSV", "PARQUET", "NPZ", "MAT"]) {
     const [download] = await Promise.all([
@@ -76,6 +78,29 @@ test("a campaign tells what its runs warn of, in the words of a run", async ({ p
     await expect(warning).toBeVisible({ timeout: 60_000 });
   }
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
+});
+
+test("a value that is not allowed is refused, two that do not go together are a row with its error", async ({
+  page,
+  server,
+}) => {
+  await page.request.get(server.url);
+  await page.goto(`${server.origin}/?page=runs`);
+  await page.getByText("Campaign", { exact: true }).click();
+  await page.getByRole("combobox", { name: "Every combination of 1: path" }).fill("sensor.noise_um");
+  const value = page.getByRole("textbox", { name: "sensor.noise_um: value" });
+  await value.fill("0.01:0.2:299, -1");
+  await page.getByRole("button", { name: "Start 300 runs" }).click();
+  await expect(page.getByRole("form").getByRole("alert")).toContainText("sensor.noise_um");
+
+  const grid = { "drive.kind": ["held", "analogue"], "controller.kind": ["open_loop", "mrac"] };
+  const sweep = { schema: 1, id: "pairs", scenario: "first-look", set: { samples: 20 }, grid };
+  const { id } = await server.ask<{ id: string }>("POST", "/sweeps", { sweep });
+  await page.goto(`${server.origin}/?page=runs&sweep=${id}`);
+  const result = page.getByRole("region", { name: "Result" });
+  await expect(result.getByText("4 of 4 runs · done")).toBeVisible({ timeout: 60_000 });
+  await expect(result.getByText(/^drive\.kind: analogue is for open_loop only/)).toBeVisible();
+  await expect(result.getByRole("table").first().locator("tbody tr")).toHaveCount(4);
 });
 
 test("runs are named, found, compared and removed", async ({ page, server }) => {

@@ -8,7 +8,7 @@ test("a visitor without a token is told what this is and whom to ask, and goes o
 }) => {
   await page.goto(`${server.origin}/?scenario=ch5-seven-step`);
   await expect(page.getByRole("heading", { name: "CombBench" })).toBeVisible();
-  await expect(page.getByText("Ask whoever runs it")).toBeVisible();
+  await expect(page.getByText("Ask the person who runs it")).toBeVisible();
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
   await expectFits(page, "the page of a visitor");
   if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/visitor.png` });

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -12,7 +13,7 @@ from core.board.board import Board
 from core.board.commands import parse_command
 from core.board.document import with_values
 from core.board.parse import parse
-from core.board.pattern import Pattern, Uneven
+from core.board.pattern import Pattern, Uneven, unlike
 from core.lanes import code
 from tests.lab import AXES_RICH, RICH
 
@@ -73,6 +74,38 @@ def test_boards_with_other_devices_commands_and_moments():
     assert abreast.run(TICKS) == [True] * 5
     for lane, (document, own) in enumerate(zip(documents, events, strict=True)):
         assert abreast.boards[lane].digest() == alone(document, own).digest()
+
+
+def test_boards_of_other_devices_follow_one_of_them_and_get_faults_of_their_own():
+    """What a broken truss does follows from the drawing, and where a dropout strikes from the seed."""
+    documents = [
+        with_values(RICH, {"device": {"id": "lcr-350", "geometry": {"beam_width_um": width}}, "seed": seed})
+        for width, seed in ((2.0, 1), (2.0, 2), (2.1, 2), (2.1, 2), (2.2, 5))
+    ]
+    faults = [
+        {"at_sample": 100, "fault": "broken_truss", "severity": 0.5},
+        {"at_sample": 150, "fault": "sensor_dropout", "severity": 0.3},
+        {"at_sample": 400, "heal": ["broken_truss"]},
+    ]
+    abreast = together(documents, [faults] * 5, [])
+    assert abreast.run(TICKS) == [True] * 5
+    assert [len(board.followers) for board in abreast.boards] == [4, 0, 0, 0, 0]
+    for lane, document in enumerate(documents):
+        board = alone(document, faults)
+        assert abreast.boards[lane].digest() == board.digest()
+        assert abreast.boards[lane].faults == board.faults
+        assert abreast.boards[lane].value("faults.broken_truss") == 0.0  # it rests again
+    assert len({board.digest() for board in abreast.boards}) == 4
+
+
+def test_what_a_block_reads_is_alike_to_the_sign_of_a_zero():
+    spec = parse(RICH)
+    context = spec.context()
+    assert unlike(context, spec.with_seed(9).context()) == {"seed"}
+    assert unlike(replace(context, limit_un=0.0), replace(context, limit_un=-0.0)) == {"limit_un"}
+    pattern = Pattern(Board(spec))
+    ideal, effects = (pattern.read[pattern.board.wiring.row(key)] for key in ("ideal", "effects"))
+    assert ideal == {"seed"} and not effects
 
 
 def test_two_axes_and_their_controllers():

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from tests.lab import QUIET, RICH, do, inject, make, play
+from core.errors import InputError
+from scenarios.run import build, run
+from scenarios.schema import Scenario
+from tests.lab import QUIET, RICH, do, document, inject, make, play
 
 FAST = {"reference.frequency_hz": 2000.0}
 
@@ -56,3 +60,38 @@ def test_reset_starts_blocks_anew_and_keeps_faults_time_and_scores():
     trace = play(board, 300)
     assert board.trip is None
     assert abs(trace["plant.displacement"][0]) < 0.05 and np.all(trace["faults.stiffness"] == 0.3)
+
+
+def test_safe_outputs_trip_the_board_for_a_reason_and_repeat_with_the_same_bits():
+    board = make(FAST)
+    play(board, 300)
+    do(board, {"make_safe": "Ada is gone"})
+    assert board.trip is not None and (board.trip.tick, board.trip.reason) == (300, "Ada is gone")
+    assert board.value("drive.voltage") == 0.0 and board.advance(10).count == 0
+    assert [(e.tick, e.kind, e.text) for e in board.log][-1] == (300, "make_safe", "safe outputs: Ada is gone")
+    with pytest.raises(InputError, match="tripped already"):
+        do(board, {"make_safe": "again"})
+    do(board, {"reset_trip": True})
+    play(board, 300)
+    again = Scenario.load(board.save())
+    assert [list(event) for event in again.head.events] == [["at_sample", "make_safe"], ["at_sample", "reset_trip"]]
+    result = run(again)
+    assert result.digest == board.digest() and result.samples == 600
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 512])
+def test_twins_are_made_safe_and_reset_with_their_board_whatever_the_chunks(chunk):
+    twin = {"twins": {"other": {"controller": {"kind": "pid"}}}}
+    events = [{"at_sample": 100, "make_safe": "gone"}, {"at_sample": 100, "reset_trip": True}]
+    board = build(Scenario.load({**document({**FAST, **twin}), "samples": 300, "events": events}))
+    while board.tick < 300:
+        board.advance(min(chunk, 300 - board.tick))
+    assert board.trip is None and board.twins["other"].trip is None
+    live = build(Scenario.load({**document({**FAST, **twin}), "samples": 300}))
+    while live.tick < 100:
+        live.advance(min(chunk, 100 - live.tick))
+    do(live, {"make_safe": "gone"})
+    do(live, {"reset_trip": True})
+    while live.tick < 300:
+        live.advance(min(chunk, 300 - live.tick))
+    assert live.digest() == board.digest()

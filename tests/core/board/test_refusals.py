@@ -9,6 +9,8 @@ import pytest
 
 from core.board.document import with_values
 from core.errors import InputError
+from scenarios.library import get
+from scenarios.run import build
 from tests.lab import RICH, do, document, fault, inject, inner_digest, make, play, run_digest
 
 FAST = {"reference.frequency_hz": 2000.0}
@@ -31,6 +33,8 @@ REFUSED: list[tuple[dict[str, Any], str, str]] = [
     ({"heal": ["nothing"]}, "heal", "unknown"),
     ({"switch": "nothing"}, "switch", "unknown"),
     ({"switch": "open_loop"}, "switch", "conflict"),
+    ({"switch": "drive_loop"}, "switch", "invalid"),  # for a gyroscope
+    ({"set": {"controller.kind": "drive_loop"}}, "controller.kind", "invalid"),
     ({"set": {}}, "set", "invalid"),
     ({"set": {"controller.kind": "nothing"}}, "controller.kind", "unknown"),
     ({"set": {"controllers.mrac.filter_pole": 2.0}}, "controllers.mrac.filter_pole", "not_live"),
@@ -143,3 +147,14 @@ def test_commands_leave_their_values_alone():
     do(board, {"set": values})
     assert table["amplitude_v"] == 1.0
     assert play(board, 101)["reference.voltage"].max() == pytest.approx(2.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("command", "field"),
+    [({"switch": "mrac"}, "switch"), ({"set": {"slots.drive": "mrac"}}, "slots.drive")],
+)
+def test_a_gyroscope_takes_no_controller_of_one_displacement(command, field):
+    board = build(get("gyro-adaptive"))
+    with pytest.raises(InputError, match="is for one displacement; gyroscope moves along x, y") as refused:
+        do(board, command)
+    assert refused.value.field == field and "mrac" not in board.spec.controllers

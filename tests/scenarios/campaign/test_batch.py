@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import pytest
@@ -67,7 +68,7 @@ def test_two_hundred_points(abreast):
         "diagnosers.kalman.probability_floor": {"min": 1e-4, "max": 1e-2},
         "reference.amplitude_v": {"min": 6.0, "max": 12.0},
     }
-    sweep = Sweep.load(
+    sweep = Sweep(
         {
             "scenario": "ch5-seven-step",
             "set": {"samples": 4500},
@@ -90,6 +91,21 @@ def test_seeds_of_one_scenario_and_those_of_another(abreast):
     assert not abreast and [entry.seed for entry in found] == list(range(12))
     for one, ours in zip(runs, found, strict=True):
         assert said(ours) == said(outcome(*one))
+
+
+def test_points_that_share_what_they_do_not_change(abreast):
+    ranges = {"device.mass_kg": {"min": 2.0e-10, "max": 2.4e-10}, "plant.drive_noise_v": {"min": 0.0, "max": 0.02}}
+    document = {"scenario": cut(get("ch5-seven-step")).document, "seeds": "3:4", "set": {"samples": 2100}}
+    sweep = Sweep({**document, "latin_hypercube": {"points": 4, "ranges": ranges}})
+    documents, runs, scenario = [point.document for point in sweep.points], [], None
+    assert documents[0]["events"] is documents[1]["events"] and documents[0]["device"] != documents[1]["device"]
+    for one in documents:
+        scenario = Scenario.load(one, like=scenario)
+        runs += [(scenario, seed) for seed in sweep.seeds]
+    found = batch.outcomes(runs)
+    assert not abreast and len({entry.digest for entry in found}) == 8
+    for one, (_, seed), ours in zip([one for one in documents for _ in range(2)], runs, found, strict=True):
+        assert said(ours) == said(outcome(Scenario.load(copy.deepcopy(one)), seed))
 
 
 def test_a_run_that_trips_is_told_of_as_it_is_alone(abreast):

@@ -83,6 +83,18 @@ def test_a_run_that_cannot_be_carried_out_does_not_stop_the_others() -> None:
     assert len(table.found) == 4 and len(errors) == 2 and "severity" in errors[0]
 
 
+def test_a_point_of_which_no_scenario_comes_does_not_stop_the_others() -> None:
+    """Points are read when their runs are made: one that is wrong is a result, and is not made again."""
+    document = {**small().document, "grid": {"sensor.noise_um": [0.1, -1.0], "plant.model": ["linear", "none"]}}
+    table, error = Memory(), Outcome(seed=2).error
+    assert Campaign(Sweep(document), table, workers=1).run()
+    said = [found.error for found in table.found.values()]
+    assert len(said) == 24 and said.count(error) == 6
+    assert any("sensor.noise_um" in text for text in said) and any("plant.model" in text for text in said)
+    assert sorted({found.seed for found in table.found.values()}) == [1, 2, 3, 4, 5, 6]
+    assert Campaign(Sweep(document), table, workers=1).run() and len(table.puts) == 24
+
+
 def test_a_cancelled_campaign_keeps_what_is_done_and_goes_on_from_there() -> None:
     sweep, table = small(20, 9000), Memory()
     campaign = Campaign(sweep, table, workers=1, on_progress=lambda done, _: campaign.cancel() if done else None)
@@ -93,21 +105,17 @@ def test_a_cancelled_campaign_keeps_what_is_done_and_goes_on_from_there() -> Non
     assert len(table.puts) == len(set(table.puts)) == 40 and table.puts[: len(before)] == before
 
 
-def kill_one_child() -> None:
-    """Kill a worker once there is one."""
-    while not (children := multiprocessing.active_children()):
-        time.sleep(0.05)
-    time.sleep(0.5)
-    os.kill(children[0].pid or 0, signal.SIGKILL)
-
-
 def test_a_worker_process_that_is_killed_is_replaced() -> None:
-    sweep, table = small(), Memory()
-    killer = threading.Thread(target=kill_one_child)
-    killer.start()
-    assert Campaign(sweep, table, workers=2).run()
-    killer.join()
-    assert len(table.puts) == len(set(table.puts)) == 12
+    sweep, table, killed = small(20, 9000), Memory(), list[tuple[int, int]]()
+
+    def kill_one_worker(done: int, runs: int) -> None:
+        if done and not killed:
+            killed.append((done, runs))
+            os.kill(multiprocessing.active_children()[0].pid or 0, signal.SIGKILL)
+
+    assert Campaign(sweep, table, workers=2, on_progress=kill_one_worker).run()
+    assert killed[0][0] < killed[0][1] == 40
+    assert len(table.puts) == len(set(table.puts)) == 40
     assert {key: found.digest for key, found in table.found.items()} == digests(sweep)
 
 

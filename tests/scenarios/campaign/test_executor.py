@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import time
 from collections.abc import Iterator
 
@@ -51,6 +52,24 @@ def test_after_a_process_died_there_are_others(processes: Processes) -> None:
     os.kill(pid, signal.SIGKILL)
     assert isinstance(work.exception(60), LOST)
     assert processes.submit(os.getpid).result(60) != pid
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each process loads the code itself")
+def test_processes_are_forked_from_one_of_their_own_and_that_one_is_replaced_too(processes: Processes) -> None:
+    with Processes(1, niceness=7) as others:
+        pid, parent = (processes.submit(function).result(60) for function in (os.getpid, os.getppid))
+        assert parent != os.getpid() and others.submit(os.getppid).result(60) == parent
+        assert others.submit(os.nice, 0).result(60) >= 7
+    os.kill(parent, signal.SIGKILL)
+    os.kill(pid, signal.SIGKILL)
+    end = time.monotonic() + 60
+    while True:
+        try:
+            assert processes.submit(os.getppid).result(60) not in (parent, os.getpid())
+            return
+        except LOST:
+            assert time.monotonic() < end
+            time.sleep(0.05)
 
 
 def test_elsewhere_nobody_listens() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from core.board.document import with_values
 from core.errors import InputError
+from scenarios.campaign.check import check
 from scenarios.campaign.sweep import LatinHypercube, Sweep
 from scenarios.key import content_hash, run_key
 from scenarios.library import get
@@ -102,7 +103,7 @@ def test_variants_are_controllers_or_diagnosers_by_name() -> None:
 )
 def test_what_is_wrong_is_said_in_one_line(change: dict[str, Any], words: list[str]) -> None:
     with pytest.raises(InputError) as caught:
-        Sweep.load({**SEVEN, **change})
+        check(Sweep({**SEVEN, **change}))
     assert all(word in str(caught.value) for word in words), str(caught.value)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sqlite3
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +15,12 @@ import pytest
 from typer.testing import CliRunner
 
 from scenarios.campaign.campaign import Stopped
+from scenarios.campaign.executor import Processes
+from scenarios.campaign.survey import listed
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
+from server import sweeping
 from server.cli import app
 from server.store.lock import lock
 
@@ -88,6 +92,28 @@ def test_a_campaign_leaves_report_and_tables(sweep: Any, tmp_path: Path) -> None
     assert before.items() <= made(folder).items() and len(made(folder)) == 16
     for name in ("runs.parquet", "runs"):
         assert sorted(pq.read_table(folder / name)["key"].to_pylist()) == sorted(made(folder))
+
+
+@pytest.mark.parametrize("dead", [False, True], ids=["by the processes", "here, as they are dead"])
+def test_many_points_are_listed_in_pieces_as_few_are_at_once(
+    sweep: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, dead: bool
+) -> None:
+    assert sweep("--out", "here", "--workers", "1").exit_code == 0
+    at_once = json.loads((tmp_path / "here" / "points.json").read_text())
+    asked = []
+
+    def submit(self: Processes, function: Any, /, *arguments: Any) -> Any:
+        asked.append(function)
+        if dead and function is listed:
+            raise BrokenProcessPool("a process died")
+        return handed_over(self, function, *arguments)
+
+    handed_over = Processes.submit
+    monkeypatch.setattr(Processes, "submit", submit)
+    monkeypatch.setattr(sweeping, "FEW_LISTED", 1)
+    assert sweep("--out", "here", "--workers", "1", "--resume").exit_code == 0
+    assert asked == [listed] * (1 if dead else 4)
+    assert json.loads((tmp_path / "here" / "points.json").read_text()) == at_once
 
 
 def test_the_results_of_another_campaign_are_left_alone(sweep: Any, tmp_path: Path) -> None:

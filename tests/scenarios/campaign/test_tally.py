@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from statistics import NormalDist
 from xml.etree import ElementTree
 
@@ -117,7 +118,7 @@ def test_the_report_tells_few_errors_from_none(campaign: tuple[Sweep, dict[str, 
     sweep, outcomes = campaign
     means = {"diagnosis.kalman.correct_fraction": 0.99997, "diagnosis.kalman.false_switches": 53.0}
     metrics = {name: Spread(count=3, mean=mean, std=0.0, min=mean, max=mean) for name, mean in means.items()}
-    text = campaign_report(sweep, [point.model_copy(update={"metrics": metrics}) for point in tally(sweep, outcomes)])
+    text = campaign_report(sweep, [replace(point, metrics=metrics) for point in tally(sweep, outcomes)])
     assert text.count("<td>0.99997 ± 0</td>") == text.count("<td>53 ± 0</td>") == 2
 
 

@@ -68,6 +68,7 @@ def test_evidence_is_counted_by_its_odds(rng, healthy):
     fault = np.delete(probability, healthy, axis=0).sum(axis=0)
     odds = np.log10(np.maximum(fault, LEAST)) - np.log10(np.maximum(probability[healthy], LEAST))
     bins = np.digitize(np.where(np.isnan(odds), 0.0, odds), EVIDENCE)
-    found = evidence(np.ascontiguousarray(probability), healthy, truth, ODDS)
+    fault = sum(probability[k] for k in range(len(probability)) if k != healthy)
+    found = evidence(fault, np.ascontiguousarray(probability[healthy]), truth, healthy, ODDS)
     for row, chosen in enumerate((truth == healthy, truth != healthy)):
         assert found[row].tolist() == np.bincount(bins[chosen], minlength=len(EVIDENCE) + 1).tolist()

@@ -36,9 +36,9 @@ def test_a_ramp_is_no_level_and_noise_has_none():
 def test_bandwidth_of_a_lag(corner):
     t = 0.01 * np.arange(100_000)
     lag = 1.0 - np.exp(-2e-3 * np.pi * corner * t)
-    assert bandwidth_hz(lag, 0.01) == pytest.approx(corner, abs=0.3)
+    assert bandwidth_hz(lag, 1.0, 0.01) == pytest.approx(corner, abs=0.3)
     twice = 1.0 - np.exp(-2e-3 * np.pi * corner * t) * (1.0 + 2e-3 * np.pi * corner * t)
-    assert bandwidth_hz(twice, 0.01) == pytest.approx(corner * np.sqrt(np.sqrt(2.0) - 1.0), abs=0.3)
+    assert bandwidth_hz(twice, 1.0, 0.01) == pytest.approx(corner * np.sqrt(np.sqrt(2.0) - 1.0), abs=0.3)
 
 
 def test_settling_is_that_of_two_lags():

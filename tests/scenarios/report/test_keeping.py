@@ -17,16 +17,18 @@ from scenarios.library import get
 from scenarios.report.axis import Axis
 from scenarios.report.keeping import keep
 from scenarios.report.svg import Chart, Mark, Series, paint, thin
+from scenarios.report.traces import TraceFile
 from scenarios.run import run
 
 SVG = "{http://www.w3.org/2000/svg}"
 
 
 def kept(scenario: Any, folder: Path) -> tuple[dict[str, Any], Path]:
-    result = run(scenario, taps=True)
-    summary = result.summary()
     stem = folder / "new" / "run"
-    keep(result, summary, [result.seed], stem)
+    with TraceFile(stem.with_suffix(".parquet"), scenario.document) as trace:
+        result = run(scenario, taps=True, trace=trace)
+        summary = result.summary()
+        keep(result, summary, [result.seed], stem)
     return summary, stem
 
 
@@ -72,10 +74,11 @@ def test_the_script_holds_the_scenario_as_it_was(tmp_path: Path) -> None:
 def test_a_spike_of_one_sample_stays_in_the_picture() -> None:
     y = np.sin(np.linspace(0.0, 9.0, 100_000))
     y[54_321] = 7.0
-    x, thinned = thin(np.arange(100_000.0), y, 50)
-    assert len(x) <= 100 and max(thinned) == 7.0 and min(thinned) == y.min()
-    assert x == sorted(x) and x[int(np.argmax(thinned))] == 54_321.0
-    assert thin(np.arange(3.0), y[:3], 50) == ([0.0, 1.0, 2.0], y[:3].tolist())
+    samples, thinned = thin(np.asarray, y, most=50)
+    assert len(samples) <= 100 and max(thinned) == 7.0 and min(thinned) == y.min()
+    assert np.all(np.diff(samples) > 0) and samples[int(np.argmax(thinned))] == 54_321
+    samples, thinned = thin(np.negative, y[:3], most=50)
+    assert samples.tolist() == [0, 1, 2] and thinned == (-y[:3]).tolist()
     marks = [Mark(0.5, "a < b"), Mark(9.0, "outside")]
     drawing = paint(Chart("t", Axis("x"), Axis("y"), [Series("one", [0, 1], [0, 1])], marks))
     titles = [one.text for one in ElementTree.fromstring(drawing).iter(f"{SVG}title")]

@@ -39,6 +39,14 @@ class Work:
         self.failed, self.is_running = error, False
 
 
+def until(holds: Callable[[], bool]) -> None:
+    """Wait for something, however busy the machine is."""
+    end = time.monotonic() + 60
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
 @pytest.fixture
 def engine() -> Iterator[Engine]:
     found = Engine(Metrics(), lambda: None)
@@ -58,10 +66,7 @@ def test_paced_benches_keep_their_rate_beside_a_free_one(engine: Engine) -> None
             work.tick == pytest.approx(ticks, rel=0.05) for work, ticks in zip(works[:4], due, strict=True)
         )
 
-    end = time.monotonic() + 60
-    while not keep_up():
-        assert time.monotonic() < end, [work.tick for work in works]
-        time.sleep(0.05)
+    until(keep_up)
     assert works[4].tick > 10 * 512
 
 
@@ -75,7 +80,7 @@ def test_a_job_is_done_between_two_slices_and_its_result_awaited(engine: Engine)
 
     tick, waited = asyncio.run(ask())
     assert tick % 512 == 0
-    assert waited < 2.0
+    assert waited < 30.0
 
 
 def test_a_job_is_done_while_nothing_runs(engine: Engine) -> None:
@@ -90,11 +95,11 @@ def test_a_failure_stops_that_bench_alone(engine: Engine) -> None:
     bad.breaks_at = 1000
     engine.submit(engine.add, good).result(5)
     engine.submit(engine.add, bad).result(5)
-    time.sleep(0.4)
+    until(lambda: bad.failed is not None)
     assert isinstance(bad.failed, RuntimeError)
     before = good.tick
-    time.sleep(0.1)
-    assert good.tick > before and good.failed is None
+    until(lambda: good.tick > before)
+    assert good.failed is None
     assert engine.is_alive
 
 

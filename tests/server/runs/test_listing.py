@@ -89,7 +89,7 @@ def test_a_figure_that_one_run_lacks_has_no_difference(live: Any) -> None:
 
 
 def test_runs_that_have_ended_are_removed_with_their_files(serve: Any) -> None:
-    with serve(max_run_mb=4000) as live:
+    with serve() as live:
         runs = [start(live, seed) for seed in (1, 2, 3)]
         folders = {one["id"]: live.service.settings.data / "runs" / one["id"] for one in runs}
         assert all(folder.is_dir() for folder in folders.values())

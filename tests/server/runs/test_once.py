@@ -37,8 +37,8 @@ def handed(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
 
     def count(self: Processes, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Any:
         tasks = {"compute": arguments[:1], "compute_traced": ([arguments[1]],) if len(arguments) > 1 else ()}
-        for _, document, seed in (task for some in tasks.get(function.__name__, ()) for task in some):
-            found.append((document.get("controller", {}).get("kind", ""), seed))
+        for _, point, seed in (task for some in tasks.get(function.__name__, ()) for task in some):
+            found.append((point.document.get("controller", {}).get("kind", ""), seed))
         return submit(self, function, *arguments, **named)
 
     monkeypatch.setattr(Processes, "submit", count)
@@ -145,7 +145,7 @@ def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(tmp_pat
 
 def test_a_run_that_is_cancelled_in_mid_tick_goes_on_from_there(tmp_path: Path) -> None:
     """What is in the table stays, no file does, and nobody waits for the seed under way."""
-    with serving(tmp_path, max_run_mb=4000) as live:
+    with serving(tmp_path) as live:
         run_id = live.http.post(RUNS, json={**LONG, "set": {"samples": 400_000}}).json()["id"]
         until(lambda: len(rows(tmp_path)) >= 1)
         assert 0.0 < until_running(live, run_id)["progress"] < 1.0

@@ -11,9 +11,14 @@ from websockets.sync.client import connect
 from server.stream.wire import SUBPROTOCOL
 
 OPEN = {
-    "/health/live": "a container's health check has no token, and it tells only which parts are well",
-    "/health/ready": "the same",
+    ("GET", "/health/live"): (200, "a container's health check has no token; it tells only which parts are well"),
+    ("GET", "/health/ready"): (200, "the same"),
+    ("GET", "/join"): (200, "the page that asks for the code of a class"),
+    ("POST", "/join"): (403, "the code of a class opens it"),
+    ("POST", "/api/v1/classes/class_id/join"): (422, "the same for programs"),
+    ("GET", "/watch/link"): (404, "the link itself is the secret"),
 }
+"""Doors that need no token, what a stranger with nothing gets there, and why."""
 
 
 def routes(app: Any) -> list[Any]:
@@ -36,15 +41,15 @@ def test_every_route_refuses_a_stranger(live: Any) -> None:
                 headers = {"Origin": live.address}
                 answer = stranger.request(method, path, headers=headers)
                 checked.add((method, path))
-                if path in OPEN:
-                    assert answer.status_code == 200, path
+                if (method, path) in OPEN:
+                    assert answer.status_code == OPEN[method, path][0], path
                     continue
                 assert answer.status_code == 401, (method, path)
                 if method != "HEAD":
                     error = answer.json()["error"]
                     assert error["code"] == "unauthorised" and "token" in error["message"]
     assert len(checked) > 30
-    assert set(OPEN) <= {path for _, path in checked}
+    assert set(OPEN) <= checked
 
 
 @pytest.mark.parametrize("path", ["/", "/some/page", "/api/v1/nothing", "/assets/x.js", "/metrics"])
@@ -59,7 +64,8 @@ def test_the_refusal_tells_a_person_what_this_is_and_how_to_get_in(live: Any) ->
         answer = stranger.get("/?scenario=first-look&a=%22%3E%3Cb%3E", headers=html)
         wrong = stranger.get("/?token=%3Cscript%3E", headers=html)
     assert answer.status_code == wrong.status_code == 401
-    assert "comb resonators" in answer.text and "Ask whoever runs it" in answer.text
+    assert "<main>" in answer.text and answer.text.endswith("</main>\n")
+    assert "comb resonators" in answer.text and "Ask the person who runs it" in answer.text
     assert '<input type="hidden" name="scenario" value="first-look">' in answer.text
     assert 'value="&quot;&gt;&lt;b&gt;"' in answer.text and "<b>" not in answer.text
     assert answer.headers["content-type"].startswith("text/html")

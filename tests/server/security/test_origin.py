@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from base64 import b64encode
+from hashlib import sha256
 from typing import Any
 
 import pytest
@@ -117,11 +120,20 @@ def test_every_response_carries_the_security_headers(live: Any) -> None:
             stranger.get("/"),
             stranger.get("/", headers={"Host": "evil.example"}),
         ]
+        stranger_page = stranger.get("/", headers={"Accept": "text/html"})
     for answer in answers:
         policy = answer.headers["content-security-policy"]
         assert "script-src 'self';" in policy and "frame-ancestors 'none'" in policy
         assert "unsafe-eval" not in policy
+        elements = policy.partition("style-src-elem ")[2].partition(";")[0]
+        assert "'self' 'nonce-" in elements and "unsafe-inline" not in elements
         assert answer.headers["x-content-type-options"] == "nosniff"
         assert answer.headers["referrer-policy"] == "no-referrer"
+    # each answer has a nonce of its own, which the page tells its libraries; the plain pages are known by their hash
+    nonces = [re.findall(r"'nonce-([^']{16,})'", answer.headers["content-security-policy"]) for answer in answers]
+    assert len({nonce for (nonce,) in nonces}) == len(answers)
+    assert f'<meta name="nonce" content="{nonces[2][0]}">' in answers[2].text
+    style = re.findall(r"<style>(.*?)</style>", stranger_page.text, re.DOTALL)[0]
+    assert b64encode(sha256(style.encode()).digest()).decode() in stranger_page.headers["content-security-policy"]
     page = live.http.get(f"/benches/{bench['id']}/3d/")
     assert "frame-ancestors 'self'" in page.headers["content-security-policy"]

@@ -70,14 +70,13 @@ class Here(httpx.HTTPTransport):
 
 @pytest.fixture(scope="module", params=["", "/bench"], ids=["root", "path"])
 def lab(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    free = socket.create_server(("127.0.0.1", 0))  # kept until nginx takes its port
+    port = free.getsockname()[1]
     public = f"https://{NAME}:{port}{request.param}"
-    with (
-        serving(tmp_path_factory.mktemp("proxied"), public_origin=public) as live,
-        nginx(port, live.http.base_url.port, request.param) as folder,
-    ):
-        yield Lab(live, folder, port, request.param)
+    with serving(tmp_path_factory.mktemp("proxied"), public_origin=public) as live:
+        free.close()
+        with nginx(port, {request.param: live.http.base_url.port}) as folder:
+            yield Lab(live, folder, port, request.param)
 
 
 def test_the_printed_address_lets_in_by_tls_alone(lab: Lab) -> None:

@@ -112,7 +112,7 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
         found = broken_off(live, bench, started["id"])
         assert found["state"] == "cut_short" and "File too large" in found["reason"]
         is_whole(live, found)
-        run = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", "set": {"samples": 9000}}).json()
+        run = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", "set": {"samples": 30_000}}).json()
         ended = until(lambda: (one := live.http.get(f"/api/v1/runs/{run['id']}").json())["finished"] and one, 60)
         assert ended["state"] == "failed" and ended["error"]["code"] == "no_space", ended
         assert live.get(bench["id"])["state"] == "running"

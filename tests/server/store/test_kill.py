@@ -31,11 +31,10 @@ def truth(ticks: int) -> Any:
     return run(with_values(get("first-look"), {"samples": ticks})).signal(SIGNAL).astype(np.float32)
 
 
-def record_and_kill(served: Served, moments: random.Random) -> tuple[str, int, float]:
-    """Record for a while, sometimes stop, and kill; return the recording, a tick seen just before, and the time."""
+def record_and_kill(served: Served, moments: random.Random) -> tuple[str, int]:
+    """Record for a while, sometimes stop, and kill; return the recording, and a tick seen just before."""
     bench = served.http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": PACE}).json()
     path = f"/api/v1/benches/{bench['id']}/recordings"
-    began = time.monotonic()
     recording = served.http.post(path, json={"name": "to be killed"}).json()
     time.sleep(moments.uniform(0.0, 1.2))
     if moments.random() < 0.3:  # while its file is made whole
@@ -55,10 +54,10 @@ def record_and_kill(served: Served, moments: random.Random) -> tuple[str, int, f
     else:
         tick = served.http.get(f"/api/v1/benches/{bench['id']}").json()["tick"]
         served.kill()
-    return recording["id"], tick, time.monotonic() - began
+    return recording["id"], tick
 
 
-def check(served: Served, recording_id: str, tick: int, seconds: float, expected: Any) -> int:
+def check(served: Served, recording_id: str, tick: int, expected: Any) -> int:
     """What is left of a recording: no more than a second is missing, every tick is right. Returns what is missing."""
     found = served.http.get(f"/api/v1/recordings/{recording_id}").json()
     assert found["state"] in ("aborted", "done") and found["finished"], found
@@ -66,8 +65,7 @@ def check(served: Served, recording_id: str, tick: int, seconds: float, expected
     lost = max(0, tick - last)
     assert lost <= PER_SECOND, f"{lost} ticks of {tick} are lost"
     trace = served.http.get(f"/api/v1/recordings/{recording_id}/trace")
-    if not found["ticks"] and trace.status_code == 404:
-        assert seconds < 1.5, "so long a recording has left no file"
+    if not found["ticks"] and trace.status_code == 404:  # of less than a second of ticks there may be no file
         return lost
     table = pq.read_table(io.BytesIO(trace.content))
     assert table["tick"].to_pylist() == list(range(found["start_tick"], last))
@@ -82,7 +80,7 @@ def check(served: Served, recording_id: str, tick: int, seconds: float, expected
 def test_a_server_killed_while_it_records_loses_a_second_at_most(tmp_path: Path, times: int) -> None:
     data, moments, expected = tmp_path / "data", random.Random(times), truth(6000)
     lost: list[int] = []
-    last: tuple[str, int, float] | None = None
+    last: tuple[str, int] | None = None
     with forks(tmp_path / "log") as loaded:
         for _ in range(times):
             with loaded.serve(data) as served:

@@ -1,4 +1,4 @@
-"""The data folder of a version that left it open to others."""
+"""Who may read what is stored: a data folder that a version left open to others, and what errors say."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from sqlalchemy import text
+from sqlalchemy.exc import OperationalError
 
+from server.store.database import Database
 from server.store.privacy import keep_private
 
 
@@ -51,3 +54,14 @@ def test_what_belongs_to_another_user_is_told_and_no_reason_not_to_start(
     monkeypatch.setattr(Path, "chmod", refuse)
     keep_private(tmp_path)
     assert f"{tmp_path / 'runs'} may be read by others" in caplog.text
+
+
+def test_an_error_of_the_database_does_not_quote_what_was_to_be_stored(tmp_path: Path) -> None:
+    """Such errors are logged."""
+    database = Database(tmp_path / "x.sqlite3")
+    with pytest.raises(OperationalError) as caught:
+        database.transact(
+            lambda session: session.execute(text("INSERT INTO nowhere VALUES (:name)"), {"name": "canary"})
+        )
+    database.close()
+    assert "nowhere" in str(caught.value) and "canary" not in str(caught.value)

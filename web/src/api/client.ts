@@ -1,5 +1,6 @@
 import createClient from "openapi-fetch";
 import type { paths } from "./schema";
+import { sessionHeaders } from "./session";
 import type { ApiErrorBody } from "./types";
 
 const OFFLINE: ApiErrorBody = { code: "offline", message: "The server does not answer.", field: "", hint: "" };
@@ -8,6 +9,7 @@ const OFFLINE: ApiErrorBody = { code: "offline", message: "The server does not a
 export const client = createClient<paths>({ baseUrl: ".", fetch: reach });
 
 async function reach(request: Request): Promise<Response> {
+  for (const [name, value] of Object.entries(sessionHeaders())) request.headers.set(name, value);
   try {
     return await fetch(request);
   } catch {

@@ -197,13 +197,13 @@ export interface paths {
         };
         /**
          * List Benches
-         * @description List the live benches.
+         * @description List the live benches, without those of students, which are listed with their class; to them, their own.
          */
         get: operations["list_benches_api_v1_benches_get"];
         put?: never;
         /**
          * Create Bench
-         * @description Make a bench and let it run.
+         * @description Make a bench and let it run; a student's takes the place of the one before.
          */
         post: operations["create_bench_api_v1_benches_post"];
         delete?: never;
@@ -746,7 +746,7 @@ export interface paths {
         };
         /**
          * List Recordings
-         * @description List all recordings, of benches that are gone as well.
+         * @description List all recordings, of benches that are gone as well; to a student those of the own benches.
          */
         get: operations["list_recordings_api_v1_recordings_get"];
         put?: never;
@@ -1459,6 +1459,941 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/lectures": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Lectures
+         * @description List the lectures.
+         */
+        get: operations["list_lectures_api_v1_lectures_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/lectures/{lecture_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Lecture
+         * @description Return a lecture: its cues with the notes of the speaker.
+         */
+        get: operations["get_lecture_api_v1_lectures__lecture_id__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/lectures/{lecture_id}/cues/{number}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Put Cue
+         * @description Put a bench into the exact state of a cue, counted from 1; a cue that has a length runs from there to its end.
+         */
+        post: operations["put_cue_api_v1_lectures__lecture_id__cues__number__post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Me
+         * @description Say who is asking; a student whose bench is not there gets it here.
+         */
+        get: operations["get_me_api_v1_me_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/hand": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Raise Hand
+         * @description Raise a hand, or take it down; the teacher sees it.
+         */
+        put: operations["raise_hand_api_v1_me_hand_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Classes
+         * @description List the classes.
+         */
+        get: operations["list_classes_api_v1_classes_get"];
+        put?: never;
+        /**
+         * Open Class
+         * @description Open a class; its code is in the answer.
+         */
+        post: operations["open_class_api_v1_classes_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Class
+         * @description Describe a class.
+         */
+        get: operations["get_class_api_v1_classes__class_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * End Class
+         * @description End a class: its sessions and benches, the names of its students and what they did are gone.
+         */
+        delete: operations["end_class_api_v1_classes__class_id__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/code": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Make Code
+         * @description Let students join by a new code; an earlier one ends.
+         */
+        post: operations["make_code_api_v1_classes__class_id__code_post"];
+        /**
+         * End Code
+         * @description Let nobody else join; who is there stays.
+         */
+        delete: operations["end_code_api_v1_classes__class_id__code_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/join": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Join Class
+         * @description Join a class by its code.
+         */
+        post: operations["join_class_api_v1_classes__class_id__join_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/members": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Members
+         * @description Show every student: name, bench, state, verdict beside truth, a small trace.
+         */
+        get: operations["list_members_api_v1_classes__class_id__members_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/members/{member_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Remove Member
+         * @description Send a student away: the session ends at once, the bench is closed.
+         */
+        delete: operations["remove_member_api_v1_classes__class_id__members__member_id__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/commands": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Command All
+         * @description Carry out a command on the benches of all students or of some, each at its own next tick edge, whoever drives.
+         */
+        post: operations["command_all_api_v1_classes__class_id__commands_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/scenario": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Begin Scenario
+         * @description Begin a scenario on the benches of all students; who joins later begins with it too.
+         */
+        post: operations["begin_scenario_api_v1_classes__class_id__scenario_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/shown": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Show Bench
+         * @description Show a bench to all students of a class; they see it, change nothing, and keep their own benches.
+         */
+        put: operations["show_bench_api_v1_classes__class_id__shown_put"];
+        post?: never;
+        /**
+         * End Showing
+         * @description Let the students of a class see their own benches again.
+         */
+        delete: operations["end_showing_api_v1_classes__class_id__shown_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/layout": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Give Layout
+         * @description Arrange the panels of all students of a class; each can go back to the own layout.
+         */
+        put: operations["give_layout_api_v1_classes__class_id__layout_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/layout": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Layout
+         * @description Return the layout that the class of a student was given last.
+         */
+        get: operations["get_layout_api_v1_me_layout_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/members/{member_id}/hand": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Lower Hand
+         * @description Take down the hand of a student.
+         */
+        delete: operations["lower_hand_api_v1_classes__class_id__members__member_id__hand_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/start": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Start All
+         * @description Start the benches of all students or of some together, from tick 0.
+         *
+         *     A bench that does not stand there already is reset. When all stand, they begin between the same two slices of the
+         *     engine: those of the same time scale are at the same tick from then on.
+         */
+        post: operations["start_all_api_v1_classes__class_id__start_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/driving": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Change Driver
+         * @description Change who drives a bench, or ask for it.
+         */
+        post: operations["change_driver_api_v1_benches__bench_id__driving_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/blind": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Blind
+         * @description Say what is asked on a bench, and what was answered.
+         */
+        get: operations["get_blind_api_v1_benches__bench_id__blind_get"];
+        put?: never;
+        /**
+         * Hide Fault
+         * @description Hide a fault on a bench, or none; its doors serve no more than may be seen until it is answered.
+         */
+        post: operations["hide_fault_api_v1_benches__bench_id__blind_post"];
+        /**
+         * Give Up
+         * @description Show what was hidden without an answer.
+         */
+        delete: operations["give_up_api_v1_benches__bench_id__blind_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/blind/answer": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Answer
+         * @description Say what the device is; what was hidden is in the answer, and served from then on.
+         */
+        post: operations["answer_api_v1_benches__bench_id__blind_answer_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/blind": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Class Blind
+         * @description List what was hidden in a class and what was answered, with the truth.
+         */
+        get: operations["get_class_blind_api_v1_classes__class_id__blind_get"];
+        put?: never;
+        /**
+         * Hide For Class
+         * @description Give students a new bench each, with a device and a hidden fault of their own.
+         */
+        post: operations["hide_for_class_api_v1_classes__class_id__blind_post"];
+        /**
+         * Reveal Class
+         * @description Show all students of a class what was hidden from them; who has not answered gets no points.
+         */
+        delete: operations["reveal_class_api_v1_classes__class_id__blind_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/votes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Votes
+         * @description List the votes: one of each class, and one by hands.
+         */
+        get: operations["list_votes_api_v1_votes_get"];
+        put?: never;
+        /**
+         * Open Vote
+         * @description Ask a class, or the room; one vote of a class is open at a time.
+         */
+        post: operations["open_vote_api_v1_votes_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/votes/{vote_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Vote
+         * @description Return a vote; until it is revealed only how many have voted.
+         */
+        get: operations["get_vote_api_v1_votes__vote_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Remove Vote
+         * @description Take a vote back; its ballots are gone.
+         */
+        delete: operations["remove_vote_api_v1_votes__vote_id__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/votes/{vote_id}/close": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Close Vote
+         * @description Take no more answers.
+         */
+        post: operations["close_vote_api_v1_votes__vote_id__close_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/votes/{vote_id}/reveal": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Reveal Vote
+         * @description Close a vote and show how many said what.
+         */
+        post: operations["reveal_vote_api_v1_votes__vote_id__reveal_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/votes/{vote_id}/hands": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Count Hands
+         * @description Take the hands that were counted in the room.
+         */
+        put: operations["count_hands_api_v1_votes__vote_id__hands_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/vote": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Cast
+         * @description Answer the vote of one's class, or change one's answer.
+         */
+        put: operations["cast_api_v1_me_vote_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/watchers": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Watchers
+         * @description List the links to watch the bench.
+         */
+        get: operations["list_watchers_api_v1_benches__bench_id__watchers_get"];
+        put?: never;
+        /**
+         * Make Watcher
+         * @description Make a link to watch the bench.
+         */
+        post: operations["make_watcher_api_v1_benches__bench_id__watchers_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/watchers/{watcher_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * End Watcher
+         * @description End a link to watch; pages that it opened are closed.
+         */
+        delete: operations["end_watcher_api_v1_benches__bench_id__watchers__watcher_id__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Sheets
+         * @description List the sheets.
+         */
+        get: operations["list_sheets_api_v1_sheets_get"];
+        put?: never;
+        /**
+         * Open Sheet
+         * @description Open a sheet of one's own; one that is not right is refused with its line and field.
+         */
+        post: operations["open_sheet_api_v1_sheets_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sheet
+         * @description Show a sheet as far as who asks has come.
+         */
+        get: operations["get_sheet_api_v1_sheets__sheet_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Sheet
+         * @description Delete a sheet that somebody opened, and what was done at it.
+         */
+        delete: operations["delete_sheet_api_v1_sheets__sheet_id__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/begin": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Begin Sheet
+         * @description Begin a sheet, or go on with it on a new bench; answers stay.
+         */
+        post: operations["begin_sheet_api_v1_sheets__sheet_id__begin_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Start Over
+         * @description Forget one's own answers at a sheet.
+         */
+        delete: operations["start_over_api_v1_sheets__sheet_id__progress_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/steps/{step_id}/answer": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Answer Step
+         * @description Answer the step that is open.
+         */
+        post: operations["answer_step_api_v1_sheets__sheet_id__steps__step_id__answer_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/steps/{step_id}/hint": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take Hint
+         * @description Take the next hint, for the points that it costs.
+         */
+        post: operations["take_hint_api_v1_sheets__sheet_id__steps__step_id__hint_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/steps/{step_id}/close": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Close Step
+         * @description Close the step that is open with what it has earned; the right answer is told.
+         */
+        post: operations["close_step_api_v1_sheets__sheet_id__steps__step_id__close_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/recordings/{recording_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Add Recording
+         * @description Hand a recording of one's own in with the sheet.
+         */
+        put: operations["add_recording_api_v1_sheets__sheet_id__recordings__recording_id__put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Report
+         * @description Return the sheet to hand in: text, answers, points and reasons in one HTML file.
+         */
+        get: operations["get_report_api_v1_sheets__sheet_id__report_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/sheet": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Begin For All
+         * @description Begin a sheet with all students of a class, also those who join later, or with some; each gets its bench.
+         */
+        post: operations["begin_for_all_api_v1_classes__class_id__sheet_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/grades": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Grades
+         * @description Return points, answers and reasons of all students, by student, sheet and step.
+         */
+        get: operations["get_grades_api_v1_classes__class_id__grades_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/sheets/{sheet_id}/{member_id}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Report Of
+         * @description Return the sheet of a student.
+         */
+        get: operations["get_report_of_api_v1_classes__class_id__sheets__sheet_id___member_id__report_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Class Audit
+         * @description List what people did in a class.
+         */
+        get: operations["get_class_audit_api_v1_classes__class_id__audit_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Bench Audit
+         * @description List what people did to a bench, also to one that is gone.
+         */
+        get: operations["get_bench_audit_api_v1_benches__bench_id__audit_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/health/live": {
         parameters: {
             query?: never;
@@ -1645,6 +2580,87 @@ export interface components {
             pairs_named: components["schemas"]["NamedPair"][];
         };
         /**
+         * Answer
+         * @description A hidden fault, and what somebody said of it.
+         */
+        Answer: {
+            /** Id */
+            id: string;
+            /**
+             * Exercise
+             * @description Shared by the students of a class who were asked at once; empty: alone
+             */
+            exercise: string;
+            /** Class Id */
+            class_id: string;
+            /** Person Id */
+            person_id: string;
+            /** Name */
+            name: string;
+            /** Bench */
+            bench: string;
+            /** Title */
+            title: string;
+            /**
+             * Seed
+             * @description Of somebody alone: the same one hides the same fault
+             */
+            seed: number | null;
+            /**
+             * State
+             * @default hidden
+             * @enum {string}
+             */
+            state?: "hidden" | "answered" | "revealed";
+            /** Said */
+            said?: string | null;
+            /** Confidence */
+            confidence?: number | null;
+            /**
+             * Points
+             * @default 0
+             */
+            points?: number;
+            /** Truth */
+            truth: string;
+            /**
+             * Factors
+             * @description How each answer differs from the nominal device
+             */
+            factors: {
+                [key: string]: {
+                    [key: string]: number;
+                };
+            };
+            /**
+             * Came Tick
+             * @description When the fault came; null for a healthy device
+             */
+            came_tick: number | null;
+            /** Ended Tick */
+            ended_tick?: number | null;
+            /**
+             * Took Ms
+             * @description Device time from the fault to the answer; null: none had come
+             */
+            took_ms?: number | null;
+            /**
+             * Verdicts
+             * @description What each diagnoser said then
+             * @default {}
+             */
+            verdicts?: {
+                [key: string]: string;
+            };
+            /**
+             * Began
+             * Format: date-time
+             */
+            began: string;
+            /** Ended */
+            ended?: string | null;
+        };
+        /**
          * Applied
          * @description What a set has changed on a bench.
          */
@@ -1656,6 +2672,67 @@ export interface components {
              * @description Paths of the set that this bench does not have
              */
             left_out: string[];
+        };
+        /**
+         * Asked
+         * @description The question of a vote.
+         */
+        Asked: {
+            /** Text */
+            text: string;
+            /**
+             * Answers
+             * @description Names of hypotheses where lanes are asked for
+             */
+            answers: string[];
+            /**
+             * Diagnoser
+             * @description Whose lanes are the answers; empty where they are plain words
+             */
+            diagnoser: string;
+            /** @description Device time within which a moment is guessed, too */
+            when: components["schemas"]["Span"] | null;
+        };
+        /**
+         * AuditEntry
+         * @description One thing that somebody did.
+         */
+        AuditEntry: {
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /** Actor */
+            actor: string;
+            /** Class Id */
+            class_id: string | null;
+            /** Bench Id */
+            bench_id: string | null;
+            /** Tick */
+            tick: number | null;
+            /** Kind */
+            kind: string;
+            /** Text */
+            text: string;
+        };
+        /**
+         * AuditList
+         * @description What people did, newest first.
+         */
+        AuditList: {
+            /** Entries */
+            entries: components["schemas"]["AuditEntry"][];
+        };
+        /**
+         * Ballot
+         * @description What somebody answered.
+         */
+        Ballot: {
+            /** Answer */
+            answer: number;
+            /** At Ms */
+            at_ms: number | null;
         };
         /**
          * Bench
@@ -1755,6 +2832,8 @@ export interface components {
              * @default 0
              */
             watchers?: number;
+            /** @description Who is there; null while it is one person */
+            company?: components["schemas"]["Company"] | null;
             /**
              * Loop Lag Ms
              * @description 99th percentile of the event loop's lateness, last minute
@@ -1832,6 +2911,8 @@ export interface components {
             recorded_scale?: number | null;
             /** @description The experiment it was opened from, if it was */
             opened?: components["schemas"]["Opened"] | null;
+            /** @description Asked while a fault is hidden here; little else is served then */
+            blind?: components["schemas"]["server__bench__blind__Question"] | null;
             /**
              * Keep
              * @description It is never let go
@@ -1851,6 +2932,42 @@ export interface components {
         BenchList: {
             /** Benches */
             benches: components["schemas"]["Bench"][];
+        };
+        /**
+         * BlindClass
+         * @description What was hidden from the students of a class, and what they answered.
+         */
+        BlindClass: {
+            /** Rule */
+            rule: string;
+            /**
+             * Hidden
+             * @description How many have not answered yet
+             */
+            hidden: number;
+            /**
+             * Answers
+             * @description Oldest first, those that are hidden still among them
+             */
+            answers: components["schemas"]["Answer"][];
+        };
+        /**
+         * Blindness
+         * @description What is hidden on a bench, and what was answered before.
+         */
+        Blindness: {
+            /** @description Null while nothing is hidden */
+            question: components["schemas"]["server__bench__blind__Question"] | null;
+            /**
+             * Rule
+             * @description How points are counted
+             */
+            rule: string;
+            /**
+             * Answers
+             * @description Oldest first, each with the truth
+             */
+            answers: components["schemas"]["Answer"][];
         };
         /**
          * BlockCard
@@ -1993,6 +3110,65 @@ export interface components {
             only?: string;
         };
         /**
+         * Class
+         * @description A class as the teacher sees it.
+         */
+        Class: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /**
+             * Scenario
+             * @description What the benches of new students begin with
+             */
+            scenario: string;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /**
+             * Until
+             * Format: date-time
+             * @description When it ends, and its students are forgotten
+             */
+            until: string;
+            /** Students */
+            students: number;
+            /**
+             * Shown
+             * @description The bench that all students see now; null: each sees the own one
+             */
+            shown?: string | null;
+            /**
+             * Code
+             * @description As it stands on the wall; null: nobody can join, or it has to be made anew
+             */
+            code: string | null;
+            /** Code Until */
+            code_until: string | null;
+            /**
+             * Path
+             * @description Path of the address by which students join
+             */
+            path: string | null;
+            /**
+             * Addresses
+             * @description Whole addresses from elsewhere, likeliest first; none: nobody can come
+             * @default []
+             */
+            addresses?: string[];
+        };
+        /**
+         * ClassList
+         * @description The classes, oldest first.
+         */
+        ClassList: {
+            /** Classes */
+            classes: components["schemas"]["Class"][];
+        };
+        /**
          * CommandResult
          * @description A command that was carried out, and the tick at which it took effect.
          */
@@ -2002,6 +3178,49 @@ export interface components {
             /** Time Ms */
             time_ms: number;
             entry: components["schemas"]["Event"];
+        };
+        /**
+         * Company
+         * @description Who is at a bench that several have open.
+         */
+        Company: {
+            /**
+             * Is Leased
+             * @description Two or more who may drive have it open, so only one of them does
+             */
+            is_leased: boolean;
+            /** @description Who drives; null: whoever does something next */
+            driver: components["schemas"]["Somebody"] | null;
+            /**
+             * Drivers
+             * @description Who is there and may drive
+             */
+            drivers: components["schemas"]["Somebody"][];
+            /**
+             * Asking
+             * @description Who has asked for the bench
+             */
+            asking: components["schemas"]["Somebody"][];
+            /**
+             * Lent By
+             * @description Id of whoever handed it over and may take it back; empty: nobody did
+             */
+            lent_by: string;
+            /**
+             * Watching
+             * @description Names of students who look on
+             */
+            watching: string[];
+            /**
+             * More Watching
+             * @description And so many more
+             */
+            more_watching: number;
+            /**
+             * Links
+             * @description Pages opened by links to watch
+             */
+            links: number;
         };
         /**
          * CompareWith
@@ -2061,6 +3280,26 @@ export interface components {
             only_in_second: string[];
         };
         /**
+         * ConditionView
+         * @description A condition of a step: what is measured, what it is to be.
+         */
+        ConditionView: {
+            /** Label */
+            label: string;
+            /**
+             * Now
+             * @description A dash before the first look
+             */
+            now: string;
+            /**
+             * Wanted
+             * @description Empty if the sheet does not tell
+             */
+            wanted: string;
+            /** Holds */
+            holds: boolean;
+        };
+        /**
          * Content
          * @description What a link leads to: an experiment, a layout of the page, or both.
          */
@@ -2070,6 +3309,35 @@ export interface components {
             layout?: {
                 [key: string]: unknown;
             } | null;
+        };
+        /**
+         * CueDetail
+         * @description A cue: the notes of the speaker, and what is shown of the bench.
+         */
+        CueDetail: {
+            /** Title */
+            title: string;
+            /** Minutes */
+            minutes: number;
+            /** Say */
+            say: string;
+            /** Ask */
+            ask: string;
+            /** See */
+            see: string;
+            /** From Ms */
+            from_ms: number;
+            /** Until Ms */
+            until_ms: number;
+            /** Layout */
+            layout: string | null;
+            /** Panels */
+            panels: string[];
+            /** Signals */
+            signals: string[];
+            /** Window Ms */
+            window_ms: number | null;
+            vote: components["schemas"]["scenarios__lecture__Question"] | null;
         };
         /**
          * Curve
@@ -2263,6 +3531,32 @@ export interface components {
             frequency_hz: number;
             /** Amplitude V */
             amplitude_v: number;
+        };
+        /**
+         * Drives
+         * @description Who is at the bench now.
+         */
+        Drives: {
+            /** @description Null while it is one person */
+            company: components["schemas"]["Company"] | null;
+        };
+        /**
+         * DrivingTurn
+         * @description What is asked for.
+         */
+        DrivingTurn: {
+            /**
+             * Do
+             * @description ask whoever drives for the bench; hand it over to somebody, or refuse who has asked; take it (the teacher, or a student what was lent from the own bench); leave it to whoever does something next
+             * @enum {string}
+             */
+            do: "ask" | "hand_over" | "refuse" | "take" | "leave";
+            /**
+             * To
+             * @description Id of whom it is handed over to, or who is refused
+             * @default
+             */
+            to?: string;
         };
         /**
          * Ended
@@ -2628,6 +3922,19 @@ export interface components {
             lateral_um: number;
         };
         /**
+         * ForAll
+         * @description A command to the benches of a class.
+         */
+        ForAll: {
+            /** Command */
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+            /**
+             * Members
+             * @description Ids of students; null: all of them
+             */
+            members?: string[] | null;
+        };
+        /**
          * ForkFrom
          * @description The start of a fork.
          */
@@ -2714,6 +4021,54 @@ export interface components {
             expectations: components["schemas"]["Expected"][];
         };
         /**
+         * GivenLayout
+         * @description A layout that the teacher has given to a class.
+         */
+        GivenLayout: {
+            /**
+             * Id
+             * @description Another one each time
+             */
+            id: string;
+            /** Name */
+            name: string;
+            /**
+             * Layout
+             * @description As the page writes it; null: the built-in one of its name
+             */
+            layout?: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
+         * GivenView
+         * @description An answer, what it was worth, and why; null while that is not told.
+         */
+        GivenView: {
+            /** Text */
+            text: string;
+            /** Reason */
+            reason: string | null;
+            /** Points */
+            points: number | null;
+        };
+        /**
+         * Hand
+         * @description Whether a hand is up.
+         */
+        Hand: {
+            /** Raised */
+            raised: boolean;
+        };
+        /**
+         * Hands
+         * @description Hands raised in the room, for each answer.
+         */
+        Hands: {
+            /** Counts */
+            counts: number[];
+        };
+        /**
          * Heal
          * @description Take faults away.
          */
@@ -2747,6 +4102,48 @@ export interface components {
             checks: {
                 [key: string]: boolean;
             };
+        };
+        /**
+         * Hide
+         * @description What is hidden on a bench of one's own.
+         */
+        Hide: {
+            /**
+             * Seed
+             * @description The same one hides the same fault, but for students of a class
+             */
+            seed: number;
+            /**
+             * Shows
+             * @description The diagnosers may be looked at: whether to trust them is the question
+             * @default false
+             */
+            shows?: boolean;
+        };
+        /**
+         * HideForAll
+         * @description What the students of a class are asked.
+         */
+        HideForAll: {
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             * @default ch5-seven-step
+             */
+            scenario?: string | {
+                [key: string]: unknown;
+            };
+            /**
+             * Shows
+             * @description The diagnosers may be looked at: whether to trust them is the question
+             * @default false
+             */
+            shows?: boolean;
+            /**
+             * Members
+             * @description Ids of students; null: all of them
+             */
+            members?: string[] | null;
         };
         /**
          * HypothesesSource
@@ -2937,6 +4334,80 @@ export interface components {
             critical_gain_constant: number | null;
         };
         /**
+         * Join
+         * @description What a student gives.
+         */
+        Join: {
+            /** Code */
+            code: string;
+            /** Name */
+            name: string;
+        };
+        /**
+         * Joined
+         * @description A session, for a program: send it as a bearer. Browsers join by the page and get a cookie.
+         */
+        Joined: {
+            /** Id */
+            id: string;
+            /** Session */
+            session: string;
+            /** Bench */
+            bench: string;
+        };
+        /**
+         * LectureCard
+         * @description A lecture among others.
+         */
+        LectureCard: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Chapter */
+            chapter: number;
+            /** Summary */
+            summary: string;
+            /**
+             * Minutes
+             * @description Planned
+             */
+            minutes: number;
+            /** Cues */
+            cues: number;
+        };
+        /**
+         * LectureDetail
+         * @description A lecture with all its cues.
+         */
+        LectureDetail: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Chapter */
+            chapter: number;
+            /** Summary */
+            summary: string;
+            /**
+             * Minutes
+             * @description Planned
+             */
+            minutes: number;
+            /** Cues */
+            cues: number;
+            /** Script */
+            script: components["schemas"]["CueDetail"][];
+        };
+        /**
+         * LectureList
+         * @description The lectures, in the order of the chapters.
+         */
+        LectureList: {
+            /** Lectures */
+            lectures: components["schemas"]["LectureCard"][];
+        };
+        /**
          * Line
          * @description A tone, or a constant at frequency 0.
          */
@@ -3062,6 +4533,32 @@ export interface components {
             end_tick?: number | null;
         };
         /**
+         * MakeSafe
+         * @description Take the outputs to their safe values, as a trip does; says why.
+         */
+        MakeSafe: {
+            /**
+             * At Sample
+             * @description sample at which it takes effect
+             */
+            at_sample?: number | null;
+            /**
+             * At Ms
+             * @description device time at which it takes effect
+             */
+            at_ms?: number | null;
+            /**
+             * When
+             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             */
+            when?: string | null;
+            /**
+             * Make Safe
+             * @description why, in words
+             */
+            make_safe: string;
+        };
+        /**
          * MapSource
          * @description A rule, a plant kv/(b2 s^2 + b1 s + 1), and the axes of the map.
          */
@@ -3147,6 +4644,59 @@ export interface components {
             matrix: number[][];
         };
         /**
+         * Me
+         * @description The person who asks.
+         */
+        Me: {
+            /**
+             * Id
+             * @description As the company of a bench names people
+             */
+            id: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "teacher" | "student" | "watcher";
+            /** Name */
+            name: string;
+            /**
+             * Bench
+             * @description The bench of a student or a watcher; the teacher has all of them
+             */
+            bench: string | null;
+            /**
+             * Class Id
+             * @description The class of a student
+             */
+            class_id?: string | null;
+            /** Class Name */
+            class_name?: string | null;
+            /**
+             * Hand
+             * @description Whether a student has raised a hand
+             * @default false
+             */
+            hand?: boolean;
+            /**
+             * Shown
+             * @description A bench that the teacher shows to all; a student sees it
+             */
+            shown?: string | null;
+            /**
+             * Lent
+             * @description A bench of the teacher that a student was handed, and drives
+             */
+            lent?: string | null;
+            /**
+             * Layout
+             * @description Id of the layout given to all last; /me/layout has it
+             */
+            layout?: string | null;
+            /** @description What the class of a student is asked */
+            vote?: components["schemas"]["OpenVote"] | null;
+        };
+        /**
          * MeasuredPlant
          * @description CPU time of one tick of the whole bench with this plant; null when it cannot have it.
          */
@@ -3183,6 +4733,25 @@ export interface components {
             error_um_per_v: number;
             /** Phase Deg */
             phase_deg: number;
+        };
+        /**
+         * Members
+         * @description The students of a class in the order in which they came, each with a picture of the bench.
+         */
+        Members: {
+            /** Members */
+            members: components["schemas"]["Tile"][];
+        };
+        /**
+         * Minutes
+         * @description How long a code lets students in.
+         */
+        Minutes: {
+            /**
+             * Minutes
+             * @default 120
+             */
+            minutes?: number;
         };
         /**
          * ModelAccount
@@ -3231,6 +4800,24 @@ export interface components {
             second: string;
         };
         /**
+         * NewBallot
+         * @description What a student answers.
+         */
+        NewBallot: {
+            /** Vote */
+            vote: string;
+            /**
+             * Answer
+             * @description Position among the answers
+             */
+            answer: number;
+            /**
+             * At Ms
+             * @description The moment guessed, where one is asked for
+             */
+            at_ms?: number | null;
+        };
+        /**
          * NewBench
          * @description The scenario of a new bench, and how it starts.
          */
@@ -3277,6 +4864,27 @@ export interface components {
             quiet_lead?: boolean;
         };
         /**
+         * NewClass
+         * @description A class, and what the benches of its students begin with.
+         */
+        NewClass: {
+            /** Name */
+            name: string;
+            bench?: components["schemas"]["NewBench"];
+            /**
+             * Hours
+             * @description Until it ends and its students are forgotten
+             * @default 8
+             */
+            hours?: number;
+            /**
+             * Minutes
+             * @description How long the first code lets students in
+             * @default 120
+             */
+            minutes?: number;
+        };
+        /**
          * NewLabel
          * @description A name for a run or a campaign.
          */
@@ -3286,6 +4894,21 @@ export interface components {
              * @description At most 120 characters; empty takes the name away
              */
             label: string;
+        };
+        /**
+         * NewLayout
+         * @description A layout for all.
+         */
+        NewLayout: {
+            /** Name */
+            name: string;
+            /**
+             * Layout
+             * @description As the page writes it; null: the built-in one of this name
+             */
+            layout?: {
+                [key: string]: unknown;
+            } | null;
         };
         /**
          * NewLink
@@ -3352,10 +4975,24 @@ export interface components {
              */
             label?: string;
             /**
+             * All
+             * @description Also run the controllers that never drive, and keep all signals, those of sensors that are never in use as well; no figure and no digest depends on it
+             * @default false
+             */
+            all?: boolean;
+            /**
              * Seeds
              * @description "A:B", both included; earlier scripts send a list of the first seed and the one behind the last, which is read too
              */
             seeds?: (string | number[]) | null;
+        };
+        /**
+         * NewSheet
+         * @description A sheet as Markdown.
+         */
+        NewSheet: {
+            /** Text */
+            text: string;
         };
         /**
          * NewSnapshot
@@ -3386,6 +5023,46 @@ export interface components {
              * @default
              */
             label?: string;
+        };
+        /**
+         * NewVote
+         * @description A question: two to six answers in words, or the hypotheses of a diagnoser, at most twelve.
+         */
+        NewVote: {
+            /**
+             * Class Id
+             * @description Without one, hands are raised in the room
+             */
+            class_id?: string | null;
+            /** Text */
+            text: string;
+            /** Answers */
+            answers: string[];
+            /**
+             * Diagnoser
+             * @description Whose lanes the answers are, by the names of hypotheses
+             * @default
+             */
+            diagnoser?: string;
+            /** @description Within which a moment is guessed, too */
+            when?: components["schemas"]["Span"] | null;
+            /**
+             * Right
+             * @description One of the answers, shown with the votes
+             * @default
+             */
+            right?: string;
+        };
+        /**
+         * NewWatcher
+         * @description How long a link lasts.
+         */
+        NewWatcher: {
+            /**
+             * Hours
+             * @default 4
+             */
+            hours?: number;
         };
         /**
          * NoiseFigure
@@ -3432,6 +5109,40 @@ export interface components {
             pairs: number;
         };
         /**
+         * OnBench
+         * @description The bench that is put into the state of a cue, if it has the same signals.
+         */
+        OnBench: {
+            /**
+             * Bench
+             * @description Without one, a fresh bench is made
+             */
+            bench?: string | null;
+        };
+        /**
+         * OpenVote
+         * @description A vote as a student sees it.
+         */
+        OpenVote: {
+            /** Id */
+            id: string;
+            question: components["schemas"]["Asked"];
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "open" | "closed" | "revealed";
+            /** @description The student's own answer, which can be changed until the vote is closed */
+            mine: components["schemas"]["Ballot"] | null;
+            /**
+             * Results
+             * @description Null until it is revealed
+             */
+            results: components["schemas"]["Result"][] | null;
+            /** Right */
+            right: string | null;
+        };
+        /**
          * Opened
          * @description How a bench came from an experiment that was kept.
          */
@@ -3455,6 +5166,19 @@ export interface components {
              * @description Whether repeating it has given the bits it had then
              */
             same_bits: boolean;
+        };
+        /**
+         * Outcomes
+         * @description What became of something done on many benches.
+         */
+        Outcomes: {
+            /** Done */
+            done: number;
+            /**
+             * Failed
+             * @description Name and reason of each that refused
+             */
+            failed: string[];
         };
         /**
          * Pair
@@ -3586,43 +5310,22 @@ export interface components {
             labels: {
                 [key: string]: string | number;
             };
-            /**
-             * Runs
-             * @default 0
-             */
-            runs?: number;
-            /**
-             * Ok
-             * @default 0
-             */
-            ok?: number;
-            /**
-             * Tripped
-             * @default 0
-             */
-            tripped?: number;
-            /**
-             * Errors
-             * @default []
-             */
-            errors?: string[];
-            /**
-             * Warnings
-             * @default []
-             */
-            warnings?: string[];
-            /**
-             * Metrics
-             * @default {}
-             */
-            metrics?: {
+            /** Runs */
+            runs: number;
+            /** Ok */
+            ok: number;
+            /** Tripped */
+            tripped: number;
+            /** Errors */
+            errors: string[];
+            /** Warnings */
+            warnings: string[];
+            /** Metrics */
+            metrics: {
                 [key: string]: components["schemas"]["Spread"];
             };
-            /**
-             * Diagnosis
-             * @default {}
-             */
-            diagnosis?: {
+            /** Diagnosis */
+            diagnosis: {
                 [key: string]: components["schemas"]["DiagnosisTally"];
             };
         };
@@ -3972,6 +5675,19 @@ export interface components {
             };
         };
         /**
+         * Result
+         * @description What was said for one answer; nobody's name is in it.
+         */
+        Result: {
+            /** Count */
+            count: number;
+            /**
+             * At Ms
+             * @description The moments guessed with it, in order
+             */
+            at_ms: number[];
+        };
+        /**
          * Roc
          * @description Share of faulty samples called faulty against share of healthy ones, as the threshold falls.
          */
@@ -4008,6 +5724,11 @@ export interface components {
             label?: string;
             /** Seeds */
             seeds: number[];
+            /**
+             * All
+             * @description Whether the trace has the signals of blocks that only look on too
+             */
+            all: boolean;
             /**
              * Created
              * Format: date-time
@@ -4091,6 +5812,16 @@ export interface components {
             speed_um_ms: number[];
         };
         /**
+         * Said
+         * @description What somebody takes the device for, and how sure that is.
+         */
+        Said: {
+            /** Said */
+            said: string;
+            /** Confidence */
+            confidence: number;
+        };
+        /**
          * ScenarioCard
          * @description A scenario of the library in a few words.
          */
@@ -4122,6 +5853,11 @@ export interface components {
              * @description Kind of the study; null for a scenario that runs on a bench
              */
             study: string | null;
+            /**
+             * Can Hide
+             * @description Whether a fault can be hidden on its bench, for a class to find
+             */
+            can_hide: boolean;
         };
         /**
          * ScenarioList
@@ -4190,6 +5926,32 @@ export interface components {
             confusion: number[][];
         };
         /**
+         * SectionView
+         * @description A section; of one that is closed only the heading.
+         */
+        SectionView: {
+            /** Heading */
+            heading: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "done" | "open" | "closed";
+            /**
+             * Text
+             * @description Markdown with mathematics between dollar signs
+             * @default
+             */
+            text?: string;
+            step?: components["schemas"]["StepView"] | null;
+            /**
+             * After
+             * @description Shown once the step is done
+             * @default
+             */
+            after?: string;
+        };
+        /**
          * Seek
          * @description Go to a tick of the recording that is played.
          */
@@ -4235,6 +5997,130 @@ export interface components {
         SetName: {
             /** Name */
             name: string;
+        };
+        /**
+         * SheetBrief
+         * @description Somebody's work at a sheet, in brief.
+         */
+        SheetBrief: {
+            /** Sheet */
+            sheet: string;
+            /** Title */
+            title: string;
+            /**
+             * Step
+             * @description The step that is open, counted from 1; the last one when all are done
+             */
+            step: number;
+            /** Steps */
+            steps: number;
+            /** Earned */
+            earned: number;
+            /** Points */
+            points: number;
+            /** Done */
+            done: boolean;
+        };
+        /**
+         * SheetCard
+         * @description A sheet in a list.
+         */
+        SheetCard: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Summary */
+            summary: string;
+            /** Minutes */
+            minutes: number;
+            /** Points */
+            points: number;
+            /** Steps */
+            steps: number;
+            /**
+             * Own
+             * @description Somebody opened it; the others are those of the library
+             */
+            own: boolean;
+            /** @description How far who asks has come */
+            work: components["schemas"]["SheetBrief"] | null;
+        };
+        /**
+         * SheetForAll
+         * @description A sheet for the students of a class.
+         */
+        SheetForAll: {
+            /** Sheet */
+            sheet: string;
+            /**
+             * Members
+             * @description Ids of students; null: all of them
+             */
+            members?: string[] | null;
+        };
+        /**
+         * SheetList
+         * @description The sheets, in the order in which they are taught.
+         */
+        SheetList: {
+            /** Sheets */
+            sheets: components["schemas"]["SheetCard"][];
+            /**
+             * Current
+             * @description The one who asks began last
+             */
+            current: string | null;
+        };
+        /**
+         * SheetView
+         * @description A sheet as somebody sees it.
+         */
+        SheetView: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Summary */
+            summary: string;
+            /** Minutes */
+            minutes: number;
+            /**
+             * Points
+             * @description What it can earn
+             */
+            points: number;
+            /**
+             * Earned
+             * @description What it has earned so far; answers that are wrong may make it less than 0
+             */
+            earned: number;
+            /** Begun */
+            begun: boolean;
+            /** Done */
+            done: boolean;
+            /**
+             * Bench
+             * @description The bench it is about; null: it is not there
+             */
+            bench: string | null;
+            /**
+             * Recordings
+             * @default []
+             */
+            recordings?: string[];
+            /** Intro */
+            intro: string;
+            /** Sections */
+            sections: components["schemas"]["SectionView"][];
+        };
+        /**
+         * Shown
+         * @description The bench that all are to see.
+         */
+        Shown: {
+            /** Bench */
+            bench: string;
         };
         /**
          * Signal
@@ -4312,6 +6198,37 @@ export interface components {
             snapshots: components["schemas"]["Snapshot"][];
         };
         /**
+         * Some
+         * @description Whose benches it concerns.
+         */
+        Some: {
+            /**
+             * Members
+             * @description Ids of students; null: all of them
+             */
+            members?: string[] | null;
+        };
+        /**
+         * Somebody
+         * @description Somebody at a bench.
+         */
+        Somebody: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+        };
+        /**
+         * Span
+         * @description A stretch of device time.
+         */
+        Span: {
+            /** From Ms */
+            from_ms: number;
+            /** Until Ms */
+            until_ms: number;
+        };
+        /**
          * Spread
          * @description A figure over runs; ``std`` is that of a sample.
          */
@@ -4374,6 +6291,20 @@ export interface components {
             p99: number;
         };
         /**
+         * Staged
+         * @description The bench in the state of a cue; a fresh one where the one given has other signals.
+         */
+        Staged: {
+            bench: components["schemas"]["Bench"];
+            /** Tick */
+            tick: number;
+            /**
+             * Digest
+             * @description Of the bits up to this tick; the same each time
+             */
+            digest: string;
+        };
+        /**
          * Start
          * @description Let time run.
          */
@@ -4403,6 +6334,14 @@ export interface components {
             ticks?: number;
         };
         /**
+         * StepAnswer
+         * @description An answer: a number with its unit, or the id of an option.
+         */
+        StepAnswer: {
+            /** Answer */
+            answer: string;
+        };
+        /**
          * StepPeriod
          * @description Pause, then run one period of the drive at once.
          */
@@ -4413,6 +6352,97 @@ export interface components {
              * @constant
              */
             kind?: "step_period";
+        };
+        /**
+         * StepView
+         * @description A step that is open or done.
+         */
+        StepView: {
+            /** Id */
+            id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "hold" | "question" | "prediction" | "blind";
+            /** Points */
+            points: number;
+            /**
+             * Earned
+             * @description Null while it is not told
+             */
+            earned: number | null;
+            /** Lost */
+            lost: number;
+            /**
+             * Rule
+             * @description How it earns and loses points
+             */
+            rule: string;
+            /**
+             * Question
+             * @default
+             */
+            question?: string;
+            /**
+             * Options
+             * @description Answers to choose from: what to send, and its words
+             * @default {}
+             */
+            options?: {
+                [key: string]: string;
+            };
+            /**
+             * Unit
+             * @default
+             */
+            unit?: string;
+            /** Tries Left */
+            tries_left?: number | null;
+            /**
+             * Answers
+             * @default []
+             */
+            answers?: components["schemas"]["GivenView"][];
+            /**
+             * Hints
+             * @description Those taken
+             * @default []
+             */
+            hints?: string[];
+            /** Next Hint Costs */
+            next_hint_costs?: number | null;
+            /**
+             * Conditions
+             * @default []
+             */
+            conditions?: components["schemas"]["ConditionView"][];
+            /**
+             * Held
+             * @description How long the conditions hold, of how long they are to
+             * @default
+             */
+            held?: string;
+            /**
+             * Held Share
+             * @default 0
+             */
+            held_share?: number;
+            /**
+             * Solution
+             * @description Told once the step is done
+             */
+            solution?: string | null;
+            /**
+             * Given Up
+             * @default false
+             */
+            given_up?: boolean;
+            /**
+             * Can Go On
+             * @default false
+             */
+            can_go_on?: boolean;
         };
         /**
          * SweepList
@@ -4469,7 +6499,7 @@ export interface components {
             version: string;
             /**
              * Runs
-             * @description Different runs; until all points have been checked, at most
+             * @description Different runs, as far as is known: points are compared in their turn
              */
             runs: number;
             /**
@@ -4549,6 +6579,70 @@ export interface components {
              * @default false
              */
             cold?: boolean;
+        };
+        /**
+         * Tile
+         * @description A student and the bench, in brief.
+         */
+        Tile: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Hand */
+            hand: boolean;
+            /**
+             * Bench
+             * @description Null until the student's page has asked for it
+             */
+            bench: string | null;
+            /**
+             * Watchers
+             * @description Pages that show the bench, or that the student has open
+             */
+            watchers: number;
+            /** Until */
+            until: string | null;
+            /**
+             * Scenario
+             * @default
+             */
+            scenario?: string;
+            /** State */
+            state?: ("running" | "paused" | "tripped") | null;
+            /**
+             * Time Ms
+             * @default 0
+             */
+            time_ms?: number;
+            /**
+             * Controller
+             * @default
+             */
+            controller?: string;
+            /**
+             * Faults
+             * @default []
+             */
+            faults?: components["schemas"]["ActiveFault"][];
+            /**
+             * Verdicts
+             * @default []
+             */
+            verdicts?: components["schemas"]["Verdict"][];
+            /** @description What was hidden last, and what was answered */
+            blind?: components["schemas"]["Answer"] | null;
+            /** @description The lab sheet begun last */
+            sheet?: components["schemas"]["SheetBrief"] | null;
+            /**
+             * Trace
+             * @description Minimum and maximum of the displacement, um, by column
+             * @default []
+             */
+            trace?: [
+                number,
+                number
+            ][];
         };
         /**
          * TimeScale
@@ -4688,6 +6782,65 @@ export interface components {
             };
         };
         /**
+         * Verdict
+         * @description What a diagnoser says, and what is true.
+         */
+        Verdict: {
+            /** Diagnoser */
+            diagnoser: string;
+            /** Says */
+            says: string | null;
+            /** Truth */
+            truth: string | null;
+            /** Correct Fraction */
+            correct_fraction: number;
+            /**
+             * Factors
+             * @description How these two differ from the nominal device
+             */
+            factors: {
+                [key: string]: {
+                    [key: string]: number;
+                };
+            };
+        };
+        /**
+         * Vote
+         * @description A vote as the teacher sees it: before it is revealed only how many have voted.
+         */
+        Vote: {
+            /** Id */
+            id: string;
+            /** Class Id */
+            class_id: string | null;
+            question: components["schemas"]["Asked"];
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "open" | "closed" | "revealed";
+            /** Voted */
+            voted: number;
+            /**
+             * Results
+             * @description For each answer; null until it is revealed
+             */
+            results: components["schemas"]["Result"][] | null;
+            /**
+             * Right
+             * @description The right answer; null until it is revealed
+             */
+            right: string | null;
+        };
+        /**
+         * VoteList
+         * @description The votes.
+         */
+        VoteList: {
+            /** Votes */
+            votes: components["schemas"]["Vote"][];
+        };
+        /**
          * Wanted
          * @description A recording to make: from now or from a condition on, with some of the past.
          */
@@ -4722,6 +6875,32 @@ export interface components {
             } | null;
         };
         /**
+         * Watcher
+         * @description A link to watch; its address is told once.
+         */
+        Watcher: {
+            /** Id */
+            id: string;
+            /**
+             * Until
+             * Format: date-time
+             */
+            until: string;
+            /**
+             * Path
+             * @description Path of the address; only its hash is kept
+             */
+            path?: string | null;
+        };
+        /**
+         * WatcherList
+         * @description The links to watch a bench.
+         */
+        WatcherList: {
+            /** Watchers */
+            watchers: components["schemas"]["Watcher"][];
+        };
+        /**
          * Words
          * @description What can be changed of a link.
          */
@@ -4730,6 +6909,66 @@ export interface components {
             title?: string | null;
             /** Note */
             note?: string | null;
+        };
+        /**
+         * Question
+         * @description A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers.
+         */
+        scenarios__lecture__Question: {
+            /** Text */
+            text: string;
+            /**
+             * Answers
+             * @description what can be chosen; none where lanes are asked for
+             * @default []
+             */
+            answers?: string[];
+            /**
+             * Diagnoser
+             * @description whose lanes are the answers
+             * @default
+             */
+            diagnoser?: string;
+            /** @description device time within which a moment is guessed, too */
+            when?: components["schemas"]["Span"] | null;
+            /**
+             * Right
+             * @description the right answer, shown with the votes
+             * @default
+             */
+            right?: string;
+        };
+        /**
+         * Question
+         * @description What is told of a hidden fault.
+         */
+        server__bench__blind__Question: {
+            /** Id */
+            id: string;
+            /**
+             * Answers
+             * @description One of these is true, each as likely as the others
+             */
+            answers: string[];
+            /**
+             * Factors
+             * @description How each differs from the nominal device
+             */
+            factors: {
+                [key: string]: number;
+            }[];
+            /**
+             * Shows
+             * @description Diagnosers that may be looked at; none unless the exercise is about trust
+             */
+            shows: string[];
+            /** Began Tick */
+            began_tick: number;
+            /**
+             * By Tick
+             * @description The fault has come by then, if there is one
+             */
+            by_tick: number;
         };
         /**
          * Ack
@@ -4757,7 +6996,18 @@ export interface components {
             /** Id */
             id: string;
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+        };
+        /**
+         * Pong
+         * @description The answer to a ping.
+         */
+        Pong: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "pong";
         };
         /**
          * Rearm
@@ -4888,7 +7138,7 @@ export interface components {
              */
             panel: number;
         };
-        ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Resume"] | components["schemas"]["CommandMessage"];
+        ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Resume"] | components["schemas"]["Pong"] | components["schemas"]["CommandMessage"];
         /**
          * ErrorBody
          * @description An error: one line, the field at fault, a hint.
@@ -4974,11 +7224,56 @@ export interface components {
             type?: "notice";
             /**
              * Code
+             * @description ask_me: what this person sees or may do has changed; /me says how
              * @enum {string}
              */
-            code: "slow_client" | "events_lost" | "shutdown";
+            code: "slow_client" | "events_lost" | "shutdown" | "ask_me";
             /** Message */
             message: string;
+        };
+        /**
+         * Ping
+         * @description Asks the page of whoever drives whether it is there; answered at once by a pong.
+         */
+        Ping: {
+            /**
+             * Type
+             * @default ping
+             * @constant
+             */
+            type?: "ping";
+        };
+        /**
+         * Question
+         * @description What is told of a hidden fault.
+         */
+        Question: {
+            /** Id */
+            id: string;
+            /**
+             * Answers
+             * @description One of these is true, each as likely as the others
+             */
+            answers: string[];
+            /**
+             * Factors
+             * @description How each differs from the nominal device
+             */
+            factors: {
+                [key: string]: number;
+            }[];
+            /**
+             * Shows
+             * @description Diagnosers that may be looked at; none unless the exercise is about trust
+             */
+            shows: string[];
+            /** Began Tick */
+            began_tick: number;
+            /**
+             * By Tick
+             * @description The fault has come by then, if there is one
+             */
+            by_tick: number;
         };
         /**
          * Reply
@@ -5108,6 +7403,11 @@ export interface components {
              */
             watchers?: number;
             /**
+             * @description Who is there; null while it is one person
+             * @default null
+             */
+            company?: components["schemas"]["Company"] | null;
+            /**
              * Loop Lag Ms
              * @description 99th percentile of the event loop's lateness, last minute
              * @default 0
@@ -5139,7 +7439,7 @@ export interface components {
              */
             dropped_frames: number;
         };
-        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"];
+        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
         /**
          * ErrorReply
          * @description The one error shape of every answer.
@@ -5644,7 +7944,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["ResetTrip"];
+                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             };
         };
         responses: {
@@ -7990,6 +10290,1832 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_lectures_api_v1_lectures_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LectureList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_lecture_api_v1_lectures__lecture_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                lecture_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LectureDetail"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    put_cue_api_v1_lectures__lecture_id__cues__number__post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                lecture_id: string;
+                number: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OnBench"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Staged"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_me_api_v1_me_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Me"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    raise_hand_api_v1_me_hand_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Hand"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Me"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_classes_api_v1_classes_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClassList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    open_class_api_v1_classes_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewClass"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Class"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_class_api_v1_classes__class_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Class"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    end_class_api_v1_classes__class_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    make_code_api_v1_classes__class_id__code_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Minutes"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Class"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    end_code_api_v1_classes__class_id__code_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Class"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    join_class_api_v1_classes__class_id__join_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Join"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Joined"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_members_api_v1_classes__class_id__members_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Members"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    remove_member_api_v1_classes__class_id__members__member_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+                member_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    command_all_api_v1_classes__class_id__commands_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ForAll"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Outcomes"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    begin_scenario_api_v1_classes__class_id__scenario_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewBench"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Outcomes"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    show_bench_api_v1_classes__class_id__shown_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Shown"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    end_showing_api_v1_classes__class_id__shown_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    give_layout_api_v1_classes__class_id__layout_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLayout"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_layout_api_v1_me_layout_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["GivenLayout"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    lower_hand_api_v1_classes__class_id__members__member_id__hand_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+                member_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    start_all_api_v1_classes__class_id__start_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Some"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Outcomes"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    change_driver_api_v1_benches__bench_id__driving_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DrivingTurn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Drives"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_blind_api_v1_benches__bench_id__blind_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Blindness"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    hide_fault_api_v1_benches__bench_id__blind_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Hide"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Blindness"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    give_up_api_v1_benches__bench_id__blind_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Answer"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    answer_api_v1_benches__bench_id__blind_answer_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Said"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Answer"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_class_blind_api_v1_classes__class_id__blind_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BlindClass"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    hide_for_class_api_v1_classes__class_id__blind_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HideForAll"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Outcomes"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    reveal_class_api_v1_classes__class_id__blind_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Outcomes"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_votes_api_v1_votes_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VoteList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    open_vote_api_v1_votes_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewVote"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Vote"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_vote_api_v1_votes__vote_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                vote_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Vote"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    remove_vote_api_v1_votes__vote_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                vote_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    close_vote_api_v1_votes__vote_id__close_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                vote_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Vote"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    reveal_vote_api_v1_votes__vote_id__reveal_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                vote_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Vote"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    count_hands_api_v1_votes__vote_id__hands_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                vote_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Hands"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Vote"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    cast_api_v1_me_vote_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewBallot"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OpenVote"] | null;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_watchers_api_v1_benches__bench_id__watchers_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WatcherList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    make_watcher_api_v1_benches__bench_id__watchers_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewWatcher"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Watcher"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    end_watcher_api_v1_benches__bench_id__watchers__watcher_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                watcher_id: string;
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_sheets_api_v1_sheets_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    open_sheet_api_v1_sheets_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewSheet"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sheet_api_v1_sheets__sheet_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    delete_sheet_api_v1_sheets__sheet_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    begin_sheet_api_v1_sheets__sheet_id__begin_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    start_over_api_v1_sheets__sheet_id__progress_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    answer_step_api_v1_sheets__sheet_id__steps__step_id__answer_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+                step_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StepAnswer"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    take_hint_api_v1_sheets__sheet_id__steps__step_id__hint_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+                step_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    close_step_api_v1_sheets__sheet_id__steps__step_id__close_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+                step_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    add_recording_api_v1_sheets__sheet_id__recordings__recording_id__put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+                recording_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_report_api_v1_sheets__sheet_id__report_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    begin_for_all_api_v1_classes__class_id__sheet_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SheetForAll"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Outcomes"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_grades_api_v1_classes__class_id__grades_get: {
+        parameters: {
+            query?: {
+                format?: "json" | "csv";
+            };
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": unknown;
+                    "text/csv": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_report_of_api_v1_classes__class_id__sheets__sheet_id___member_id__report_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                class_id: string;
+                sheet_id: string;
+                member_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_class_audit_api_v1_classes__class_id__audit_get: {
+        parameters: {
+            query?: {
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                class_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_bench_audit_api_v1_benches__bench_id__audit_get: {
+        parameters: {
+            query?: {
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditList"];
                 };
             };
             /** @description Refused or failed */

@@ -7,12 +7,17 @@ export type Account = Schemas["Account"];
 export type ActiveFault = Schemas["ActiveFault"];
 export type AliasReport = Schemas["AliasReport"];
 export type AliasSource = Schemas["AliasSource"];
+export type AuditEntry = Schemas["AuditEntry"];
 export type ApiErrorBody = Schemas["ErrorBody"];
+export type DrivingTurn = Schemas["DrivingTurn"]["do"];
 export type Bode = Schemas["Bode"];
 export type Bench = Schemas["Bench"];
 export type BlockCard = Schemas["BlockCard"];
 export type BodeOf = Schemas["BodeOf"];
 export type Design = Schemas["Design"];
+/** A class. */
+export type Class = Schemas["Class"];
+export type Company = Schemas["Company"];
 export type CompareWith = Schemas["CompareWith"];
 export type Comparison = Schemas["Comparison"];
 export type Device = Schemas["DeviceCard"];
@@ -26,17 +31,22 @@ export type Gallery = Schemas["Gallery"];
 export type GalleryCard = Schemas["GalleryCard"];
 export type ExcitationSource = Schemas["ExcitationSource"];
 export type ExcitationReport = Schemas["ExcitationReport"];
+/** A hidden fault, and what somebody said of it. */
+export type HiddenAnswer = Schemas["Answer"];
 export type Identification = Schemas["Identification"];
 export type InstabilityMap = Schemas["InstabilityMap"];
 export type Link = Schemas["Link"];
 export type LinkWords = Schemas["Words"];
 export type LogEntry = Omit<Schemas["Event"], "command"> & { command?: Command | null };
 export type MapSource = Schemas["MapSource"];
+export type Me = Schemas["Me"];
 export type MeasuredPlant = Schemas["MeasuredPlant"];
 export type ModelAccount = Schemas["ModelAccount"];
 export type NewBench = Schemas["NewBench"];
+export type NewClass = Schemas["NewClass"];
 export type NewLink = Schemas["NewLink"];
 export type NewRun = Schemas["NewRun"];
+export type Outcomes = Schemas["Outcomes"];
 export type Parameter = Schemas["ParameterCard"];
 export type ParameterSet = Schemas["ParameterSet"];
 /** Which points of a campaign are wanted, and in which order. */
@@ -46,17 +56,32 @@ export type PointQuery = NonNullable<
 export type PointTally = Schemas["PointTally"];
 export type PositiveReal = Schemas["PositiveRealReport"];
 export type ProcessSpread = Schemas["ProcessSpread"];
+export type LectureCard = Schemas["LectureCard"];
+export type Lecture = Schemas["LectureDetail"];
+export type Cue = Schemas["CueDetail"];
+export type Vote = Schemas["Vote"];
+export type NewVote = Schemas["NewVote"];
+export type OpenVote = Schemas["OpenVote"];
 export type RateReadout = Schemas["RateReadout"];
+/** What is told of a hidden fault. */
+export type Question = Schemas["Question"];
 export type Recording = Schemas["Recording"];
 export type Run = Schemas["Run"];
 export type ScenarioSummary = Schemas["ScenarioCard"];
 export type RunComparison = Schemas["RunComparison"];
 export type Score = Schemas["Scores"];
+export type SheetBrief = Schemas["SheetBrief"];
+export type SheetCard = Schemas["SheetCard"];
+export type SheetSection = Schemas["SectionView"];
+export type SheetStep = Schemas["StepView"];
+export type SheetView = Schemas["SheetView"];
 export type Signal = Schemas["Signal"];
 export type SweepPoints = Schemas["SweepPoints"];
 export type SweepRun = Schemas["SweepRun"];
 export type SweptSine = Schemas["SweptSine"];
 export type Wanted = Schemas["Wanted"];
+export type Tile = Schemas["Tile"];
+export type Verdict = Schemas["Verdict"];
 export type Trace = Schemas["Trace"];
 export type Turn = Schemas["Turn"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
@@ -81,6 +106,7 @@ export type Command =
   | Schemas["Heal"]
   | Schemas["Set"]
   | Schemas["Switch"]
+  | Schemas["MakeSafe"]
   | Schemas["ResetTrip"]
   | Schemas["Seek"]
   | Schemas["Loop"];

@@ -2,6 +2,8 @@ import { Button, Group } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/client";
+import { may, useMe } from "../api/me";
+import { useLecture } from "../bench/lecture";
 import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
 import { pageInAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
@@ -10,16 +12,20 @@ import { closeReason } from "../stream/close-reason";
 import { EmptyState } from "../ui/empty-state";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
+import { ClassLines } from "./class-lines";
+import { Ended } from "./ended";
 import { comeBack, openFirstBench } from "./first-bench";
+import { follow } from "./follow";
 import { FullServer } from "./full-server";
 import { Header } from "./header/header";
 import { PresentedHeader } from "./header/presented-header";
 import { KeySheet } from "./key-sheet";
 import { LayoutSheet } from "./layout-sheet";
+import { LectureStrip } from "./lecture/lecture-strip";
 import { MineSheet } from "./mine-sheet";
 import { NewBench } from "./new-bench";
 import { OpenedLine } from "./opened-line";
-import { PAGES } from "./pages";
+import { isOffered, PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
@@ -28,6 +34,7 @@ import { StepBar } from "./step-bar";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
 import { useReadingSize } from "./use-reading-size";
+import { VoteCard } from "./vote-card";
 
 interface Failure {
   code: string;
@@ -38,15 +45,20 @@ interface Failure {
 /** The page: a header, a line for what needs to be known, and the panels. */
 export function App() {
   const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
-  const page = useView((s) => s.page);
+  const role = useMe((s) => s.me?.role);
+  const asked = useView((s) => s.page);
+  const page = isOffered(asked, role) ? asked : "bench";
   const noted = useBench((s) => Boolean(s.bench?.opened?.note));
   const silent = useBench((s) => s.connection.staleSince !== undefined);
   const stale = useLasting(silent, 700);
   const Page = PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
   const present = useView((s) => s.present);
+  const lectures = useLecture((s) => s.lecture !== undefined);
   useKeys();
   useReadingSize(phone);
+
+  const loggedOut = useBench((s) => s.connection.phase === "closed" && s.connection.reason?.offer === "login");
 
   const start = useCallback(() => {
     setFailure(undefined);
@@ -58,23 +70,33 @@ export function App() {
     if (gone) comeBack().catch((error: unknown) => setFailure(explain(error)));
   }, [gone]);
 
+  const called = useBench((s) => s.called);
+  useEffect(() => {
+    if (called && useMe.getState().me?.role === "student")
+      follow().catch((error: unknown) => setFailure(explain(error)));
+  }, [called]);
+
   useEffect(() => {
     start();
     const back = () => {
       useView.setState({ page: pageInAddress() });
       const id = benchInAddress();
-      if (id && id !== useBench.getState().bench?.id) showBench(id);
+      if (may("teach") && id && id !== useBench.getState().bench?.id) showBench(id);
     };
     window.addEventListener("popstate", back);
     return () => window.removeEventListener("popstate", back);
   }, [start]);
 
+  if (role && role !== "teacher" && (loggedOut || failure?.code === "unauthorised")) return <Ended role={role} />;
+  if (!role && !failure) return null; // what is shown depends on who looks
   return (
     <div className="page" data-stale={stale} data-present={present}>
       {phone || failure ? null : present ? <PresentedHeader /> : <Header />}
       <ReplayBar />
-      <Banner hints={!phone && !present && page === "bench" && !noted} />
-      {page === "bench" && !present && !failure && <StepBar />}
+      <ClassLines />
+      <Banner hints={!phone && !present && !lectures && page === "bench" && !noted} />
+      {page === "bench" && !present && !lectures && !failure && <StepBar />}
+      <VoteCard />
       <OpenedLine />
       {failure?.code === "too_many_benches" ? (
         <FullServer
@@ -95,6 +117,7 @@ export function App() {
           {!phone && <View3dHost />}
         </div>
       )}
+      {!failure && <LectureStrip />}
       <KeySheet />
       <NewBench />
       <MineSheet />

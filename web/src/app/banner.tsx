@@ -1,6 +1,7 @@
 import { Button, CloseButton } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
 import { type ReactNode, useEffect, useState } from "react";
+import { useMay } from "../api/me";
 import { actions } from "../bench/actions";
 import { showPanel } from "../bench/dock";
 import { showError } from "../bench/send";
@@ -9,6 +10,8 @@ import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
 import styles from "./banner.module.css";
 import { openOwnBench, startAgain, startBeside } from "./first-bench";
+import { tourSeen } from "./tours/run-tour";
+import { OfferTour } from "./tours/tour-list";
 import { useHints } from "./use-hints";
 import { useLasting } from "./use-lasting";
 
@@ -20,7 +23,10 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const blind = useBench((s) => s.blind);
   const tips = useHints();
+  const drives = useMay("drive");
+  const teaches = useMay("teach");
   const lost = useLasting(connection.phase === "waiting" && !connection.reason?.quiet, BLINK_MS);
   // a page that is busy itself hears late, and a line that comes and goes moves all panels
   const silent = useLasting(connection.staleSince !== undefined, BLINK_MS);
@@ -28,8 +34,8 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   if (connection.phase === "closed" && connection.reason)
     return (
       <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
-        {connection.reason.offer === "bench" && <NewStart />}
-        {connection.reason.offer === "reload" && (
+        {connection.reason.offer === "bench" && drives && <NewStart />}
+        {(connection.reason.offer === "reload" || connection.reason.offer === "login") && (
           <Button size="compact-sm" onClick={() => window.location.reload()}>
             Reload
           </Button>
@@ -60,18 +66,38 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
         text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; the panels show the last values before.`}
       >
-        <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
-          Reset the trip
-        </Button>
-        <Button size="compact-sm" variant="default" onClick={actions.forkBeforeTrip}>
-          Fork from before
-        </Button>
-        <Button size="compact-sm" variant="default" onClick={actions.reset}>
-          Start over
-        </Button>
+        {drives && (
+          <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
+            Reset the trip
+          </Button>
+        )}
+        {teaches && (
+          <Button size="compact-sm" variant="default" onClick={actions.forkBeforeTrip}>
+            Fork from before
+          </Button>
+        )}
+        {drives && (
+          <Button size="compact-sm" variant="default" onClick={actions.reset}>
+            Start over
+          </Button>
+        )}
       </Line>
     );
-  if (hints && tips)
+  if (blind)
+    return (
+      <Line
+        tone="warn"
+        title="A fault is hidden here, or none"
+        text="Until you answer, the server hides everything that tells which."
+      >
+        {drives && (
+          <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>
+            Answer
+          </Button>
+        )}
+      </Line>
+    );
+  if (hints && tips && drives)
     return (
       <section className={styles.banner} data-tone="hint" aria-label="Notice">
         <div className={styles.hints}>
@@ -87,6 +113,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
                 </li>
               ))}
             </ul>
+            {teaches && !tourSeen() && <OfferTour />}
             {tips.guided && <Guided {...tips.guided} />}
             {tips.canHide && (
               <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>

@@ -93,6 +93,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "blind", "blind", { within: "faults", inactive: true });
     addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     addTo(api, "lanes", "lanes", { below: "voltage" });
+    addTo(api, "sheet", "sheet", { within: "lanes", inactive: true });
     addTo(api, "events", "events", { within: "lanes", inactive: true });
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });

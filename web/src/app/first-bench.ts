@@ -1,12 +1,14 @@
 import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
 import { ApiError } from "../api/client";
+import { askMe, may, useMe } from "../api/me";
 import type { Bench } from "../api/types";
 import type { SharedLayout } from "../bench/dock";
 import { benchInAddress, inAddress, openBench, openOwn, ownBench, showBench } from "../bench/open-bench";
 import { send } from "../bench/send";
 import { useBench } from "../stream/bench-store";
 import { formatTick } from "../ui/format";
+import { follow } from "./follow";
 import { showShared } from "./layouts";
 
 /** Worth seeing at first sight: the first of these that the library has. */
@@ -15,8 +17,10 @@ const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
 /** Longer than this takes about a second to repeat. */
 const LONG_TICKS = 300_000;
 
-/** Open what the address names: an experiment by its link, or a bench to join; else the bench of this browser. */
+/** Open what the address names: an experiment by its link, or a bench to join; else the bench of this browser. Who is not the teacher has one bench. */
 export async function openFirstBench(): Promise<void> {
+  const { role } = await askMe();
+  if (role !== "teacher") return follow();
   const link = inAddress("link");
   if (link) return openLink(link, true);
   const named = benchInAddress();
@@ -51,7 +55,8 @@ export async function startAgain(scenario: string): Promise<void> {
 export async function startBeside(scenario: string): Promise<void> {
   const { bench } = useBench.getState();
   const made = await api.createBench({ scenario, paused: false, quiet_lead: true });
-  if (bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  // a student's bench before is gone
+  if (may("teach") && bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
   openOwn(made.id);
 }
 
@@ -70,8 +75,9 @@ export async function openOwnBench(): Promise<void> {
     });
 }
 
-/** Show the bench again that the server has closed, if it was only let go; nobody watched it then. */
+/** Show the bench again that the server has closed, if it was only let go: nobody watched it then. A student is given another. */
 export async function comeBack(): Promise<void> {
+  if (!may("teach")) return useMe.getState().me?.role === "student" ? follow() : undefined;
   const id = benchInAddress();
   if (id && (await broughtBack(id))) showBench(id);
 }

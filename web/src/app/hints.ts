@@ -50,7 +50,7 @@ export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
       : axes
         ? { scenario: "gyro-diagnosis", label: "Run four faults, step by step" }
         : { scenario: "ch5-seven-step", label: "Run the seven steps" },
-    canHide: diagnosed && !axes && !hasSteps,
+    canHide: diagnosed && !hasSteps,
   };
 }
 

@@ -1,15 +1,17 @@
 import styles from "./dialogs.module.css";
-import { KEYMAP, LOCAL_KEYS } from "./keymap";
+import { keymap, LOCAL_KEYS } from "./keymap";
 import { SideSheet } from "./side-sheet";
+import { TourList } from "./tours/tour-list";
 
 /** Every key there is. */
 export function KeySheet() {
   return (
     <SideSheet name="keys" title="Keyboard" size={380}>
       {(["Run", "Bench", "Look", "Pages"] as const).map((group) => (
-        <Section key={group} title={group} rows={KEYMAP.filter((b) => b.group === group)} />
+        <Section key={group} title={group} rows={keymap().filter((b) => b.group === group)} />
       ))}
       <Section title="In a panel" rows={LOCAL_KEYS} />
+      <TourList />
     </SideSheet>
   );
 }

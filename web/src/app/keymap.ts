@@ -1,6 +1,9 @@
+import { may, type Right } from "../api/me";
 import { actions } from "../bench/actions";
 import { focusNextGroup } from "../bench/dock";
+import { cueBefore, lectureRuns, nextCue } from "../bench/lecture";
 import type { PageName } from "../bench/view-store";
+import { askCue } from "../bench/vote";
 import { askLatest } from "../bench/why";
 import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
@@ -16,29 +19,77 @@ export interface KeyBinding {
   withControl?: boolean;
   does: string;
   group: "Run" | "Look" | "Bench" | "Pages";
+  /** What one must be allowed for the key to do anything. */
+  needs?: Right;
   run(): void;
 }
 
-/** Every key of the page; the sheet and the listener read the same list. */
-export const KEYMAP: KeyBinding[] = [
-  { key: " ", shown: "Space", does: "run or pause", group: "Run", run: actions.toggle },
-  { key: ".", shown: ".", does: "one tick", group: "Run", run: actions.stepTick },
-  { key: ",", shown: ",", does: "one drive period", group: "Run", run: actions.stepPeriod },
-  { key: "]", shown: "]", does: "twice as fast", group: "Run", run: actions.faster },
-  { key: "[", shown: "[", does: "half as fast", group: "Run", run: actions.slower },
-  { key: "R", shown: "Shift R", does: "reset to the start", group: "Run", run: actions.reset },
-  { key: ">", shown: ">", does: "skip to the next step of the scenario", group: "Run", run: actions.skip },
-  { key: "h", shown: "H", does: "heal all faults", group: "Bench", run: actions.healAll },
-  { key: "c", shown: "C", does: "next controller", group: "Bench", run: actions.nextController },
+/** The keys of whoever is at the page; the sheet and the listener read the same list. */
+export const keymap = (): KeyBinding[] => {
+  const keys = KEYS.filter(({ needs }) => !needs || may(needs));
+  return lectureRuns() ? [...LECTURE, ...keys.filter(({ key }) => key !== " ")] : keys;
+};
+
+/** Those of a lecture, while one runs; a clicker sends the middle ones. */
+const LECTURE: KeyBinding[] = [
+  { key: " ", shown: "Space", does: "next cue of the lecture", group: "Run", run: nextCue },
+  { key: "PageDown", shown: "Page Down", does: "next cue", group: "Run", run: nextCue },
+  { key: "ArrowRight", shown: "→", does: "next cue", group: "Run", run: nextCue },
+  { key: "PageUp", shown: "Page Up", does: "cue before", group: "Run", run: cueBefore },
+  { key: "ArrowLeft", shown: "←", does: "cue before", group: "Run", run: cueBefore },
+  { key: "a", shown: "A", does: "open the vote of the cue", group: "Run", run: () => void askCue() },
+];
+
+const KEYS: KeyBinding[] = [
+  { key: " ", shown: "Space", does: "run or pause", group: "Run", needs: "drive", run: actions.toggle },
+  { key: ".", shown: ".", does: "one tick", group: "Run", needs: "drive", run: actions.stepTick },
+  { key: ",", shown: ",", does: "one drive period", group: "Run", needs: "drive", run: actions.stepPeriod },
+  { key: "]", shown: "]", does: "twice as fast", group: "Run", needs: "drive", run: actions.faster },
+  { key: "[", shown: "[", does: "half as fast", group: "Run", needs: "drive", run: actions.slower },
+  { key: "R", shown: "Shift R", does: "reset to the start", group: "Run", needs: "drive", run: actions.reset },
+  {
+    key: ">",
+    shown: ">",
+    does: "skip to the next step of the scenario",
+    group: "Run",
+    needs: "drive",
+    run: actions.skip,
+  },
+  { key: "h", shown: "H", does: "heal all faults", group: "Bench", needs: "drive", run: actions.healAll },
+  { key: "c", shown: "C", does: "next controller", group: "Bench", needs: "drive", run: actions.nextController },
   { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
-  { key: "S", shown: "Shift S", does: "share by a link", group: "Bench", run: actions.share },
-  { key: "v", shown: "V", does: "record, and stop", group: "Bench", run: actions.record },
-  { key: "f", shown: "F", does: "fork", group: "Bench", run: actions.fork },
-  { key: "k", shown: "K", does: "keep this moment", group: "Bench", run: actions.keep },
-  { key: "n", shown: "N", does: "new bench", group: "Bench", run: actions.newBench },
-  { key: "z", shown: "Ctrl Z", withControl: true, does: "undo", group: "Bench", run: () => takeBack("undo") },
-  { key: "y", shown: "Ctrl Y", withControl: true, does: "redo", group: "Bench", run: () => takeBack("redo") },
-  { key: "Z", shown: "Ctrl Shift Z", withControl: true, does: "redo", group: "Bench", run: () => takeBack("redo") },
+  { key: "S", shown: "Shift S", does: "share by a link", group: "Bench", needs: "teach", run: actions.share },
+  { key: "v", shown: "V", does: "record, and stop", group: "Bench", needs: "drive", run: actions.record },
+  { key: "f", shown: "F", does: "fork", group: "Bench", needs: "teach", run: actions.fork },
+  { key: "k", shown: "K", does: "keep this moment", group: "Bench", needs: "teach", run: actions.keep },
+  { key: "n", shown: "N", does: "new bench", group: "Bench", needs: "drive", run: actions.newBench },
+  {
+    key: "z",
+    shown: "Ctrl Z",
+    withControl: true,
+    does: "undo",
+    group: "Bench",
+    needs: "drive",
+    run: () => takeBack("undo"),
+  },
+  {
+    key: "y",
+    shown: "Ctrl Y",
+    withControl: true,
+    does: "redo",
+    group: "Bench",
+    needs: "drive",
+    run: () => takeBack("redo"),
+  },
+  {
+    key: "Z",
+    shown: "Ctrl Shift Z",
+    withControl: true,
+    does: "redo",
+    group: "Bench",
+    needs: "drive",
+    run: () => takeBack("redo"),
+  },
   { key: "l", shown: "L", does: "all panels live", group: "Look", run: actions.live },
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
@@ -49,11 +100,12 @@ export const KEYMAP: KeyBinding[] = [
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },
   ...Object.entries(PAGES).map(
-    ([name, { key, title }]): KeyBinding => ({
+    ([name, { key, title, needs }]): KeyBinding => ({
       key,
       shown: key.toUpperCase(),
       does: title,
       group: "Pages",
+      needs,
       run: () => actions.page(name as PageName),
     }),
   ),

@@ -1,7 +1,11 @@
 import { ActionIcon, Button, TextInput } from "@mantine/core";
-import { IconCheck, IconLink, IconPencil, IconTrash } from "@tabler/icons-react";
+import { IconCheck, IconLink, IconPencil, IconPresentation, IconTrash } from "@tabler/icons-react";
 import { type FormEvent, useState } from "react";
 import { api } from "../api/api";
+import { classes } from "../api/classes";
+import { useMay } from "../api/me";
+import { useClasses } from "../api/use-classes";
+import { announce } from "../bench/announce";
 import { showError } from "../bench/send";
 import { useView } from "../bench/view-store";
 import styles from "./dialogs.module.css";
@@ -25,6 +29,14 @@ function Layouts() {
   const [, setRound] = useState(0);
   const again = () => setRound((n) => n + 1);
   const own = ownLayouts();
+  const teaches = useMay("teach");
+
+  const { all } = useClasses();
+  const give = (group: string) =>
+    classes
+      .giveLayout(group, layout, { ...sharedLayout() })
+      .then(() => announce(`All have the ${layout} layout now.`))
+      .then(() => useView.setState({ dialog: "none" }), showError);
 
   const share = async () => {
     try {
@@ -81,14 +93,26 @@ function Layouts() {
           ))}
         </ul>
       )}
-      <h3 className={styles.heading}>Share</h3>
-      {link && link.name === layout ? (
-        <LinkBox query={`layout=${link.id}`} what={`Link of the layout ${link.name}`} />
-      ) : (
+      {teaches && <h3 className={styles.heading}>Share</h3>}
+      {teaches && link && link.name === layout && (
+        <LinkBox path={`?layout=${link.id}`} what={`Link of the layout ${link.name}`} />
+      )}
+      {teaches && link?.name !== layout && (
         <Button variant="default" leftSection={<IconLink size={16} />} onClick={share}>
           Make a link of the {layout} layout
         </Button>
       )}
+      {all.map(({ id, name }) => (
+        <Button
+          key={id}
+          variant="default"
+          mt="sm"
+          leftSection={<IconPresentation size={16} />}
+          onClick={() => give(id)}
+        >
+          Give it to all of {name}
+        </Button>
+      ))}
     </>
   );
 }

@@ -19,6 +19,10 @@ export interface OwnLayout {
 
 /** The layout that came with a link; the next one takes its place unless it is saved under a name. */
 export const FROM_LINK = "from a link";
+/** The layout that the teacher gave to all. */
+export const FROM_TEACHER = "from your teacher";
+/** The layout of a cue of a lecture, or of a step of a tour; it goes when that is left. */
+const FROM_SCRIPT = "from a script";
 const LONGEST_NAME = 40;
 /** No panel is made for less, px. */
 const LEAST_PX = 240;
@@ -28,7 +32,7 @@ const LINK = /^[2-9a-z]{8}$/;
 /** Whether the panels stand as for a bench with axes. */
 let axes = false;
 /** A layout that came before there was a dock to show it in. */
-let coming: SharedLayout | undefined;
+let coming: { shared: SharedLayout; name: string } | undefined;
 
 const kind = () => (axes ? "axes." : "");
 const LIST = () => `combbench.layouts.${kind()}own`;
@@ -65,7 +69,7 @@ export function attachDock(api: DockviewApi): void {
   arrange(known(asked) ?? known(useView.getState().layout) ?? "lecture");
   layoutHistory.watch(api);
   api.onDidLayoutChange(keepLayout);
-  if (coming) showShared(coming);
+  if (coming) showNext(coming.shared, coming.name);
   else if (asked && !known(asked) && LINK.test(asked)) fetchLayout(asked).catch(showError);
 }
 
@@ -81,6 +85,12 @@ export function setLayout(name: string): void {
   chooseLayout(name);
 }
 
+/** Lay the panels out as a built-in layout has them at first; the layouts that are kept stay as they are. */
+export function layOutForScript(name: LayoutName): void {
+  localStorage.removeItem(storageKey(FROM_SCRIPT));
+  arrange(FROM_SCRIPT, name === "lecture", name);
+}
+
 /** Bring a built-in layout back to what it was at first. */
 export function resetLayout(): void {
   const name = useView.getState().layout;
@@ -94,7 +104,9 @@ export function refusal(name: string): string | undefined {
   if (!plain) return "Give it a name.";
   if (plain.length > LONGEST_NAME) return `A name has at most ${LONGEST_NAME} characters.`;
   if (
-    [...Object.keys(BUILT_IN), FROM_LINK, ...ownLayouts().map((own) => own.name)].some((n) => n.toLowerCase() === plain)
+    [...Object.keys(BUILT_IN), FROM_LINK, FROM_TEACHER, FROM_SCRIPT, ...ownLayouts().map((own) => own.name)].some(
+      (n) => n.toLowerCase() === plain,
+    )
   )
     return "There is a layout of this name.";
   return undefined;
@@ -131,13 +143,14 @@ export function sharedLayout(): SharedLayout | undefined {
 }
 
 /** Show a layout that came with a link. */
-export function showShared(shared: SharedLayout): void {
-  if (!dockNow()) {
-    coming = shared;
-    return;
-  }
-  coming = undefined;
-  show(shared, FROM_LINK);
+export const showShared = (shared: SharedLayout): void => showNext(shared, FROM_LINK);
+
+/** Show a layout that the teacher gave to all. */
+export const showGiven = (shared: SharedLayout): void => showNext(shared, FROM_TEACHER);
+
+function showNext(shared: SharedLayout, name: string): void {
+  coming = dockNow() ? undefined : { shared, name };
+  if (!coming) show(shared, name);
 }
 
 /** Show the layout of a link, and keep it under its name, or one beside it if there is such a layout. */
@@ -174,6 +187,7 @@ function stored(name: string): SerializedDockview | undefined {
 function arrange(
   name: string,
   large = ownLayouts().find((own) => own.name === name)?.large ?? name === "lecture",
+  like: string = name,
 ): void {
   const api = dockNow();
   useView.setState({ layout: name, large });
@@ -183,6 +197,6 @@ function arrange(
   if (saved && restoreLayout(saved)) return;
   localStorage.removeItem(storageKey(name));
   api.clear();
-  const builtIn = (axes ? BUILT_IN_AXES : BUILT_IN)[isBuiltIn(name) ? name : "lab"];
+  const builtIn = (axes ? BUILT_IN_AXES : BUILT_IN)[isBuiltIn(like) ? like : "lab"];
   builtIn(api, api.width || window.innerWidth, api.height || window.innerHeight);
 }

@@ -7,25 +7,45 @@ import { MantineProvider } from "@mantine/core";
 import { useMediaQuery } from "@mantine/hooks";
 import { Notifications } from "@mantine/notifications";
 import { QueryClientProvider } from "@tanstack/react-query";
-import { StrictMode } from "react";
+import { type ReactNode, StrictMode } from "react";
 import { createRoot } from "react-dom/client";
+import { launch } from "../api/launch";
 import { queryClient } from "../api/queries";
 import { App } from "./app";
+import { NotLaunched } from "./ended";
+import { isPresenter, Presenter } from "./lecture/presenter";
 import { cssVariables, theme } from "./theme";
+
+/** By which the content policy of the server knows the styles that libraries write; each finds it in its own way. */
+const nonce = document.querySelector<HTMLMetaElement>("meta[name=nonce]")?.content ?? "";
+Object.assign(window, { __webpack_nonce__: nonce });
 
 const root = document.getElementById("root");
 if (!root) throw new Error("the page has no #root");
 
-createRoot(root).render(
-  <StrictMode>
-    <QueryClientProvider client={queryClient}>
-      <MantineProvider theme={theme} cssVariablesResolver={cssVariables} defaultColorScheme="auto">
-        <App />
-        <Toasts />
-      </MantineProvider>
-    </QueryClientProvider>
-  </StrictMode>,
+const page = createRoot(root);
+launch().then(
+  () => show(isPresenter() ? <Presenter /> : <App />),
+  (error: unknown) => show(<NotLaunched error={error} />),
 );
+
+function show(content: ReactNode) {
+  page.render(
+    <StrictMode>
+      <QueryClientProvider client={queryClient}>
+        <MantineProvider
+          theme={theme}
+          cssVariablesResolver={cssVariables}
+          defaultColorScheme="auto"
+          getStyleNonce={() => nonce}
+        >
+          {content}
+          <Toasts />
+        </MantineProvider>
+      </QueryClientProvider>
+    </StrictMode>,
+  );
+}
 
 /** Notes that come and go, where they cover nothing one needs at once: on a phone the stop button is at the bottom. */
 export function Toasts() {

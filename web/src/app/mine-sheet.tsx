@@ -2,6 +2,7 @@ import { ActionIcon, Button, TextInput } from "@mantine/core";
 import { IconPencil, IconTrash } from "@tabler/icons-react";
 import { useCallback, useEffect, useState } from "react";
 import { api } from "../api/api";
+import { useMay } from "../api/me";
 import type { Link } from "../api/types";
 import { ownLinks } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -15,9 +16,10 @@ import { SideSheet } from "./side-sheet";
 
 /** Scenarios from disk, and what was kept on the server: one's own first. */
 export function MineSheet() {
+  const teaches = useMay("teach");
   return (
-    <SideSheet name="mine" title="Mine" size={520}>
-      <Kept />
+    <SideSheet name="mine" title={teaches ? "Mine" : "From disk"} size={520}>
+      {teaches ? <Kept /> : <OpenScenario />}
     </SideSheet>
   );
 }

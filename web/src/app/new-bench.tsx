@@ -1,12 +1,14 @@
 import { Button, NativeSelect, Switch, Text, TextInput } from "@mantine/core";
-import { IconFolderOpen, IconRulerMeasure } from "@tabler/icons-react";
+import { IconClipboardList, IconFolderOpen, IconRulerMeasure } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
+import { useMay } from "../api/me";
 import type { Device, ScenarioSummary } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
+import { showSheet } from "../panels/sheet/begin";
 import { EmptyState } from "../ui/empty-state";
 import { micro } from "../ui/metric-name";
 import styles from "./dialogs.module.css";
@@ -31,6 +33,7 @@ function Gallery() {
   const [query, setQuery] = useState("");
   const [paused, setPaused] = useState(false);
   const [busy, setBusy] = useState<string | undefined>(undefined);
+  const teaches = useMay("teach");
 
   useEffect(() => {
     api.scenarios().then(setScenarios, showError);
@@ -64,6 +67,7 @@ function Gallery() {
   const unsuited = chosen && benches ? benches.filter((s) => !suits(chosen, s)).length : 0;
   return (
     <>
+      {!teaches && <p className={styles.remark}>It takes the place of your bench.</p>}
       <Button
         fullWidth
         size="xs"
@@ -85,7 +89,21 @@ function Gallery() {
         leftSection={<IconFolderOpen size={16} />}
         onClick={() => useView.setState({ dialog: "mine" })}
       >
-        Open a scenario from disk, or one of mine
+        {teaches ? "Open a scenario from disk, or one of mine" : "Open a scenario from disk"}
+      </Button>
+      <Button
+        fullWidth
+        size="xs"
+        variant="default"
+        mb="sm"
+        leftSection={<IconClipboardList size={16} />}
+        onClick={() => {
+          useView.setState({ dialog: "none" });
+          setPage("bench");
+          showSheet();
+        }}
+      >
+        Begin a lab sheet
       </Button>
       <div className={styles.filters}>
         <TextInput

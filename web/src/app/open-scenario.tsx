@@ -3,6 +3,7 @@ import { IconFileUpload } from "@tabler/icons-react";
 import { type DragEvent, useState } from "react";
 import { api } from "../api/api";
 import { ApiError } from "../api/client";
+import { useMay } from "../api/me";
 import { noteOwnLink, openOwn } from "../bench/open-bench";
 import { setPage, useView } from "../bench/view-store";
 import { formatSi } from "../ui/format";
@@ -11,8 +12,9 @@ import styles from "./dialogs.module.css";
 /** The server takes no larger body. */
 const MOST_BYTES = 1_000_000;
 
-/** Open a scenario from disk, chosen or dropped; what is wrong with it is said here. */
-export function OpenScenario({ onKept }: { onKept(): void }) {
+/** Open a scenario from disk, chosen or dropped; what is wrong with it is said here. Only a teacher keeps it. */
+export function OpenScenario({ onKept }: { onKept?(): void }) {
+  const teaches = useMay("teach");
   const [keep, setKeep] = useState(true);
   const [busy, setBusy] = useState(false);
   const [over, setOver] = useState(false);
@@ -27,9 +29,9 @@ export function OpenScenario({ onKept }: { onKept(): void }) {
         throw new Error(`is ${formatSi(file.size, "B", 3)} long, at most ${formatSi(MOST_BYTES, "B", 3)}`);
       const scenario = `${await file.text()}\n`; // so that one line is no name of the library
       const bench = await api.createBench({ scenario, paused: false });
-      if (keep) {
+      if (keep && teaches) {
         noteOwnLink((await api.makeLink({ scenario, title: "", note: "" })).id);
-        onKept();
+        onKept?.();
       }
       openOwn(bench.id);
       setPage("bench");
@@ -67,7 +69,11 @@ export function OpenScenario({ onKept }: { onKept(): void }) {
           )}
         </FileButton>
         <span>a TOML file from disk, or drop one here</span>
-        <Checkbox size="xs" label="Keep it here" checked={keep} onChange={(e) => setKeep(e.currentTarget.checked)} />
+        {teaches ? (
+          <Checkbox size="xs" label="Keep it here" checked={keep} onChange={(e) => setKeep(e.currentTarget.checked)} />
+        ) : (
+          <span>It takes the place of your bench.</span>
+        )}
       </div>
     </Input.Wrapper>
   );

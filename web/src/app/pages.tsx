@@ -4,9 +4,13 @@ import {
   IconMathFunction,
   IconPhoto,
   IconRulerMeasure,
+  IconSchool,
 } from "@tabler/icons-react";
 import type { ComponentType, ReactNode } from "react";
+import { may, type Right } from "../api/me";
+import type { Me } from "../api/types";
 import type { PageName } from "../bench/view-store";
+import { ClassPage } from "../class/class-page";
 import { Designer } from "../designer/designer";
 import { GalleryPage } from "../gallery/gallery-page";
 import { RunsPage } from "../runs/runs-page";
@@ -19,6 +23,8 @@ export interface PageKind {
   title: string;
   icon: ReactNode;
   key: string;
+  /** What one must be allowed for the page to be there. */
+  needs?: Right;
   component: ComponentType;
 }
 
@@ -33,6 +39,14 @@ export const PAGES: Record<PageName, PageKind> = {
     key: "b",
     component: Workspace,
   },
+  class: {
+    name: "Class",
+    title: "Class: students who join by a code, each with a bench of their own",
+    icon: <IconSchool size={ICON} />,
+    key: "m",
+    needs: "teach",
+    component: ClassPage,
+  },
   gallery: {
     name: "Gallery",
     title: "Gallery: every experiment with its claim and its measurement",
@@ -45,6 +59,7 @@ export const PAGES: Record<PageName, PageKind> = {
     title: "Headless runs and campaigns",
     icon: <IconChartHistogram size={ICON} />,
     key: "u",
+    needs: "teach",
     component: RunsPage,
   },
   designer: {
@@ -61,4 +76,10 @@ export const PAGES: Record<PageName, PageKind> = {
     key: "t",
     component: Theory,
   },
+};
+
+/** Whether a page is there for somebody. */
+export const isOffered = (page: PageName, role: Me["role"] | undefined): boolean => {
+  const { needs } = PAGES[page];
+  return !needs || may(needs, role);
 };

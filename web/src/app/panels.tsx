@@ -21,9 +21,11 @@ import { SchematicPanel } from "../panels/schematic/schematic-panel";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
 import { SetsPanel } from "../panels/sets/sets-panel";
+import { SheetPanel } from "../panels/sheet/sheet-panel";
 import { SpectrumPanel } from "../panels/spectrum/spectrum-panel";
 import { TwinsPanel } from "../panels/twins/twins-panel";
 import { View3dPanel } from "../panels/view3d/view3d-panel";
+import { VotePanel } from "../panels/vote/vote-panel";
 import { WhyPanel } from "../panels/why/why-panel";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 
@@ -36,8 +38,8 @@ export interface PanelKind {
   title: string;
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;
-  /** It tells what acts on the device or what a diagnoser takes it for, which is hidden while a fault is to be found. */
-  tells?: boolean;
+  /** It works with what the server serves while a fault is to be found. */
+  whileBlind?: boolean;
   /** The benches it is for, unless for all: those with one displacement, or those with axes. */
   only?: "displacement" | "axes";
   component: ComponentType<PanelProps>;
@@ -45,30 +47,32 @@ export interface PanelKind {
 
 /** Every kind of panel; a new one is its folder and a line here. */
 export const PANELS: Record<string, PanelKind> = {
-  scope: { title: "Scope", component: Scope },
-  lanes: { title: "Diagnosis", tells: true, component: LanesPanel },
+  scope: { title: "Scope", whileBlind: true, component: Scope },
+  lanes: { title: "Diagnosis", whileBlind: true, component: LanesPanel },
   adaptation: { title: "Adaptation", only: "displacement", component: AdaptationPanel },
-  behaviour: { title: "Behaviour", only: "displacement", tells: true, component: BehaviourPanel },
+  behaviour: { title: "Behaviour", only: "displacement", component: BehaviourPanel },
   hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
   labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
-  blind: { title: "Blind diagnosis", only: "displacement", changes: true, component: BlindPanel },
+  blind: { title: "Blind diagnosis", whileBlind: true, changes: true, component: BlindPanel },
+  sheet: { title: "Lab sheet", whileBlind: true, changes: true, component: SheetPanel },
   twins: { title: "Twins", changes: true, component: TwinsPanel },
-  why: { title: "Why", tells: true, component: WhyPanel },
+  why: { title: "Why", component: WhyPanel },
   schematic: { title: "Bench", component: SchematicPanel },
-  controllers: { title: "Controllers", changes: true, component: ControllersPanel },
+  controllers: { title: "Controllers", whileBlind: true, changes: true, component: ControllersPanel },
   locus: { title: "Locus", only: "axes", component: LocusPanel },
   allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
-  faults: { title: "Faults", changes: true, tells: true, component: FaultsPanel },
+  faults: { title: "Faults", changes: true, component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
   sets: { title: "Parameter sets", changes: true, component: SetsPanel },
   environment: { title: "Environment", changes: true, component: EnvironmentPanel },
   phase: { title: "Phase plane", component: PhasePanel },
-  spectrum: { title: "Spectrum", component: SpectrumPanel },
+  spectrum: { title: "Spectrum", whileBlind: true, component: SpectrumPanel },
   identify: { title: "Swept sine", only: "displacement", changes: true, component: IdentifyPanel },
   recordings: { title: "Recordings", component: RecordingsPanel },
-  events: { title: "Events", component: EventsPanel },
-  scores: { title: "Scoreboard", tells: true, component: ScoreboardPanel },
-  view3d: { title: "3D", tells: true, component: View3dPanel },
+  events: { title: "Events", whileBlind: true, component: EventsPanel },
+  scores: { title: "Scoreboard", component: ScoreboardPanel },
+  vote: { title: "Vote", whileBlind: true, component: VotePanel },
+  view3d: { title: "3D", component: View3dPanel },
 };
 
 /** Whether a panel has something to show on a bench; before there is one, all may. */

@@ -1,7 +1,8 @@
-import { ActionIcon, Button, NativeSelect } from "@mantine/core";
+import { ActionIcon, Button, NativeSelect, SegmentedControl } from "@mantine/core";
 import { IconPlayerPauseFilled, IconPlayerPlayFilled, IconShare2, IconX } from "@tabler/icons-react";
 import { useEffect, useRef, useState } from "react";
 import { hasAxes } from "../api/fits";
+import { useMay } from "../api/me";
 import type { Bench } from "../api/types";
 import { actions } from "../bench/actions";
 import { useView } from "../bench/view-store";
@@ -10,13 +11,17 @@ import { useBench } from "../stream/bench-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 import { ErrorFence } from "../ui/error-fence";
 import { PanelVisible, usePageVisible } from "../ui/panel-visible";
+import { CompanyMenu } from "./header/company";
 import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";
+import { Visitor } from "./header/visitor";
 import { PanelBody } from "./panel-body";
 import { PANELS, suits } from "./panels";
 import styles from "./phone.module.css";
 
 const MOTION = scopeConfig(["plant.displacement", "model.displacement"]);
+/** What is served while a fault is hidden. */
+const MEASURED = scopeConfig(["sensor.displacement", "model.displacement"]);
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });
 
 /** A bench in the hand: status, one scope, the lanes, 3D, and the button that stops it. */
@@ -25,9 +30,13 @@ export function Phone() {
   const tripped = useBench((s) => s.bench?.state === "tripped");
   const title = useBench((s) => s.bench?.title);
   const isFlat = useBench((s) => !hasAxes(s.bench));
+  const blind = useBench((s) => s.blind);
   const [chosen, setScope] = useState<ScopeConfig | undefined>(undefined);
-  const scope = chosen ?? (isFlat ? MOTION : RATE);
+  const scope = chosen ?? (!isFlat ? RATE : blind ? MEASURED : MOTION);
   const page = usePageVisible();
+  const drives = useMay("drive");
+  const teaches = useMay("teach");
+  const sheet = useView((s) => s.sheet) && drives;
   return (
     <PanelVisible value={page}>
       <div className={styles.phone}>
@@ -37,40 +46,77 @@ export function Phone() {
             <StateBadge />
           </div>
           <DeviceClock />
-          <ActionIcon size={34} variant="subtle" aria-label="Share this experiment by a link" onClick={actions.share}>
-            <IconShare2 size={19} />
-          </ActionIcon>
+          {teaches && (
+            <ActionIcon size={34} variant="subtle" aria-label="Share this experiment by a link" onClick={actions.share}>
+              <IconShare2 size={19} />
+            </ActionIcon>
+          )}
         </header>
-        <main className={styles.panels}>
-          <div className={styles.scope}>
-            <ErrorFence name="Scope">
-              <ScopePanel config={scope} onChange={setScope} />
-            </ErrorFence>
-          </div>
-          <div className={styles.lanes}>
-            <PanelBody kind={isFlat ? PANELS.lanes : PANELS.locus} params={{}} setParams={() => undefined} />
-          </div>
-          {isFlat && <Why />}
-          <div className={styles.view}>
-            <PanelBody kind={PANELS.view3d} params={{}} setParams={() => undefined} />
-          </div>
-          <Extra />
-          {!isFlat && <Why />}
-        </main>
-        <footer className={styles.stop}>
-          <Button
-            fullWidth
-            size="lg"
-            disabled={tripped}
-            color={running ? "alarm" : "accent"}
-            leftSection={running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
-            onClick={actions.toggle}
-          >
-            {running ? "Stop" : "Run"}
-          </Button>
-        </footer>
+        <div className={styles.who}>
+          <Visitor />
+          <CompanyMenu />
+        </div>
+        <Tabs />
+        {sheet ? (
+          <main className={styles.sheet}>
+            <PanelBody kind={PANELS.sheet} params={{}} setParams={() => undefined} />
+          </main>
+        ) : (
+          <main className={styles.panels}>
+            <div className={styles.scope}>
+              <ErrorFence name="Scope">
+                <ScopePanel config={scope} onChange={setScope} />
+              </ErrorFence>
+            </div>
+            <div className={styles.lanes}>
+              <PanelBody kind={isFlat ? PANELS.lanes : PANELS.locus} params={{}} setParams={() => undefined} />
+            </div>
+            {isFlat && <Why />}
+            <div className={styles.view}>
+              <PanelBody kind={PANELS.view3d} params={{}} setParams={() => undefined} />
+            </div>
+            <Extra />
+            {!isFlat && <Why />}
+          </main>
+        )}
+        {drives && (
+          <footer className={styles.stop}>
+            <Button
+              fullWidth
+              size="lg"
+              disabled={tripped}
+              color={running ? "alarm" : "accent"}
+              leftSection={running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
+              onClick={actions.toggle}
+            >
+              {running ? "Stop" : "Run"}
+            </Button>
+          </footer>
+        )}
       </div>
     </PanelVisible>
+  );
+}
+
+/** The bench, and the lab sheet a tab away. */
+function Tabs() {
+  const sheet = useView((s) => s.sheet);
+  const drives = useMay("drive");
+  if (!drives) return null;
+  return (
+    <SegmentedControl
+      fullWidth
+      size="xs"
+      radius={0}
+      className={styles.tabs}
+      aria-label="What is shown"
+      value={sheet ? "sheet" : "bench"}
+      data={[
+        { value: "bench", label: "Bench" },
+        { value: "sheet", label: "Lab sheet" },
+      ]}
+      onChange={(shown) => useView.setState({ sheet: shown === "sheet" })}
+    />
   );
 }
 
@@ -131,4 +177,4 @@ function Extra() {
 }
 
 /** What a phone shows anyway. */
-const always = (bench: Bench | undefined) => ["scope", "view3d", "why", hasAxes(bench) ? "locus" : "lanes"];
+const always = (bench: Bench | undefined) => ["scope", "view3d", "why", "sheet", hasAxes(bench) ? "locus" : "lanes"];

@@ -5,13 +5,13 @@ import { ApiError } from "../api/client";
 import { noteOwnLink } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { useBench } from "../stream/bench-store";
-import { veil } from "../stream/veil";
 import { EmptyState } from "../ui/empty-state";
 import { formatTick } from "../ui/format";
 import styles from "./dialogs.module.css";
 import { sharedLayout } from "./layouts";
 import { LinkBox } from "./link-box";
 import { SideSheet } from "./side-sheet";
+import { WatchLinks } from "./watch-links";
 
 const LONGEST_NOTE = 2000;
 
@@ -30,7 +30,15 @@ interface Made {
 }
 
 function Share() {
-  if (!veil.on) return <MadeLink />;
+  const bench = useBench((s) => s.bench?.id);
+  const blind = useBench((s) => s.blind);
+  if (!blind)
+    return (
+      <>
+        <MadeLink />
+        {bench && <WatchLinks key={bench} bench={bench} />}
+      </>
+    );
   return (
     <EmptyState title="Answer first">
       A link holds all that was done on this bench, the hidden fault too. Give your answer in Blind diagnosis, then
@@ -74,9 +82,9 @@ function MadeLink() {
         The link opens a new bench at {formatTick(made.tick)} with the same bits, your layout, cursors and note. It does
         not include what you do here afterwards.
       </p>
-      <LinkBox query={`link=${made.id}`} what="Link" onCopy={keepNote} />
+      <LinkBox path={`?link=${made.id}`} what="Link" onCopy={keepNote} />
       <Textarea
-        label="Note, read above the bench by whoever opens the link"
+        label="Note, shown above the bench to people who open the link"
         maxLength={LONGEST_NOTE}
         autosize
         minRows={2}

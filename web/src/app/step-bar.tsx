@@ -1,6 +1,7 @@
 import { Button } from "@mantine/core";
 import { IconListCheck, IconPlayerTrackNext, IconRepeat } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
+import { useMay } from "../api/me";
 import type { Bench } from "../api/types";
 import { actions } from "../bench/actions";
 import { hypothesisWords } from "../bench/hypothesis-words";
@@ -42,7 +43,8 @@ function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
   const ended = hasEnded(bench, steps);
   const [asked, setAsked] = useState<boolean | undefined>(undefined);
   const open = asked ?? ended;
-  const repeats = steps.every((step) => step.ofScenario);
+  const drives = useMay("drive");
+  const repeats = drives && steps.every((step) => step.ofScenario);
   return (
     <section className={styles.bar} aria-label="Steps of the scenario">
       <StepWords bench={bench} steps={steps} />
@@ -67,15 +69,17 @@ function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
             Replay step
           </Button>
         )}
-        <Button
-          size="compact-sm"
-          leftSection={<IconPlayerTrackNext size={16} />}
-          title="Run as fast as possible to just before the next step"
-          disabled={bench.fast_forward !== null || ended || (next < 0 && !bench.samples)}
-          onClick={actions.skip}
-        >
-          {next < 0 ? "To the end" : "Skip"}
-        </Button>
+        {drives && (
+          <Button
+            size="compact-sm"
+            leftSection={<IconPlayerTrackNext size={16} />}
+            title="Run as fast as possible to just before the next step"
+            disabled={bench.fast_forward !== null || ended || (next < 0 && !bench.samples)}
+            onClick={actions.skip}
+          >
+            {next < 0 ? "To the end" : "Skip"}
+          </Button>
+        )}
       </div>
       {open && <Findings bench={bench} steps={steps} repeats={repeats} />}
     </section>

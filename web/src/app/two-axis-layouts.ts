@@ -51,6 +51,7 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "why", "why", { within: "controllers", inactive: true });
     const wide = width >= THREE_COLUMNS_PX;
     addBelow(api, wide);
+    addTo(api, "sheet", "sheet", { within: "forces", inactive: true });
     addTo(api, "events", "events", { within: "forces", inactive: true });
     const loops = Math.max(0.28, LOOP_PX.width / width);
     size(api, width, height, {

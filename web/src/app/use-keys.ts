@@ -2,7 +2,7 @@ import { useMantineColorScheme } from "@mantine/core";
 import { useEffect } from "react";
 import { useView } from "../bench/view-store";
 import { useScheme } from "../ui/use-canvas";
-import { KEYMAP } from "./keymap";
+import { keymap } from "./keymap";
 import { followFullScreen, setPresent } from "./present";
 import { themeSwitch } from "./theme";
 
@@ -50,7 +50,7 @@ export function useKeys(): void {
       const target = event.target as HTMLElement;
       if (target.closest(TYPING)) return;
       if (event.key === " " && target.closest("button, a, summary, [role=button], [role=tab]")) return;
-      const binding = KEYMAP.find(
+      const binding = keymap().find(
         (b) => b.key === event.key && (b.withControl ?? false) === (event.ctrlKey || event.metaKey),
       );
       if (!binding) return;

@@ -1,5 +1,6 @@
 import { notifications } from "@mantine/notifications";
 import { api } from "../api/api";
+import { may } from "../api/me";
 import { cardOf, slotMates } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/hover";
@@ -85,7 +86,10 @@ async function record(): Promise<void> {
   try {
     if (from.recording.length > 0) {
       for (const id of from.recording) await api.stopRecording(from.id, id);
-      notifications.show({ title: "Recorded", message: "Replay, download or compare it in the Recordings panel." });
+      notifications.show({
+        title: "Recorded",
+        message: `${may("teach") ? "Replay, download or compare" : "Download"} it in the Recordings panel.`,
+      });
     } else {
       await api.record(from.id, { name: from.title.slice(0, 100) || "recording", layout: layoutNow() ?? null });
     }

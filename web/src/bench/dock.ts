@@ -2,6 +2,7 @@ import { Button } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import type { DockviewApi, IDockviewPanel, SerializedDockview } from "dockview-react";
 import { createElement } from "react";
+import { create } from "zustand";
 import type { Document } from "../api/types";
 import { scopeConfig } from "../stream/scope-config";
 import { useView } from "./view-store";
@@ -26,6 +27,9 @@ const MOST_CLOSED = 20;
 const CLOSED_NOTICE = "panel-closed";
 
 let current: DockviewApi | undefined;
+
+/** The dock of the page, for who lays it out anew whenever there is another. */
+export const useDock = create<{ dock: DockviewApi | undefined }>(() => ({ dock: undefined }));
 let closed: Closed[] = [];
 
 /** The dock, once the page has one; a phone has none. */
@@ -34,6 +38,7 @@ export const dockNow = (): DockviewApi | undefined => current;
 /** Take a dock as the page's; panels may be opened in it from here on. */
 export function holdDock(api: DockviewApi): void {
   current = api;
+  useDock.setState({ dock: api });
 }
 
 /** How the panels stand now, to be kept with a recording. */
@@ -127,6 +132,22 @@ export function showPanel(kind: string, among?: string): void {
   const panel = current?.panels.find((p) => p.view.contentComponent === kind);
   if (panel) panel.api.setActive();
   else addPanel(kind, among);
+}
+
+/** Bring the panel of a kind to the front in a column of its own at the right edge; without a dock nothing happens. */
+export function showAtEdge(kind: string, width: number): void {
+  if (!current) return;
+  if (current.hasMaximizedGroup()) current.exitMaximizedGroup();
+  const panel = current.panels.find((p) => p.view.contentComponent === kind);
+  if (panel && panel.group.panels.length === 1) {
+    panel.api.setActive();
+    return;
+  }
+  const group = current.addGroup({ direction: "right" });
+  if (panel) panel.api.moveTo({ group });
+  else
+    current.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position: { referenceGroup: group } });
+  group.api.setSize({ width: Math.min(width, current.width / 2) });
 }
 
 /**

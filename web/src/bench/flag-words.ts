@@ -18,6 +18,7 @@ const WORDS: Partial<Record<string, string>> = {
   heal: "healed",
   tripped: "stopped",
   reset_trip: "trip reset",
+  make_safe: "safe outputs",
   scheduled: "waits",
 };
 
@@ -39,6 +40,7 @@ export type EventTone = "alarm" | "found" | "change" | "quiet";
 const TONES: Record<string, EventTone> = {
   inject: "alarm",
   tripped: "alarm",
+  make_safe: "alarm",
   recognised: "found",
   heal: "change",
   set: "change",

@@ -1,4 +1,5 @@
 import { api } from "../api/api";
+import { may, useMe } from "../api/me";
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { alarm, announce } from "./announce";
@@ -28,10 +29,11 @@ export const ownLinks = (): string[] => JSON.parse(localStorage.getItem(MINE) ??
 /** Remember a link as made here. */
 export const noteOwnLink = (id: string): void => localStorage.setItem(MINE, JSON.stringify([...ownLinks(), id]));
 
-/** Show a bench made from this page, and come back to it from now on. */
+/** Show a bench made from this page, and come back to it from now on; that of a student took the place of the one before. */
 export function openOwn(id: string, replace = false): void {
-  localStorage.setItem(OWN, id);
-  openBench(id, replace);
+  const teaches = may("teach");
+  if (teaches) localStorage.setItem(OWN, id);
+  openBench(id, replace || !teaches);
 }
 
 /** Show a bench and put it into the address, so that others can join it and back works. */
@@ -49,6 +51,7 @@ export function openBench(id: string, replace = false): void {
 export function showBench(id: string): void {
   useView.setState({ sample: undefined });
   alarm("");
+  useMe.setState({ at: id });
   stream.open(id);
 }
 

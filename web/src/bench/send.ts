@@ -1,8 +1,12 @@
 import { notifications } from "@mantine/notifications";
 import { ApiError } from "../api/client";
+import { may } from "../api/me";
 import type { Command } from "../api/types";
 import { stream } from "../stream/stream";
 import { announce } from "./announce";
+
+/** What whoever only watches is told where something could be changed. */
+export const WATCHING = "You watch this bench and cannot change it.";
 
 /**
  * Send a command to the bench; a refusal is shown where it happened, with what to do.
@@ -10,6 +14,10 @@ import { announce } from "./announce";
  * Resolves to whether it took effect. The status comes before the answer, so `useBench` has what the command changed.
  */
 export async function send(command: Command, said?: string): Promise<boolean> {
+  if (!may("drive")) {
+    notifications.show({ id: "watching", message: WATCHING, autoClose: 3000 });
+    return false;
+  }
   try {
     const tick = await stream.client.command(command);
     if (said) announce(`${said}, at tick ${tick}.`);

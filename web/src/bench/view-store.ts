@@ -10,7 +10,7 @@ const CHOSEN = "combbench.layout.chosen";
 export type CardId = string;
 
 /** What the page shows: the live bench, or what is done around it. */
-const PAGE_NAMES = ["bench", "gallery", "runs", "designer", "theory"] as const;
+const PAGE_NAMES = ["bench", "class", "gallery", "runs", "designer", "theory"] as const;
 
 export type PageName = (typeof PAGE_NAMES)[number];
 
@@ -24,6 +24,8 @@ interface ViewStore {
   dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts";
   /** On a phone: the panel shown beside those it always has. */
   extra: string;
+  /** On a phone: the lab sheet is in front, the bench a tab away. */
+  sheet: boolean;
   /** Whether the layout is in large type. */
   large: boolean;
   /** Size of the letters on canvases, px: lectures are read from the last row. */
@@ -45,6 +47,7 @@ export const useView = create<ViewStore>(() => ({
   sample: undefined,
   dialog: "none",
   extra: "",
+  sheet: false,
   large: firstLayout() === "lecture",
   fontPx: NORMAL_PX,
   present: new URLSearchParams(window.location.search).get("present") === "1",

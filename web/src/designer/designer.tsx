@@ -2,6 +2,7 @@ import { Button } from "@mantine/core";
 import { IconDice5, IconPlayerPlay } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
+import { useMay } from "../api/me";
 import type { DeviceCatalogue, Evaluation, ProcessSpread } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -25,6 +26,8 @@ const isOfGyroscope = ({ name }: { name: string }) => name.startsWith("gyro.");
 
 /** The drawing board: turn a number of a device and see at once what it would be. */
 export function Designer() {
+  const drives = useMay("drive");
+  const teaches = useMay("teach");
   const [catalogue, setCatalogue] = useState<DeviceCatalogue | undefined>(undefined);
   const [state, setState] = useState(() => newDesign(FIRST));
   const [original, setOriginal] = useState<Evaluation | undefined>(undefined);
@@ -99,15 +102,18 @@ export function Designer() {
           >
             {state.drawn ? "Draw another" : "Draw one from the process"}
           </Button>
-          <Button
-            size="xs"
-            leftSection={<IconPlayerPlay size={16} />}
-            loading={busy}
-            disabled={!evaluation || refusal !== undefined}
-            onClick={use}
-          >
-            Use on the bench
-          </Button>
+          {drives && (
+            <Button
+              size="xs"
+              leftSection={<IconPlayerPlay size={16} />}
+              title={teaches ? undefined : "It takes the place of your bench"}
+              loading={busy}
+              disabled={!evaluation || refusal !== undefined}
+              onClick={use}
+            >
+              Use on the bench
+            </Button>
+          )}
         </div>
       </header>
       <DesignerControls catalogue={catalogue} device={device} state={state} onChange={setState} />

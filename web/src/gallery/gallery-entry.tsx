@@ -2,6 +2,7 @@ import { Button, Progress } from "@mantine/core";
 import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
+import { useMay } from "../api/me";
 import type { GalleryCard } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -22,6 +23,8 @@ interface GalleryEntryProps {
 /** A scenario of the library: its figure, its claim beside what was measured, and the two ways to run it. */
 export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
   const [starting, setStarting] = useState(false);
+  const drives = useMay("drive");
+  const teaches = useMay("teach");
   const title = micro(card.title);
   const underWay = card.state === "queued" || card.state === "running";
 
@@ -42,7 +45,7 @@ export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
       <div className={styles.thumbnail}>
         {card.figure ? (
           <img src={`./api/v1/gallery/${card.id}/figure?v=${card.figure}`} alt={`Figure of ${title}`} loading="lazy" />
-        ) : card.state === "done" && card.run ? (
+        ) : teaches && card.state === "done" && card.run ? (
           <img src={`./api/v1/runs/${card.run}/thumbnail`} alt={`Figure of ${title}`} loading="lazy" />
         ) : (
           !underWay && (
@@ -82,7 +85,7 @@ export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
               : "other than expected"}
         </span>
         <div className={styles.buttons}>
-          {card.state === "done" && card.run && (
+          {teaches && card.state === "done" && card.run && (
             <Button
               component="a"
               href={`./api/v1/runs/${card.run}/report`}
@@ -95,7 +98,7 @@ export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
               Report
             </Button>
           )}
-          {card.state !== "done" && (
+          {teaches && card.state !== "done" && (
             <Button
               size="compact-sm"
               variant="default"
@@ -108,11 +111,12 @@ export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
               Run
             </Button>
           )}
-          {card.study === null && (
+          {drives && card.study === null && (
             <Button
               size="compact-sm"
               variant="light"
               leftSection={<IconPlayerPlay size={15} />}
+              title={teaches ? undefined : "It takes the place of your bench"}
               loading={starting}
               onClick={live}
               aria-label={`Open ${title} live`}

@@ -2,6 +2,7 @@ import { Button, NativeSelect, Progress, TextInput } from "@mantine/core";
 import { IconFolderOpen } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
+import { useMay } from "../api/me";
 import { useAnswer } from "../api/queries";
 import { useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
@@ -10,6 +11,7 @@ import { Stale } from "../ui/stale";
 import { chapterName, chaptersOf, chosen, EVERYTHING, VERDICTS } from "./chapters";
 import styles from "./gallery.module.css";
 import { GalleryEntry } from "./gallery-entry";
+import { LectureList } from "./lecture-list";
 
 const BUSY_MS = 700;
 const CALM_MS = 15_000;
@@ -21,6 +23,8 @@ export function GalleryPage() {
     now?.figures.is_making || now?.cards.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS,
   );
   const [filter, setFilter] = useState(EVERYTHING);
+  const drives = useMay("drive");
+  const teaches = useMay("teach");
   const all = value?.cards;
   const figures = value?.figures;
   const cards = useMemo(() => chosen(all ?? [], filter), [all, filter]);
@@ -69,14 +73,16 @@ export function GalleryPage() {
             {busy > 0 && `, ${formatNumber(busy, 0)} under way`}
           </output>
         )}
-        <Button
-          size="xs"
-          variant="default"
-          leftSection={<IconFolderOpen size={16} />}
-          onClick={() => useView.setState({ dialog: "mine" })}
-        >
-          Mine, or from disk
-        </Button>
+        {drives && (
+          <Button
+            size="xs"
+            variant="default"
+            leftSection={<IconFolderOpen size={16} />}
+            onClick={() => useView.setState({ dialog: "mine" })}
+          >
+            {teaches ? "Mine, or from disk" : "From disk"}
+          </Button>
+        )}
         {figures?.is_making && (
           <div className={styles.making}>
             Figures: {formatNumber(figures.made, 0)} of {formatNumber(figures.total, 0)}
@@ -95,6 +101,7 @@ export function GalleryPage() {
         )}
         <Stale error={error} since={since} onRetry={again} />
       </header>
+      {teaches && <LectureList />}
       {value && cards.length > 0 ? (
         <ul className={styles.grid} data-stale={error !== undefined} aria-label="Experiments">
           {cards.map((card) => (

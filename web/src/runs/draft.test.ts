@@ -14,7 +14,9 @@ it("reads several values, and evenly spaced ones", () => {
 
 it("asks for seeds with both ends", () => {
   const draft = { ...newDraft("first-look"), firstSeed: 5, seeds: 3, set: [{ path: "sensor.noise_um", text: "0.1" }] };
-  expect(runOf(draft)).toEqual({ scenario: "first-look", label: "", set: { "sensor.noise_um": 0.1 }, seeds: "5:7" });
+  const asked = { scenario: "first-look", label: "", set: { "sensor.noise_um": 0.1 }, seeds: "5:7" };
+  expect(runOf(draft)).toEqual({ ...asked, all: false });
+  expect(runOf({ ...draft, all: true })).toEqual({ ...asked, all: true });
 });
 
 it("writes a grid, and counts its points times the devices", () => {

@@ -23,6 +23,8 @@ export interface Draft {
   /** Name of the run or campaign; empty: its title. */
   label: string;
   set: Row[];
+  /** Keep the signals of blocks that only look on too. */
+  all: boolean;
   firstSeed: number;
   seeds: number;
   vary: "nothing" | "grid" | "hypercube";
@@ -43,6 +45,7 @@ export function newDraft(scenario: string): Draft {
     scenario,
     label: "",
     set: [],
+    all: false,
     firstSeed: 1,
     seeds: 1,
     vary: "grid",
@@ -98,8 +101,8 @@ const spanOf = (first: number, count: number) => `${first}:${first + count - 1}`
 
 /** What a run is asked for with. */
 export function runOf(draft: Draft) {
-  const { scenario, label, firstSeed, seeds } = draft;
-  return { scenario, label, set: setOf(draft.set), seeds: spanOf(firstSeed, seeds) };
+  const { scenario, label, all, firstSeed, seeds } = draft;
+  return { scenario, label, all, set: setOf(draft.set), seeds: spanOf(firstSeed, seeds) };
 }
 
 /** The campaign's document, as a file would have it. */

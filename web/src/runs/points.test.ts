@@ -9,6 +9,7 @@ const point = (noise: number, kind: string, mean: number): PointTally => ({
   ok: 4,
   tripped: 0,
   errors: [],
+  warnings: [],
   metrics: { "control.rms_error_um": figure(mean, 0.1), "device.f0_hz": figure(2000) },
   diagnosis: {},
 });

@@ -150,6 +150,15 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           onChange={(n) => set({ seeds: Math.max(1, Number(n) || 1) })}
         />
       </div>
+      {isRun && (
+        <Checkbox
+          size="xs"
+          label="Keep all signals"
+          description="Also of controllers and sensors that are not in use. The figures are the same."
+          checked={draft.all}
+          onChange={(e) => set({ all: e.currentTarget.checked })}
+        />
+      )}
       {refusal && (
         <p className={styles.refusal} role="alert">
           {refusal.field && !refusal.message.includes(refusal.field) && <b>{refusal.field}: </b>}

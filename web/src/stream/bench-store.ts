@@ -18,11 +18,13 @@ export interface BenchStore {
   bench: Bench | undefined;
   scores: Record<string, Score>;
   events: LogEntry[];
-  /** A hidden fault is to be found: what tells it is not in this store, and panels that tell it show nothing. */
+  /** A hidden fault is to be found: the server serves little else, and panels that need more show one line. */
   blind: boolean;
   droppedFrames: number;
   /** The latest word of the server about this connection. */
   notice: { code: string; message: string } | undefined;
+  /** How often the server has told the page to ask what whoever is there may do now. */
+  called: number;
 }
 
 /** What the page knows of the bench it shows. Written only by the stream; frames never pass through here. */
@@ -34,6 +36,7 @@ export const useBench = create<BenchStore>(() => ({
   blind: false,
   droppedFrames: 0,
   notice: undefined,
+  called: 0,
 }));
 
 type BenchChanges = { [K in keyof Bench]?: Bench[K] | null };

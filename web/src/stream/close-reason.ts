@@ -2,7 +2,7 @@ export interface CloseReason {
   /** Whether trying again by itself can help. */
   retry: boolean;
   /** What the page can offer when it cannot help itself. */
-  offer?: "bench" | "reload";
+  offer?: "bench" | "reload" | "login";
   /** Not worth a notice: the page reconnects, and its header says that it is slow. */
   quiet?: boolean;
   title: string;
@@ -21,11 +21,23 @@ const REASONS: Record<number, CloseReason> = {
     title: "This address may not open the bench",
     advice: "Open the page at the address the server printed.",
   },
+  4205: {
+    retry: true,
+    quiet: true,
+    title: "What may be seen of this bench has changed",
+    advice: "Reconnecting.",
+  },
   4401: {
     retry: false,
-    offer: "reload",
+    offer: "login",
     title: "You are not logged in",
     advice: "Open the address with the token that the server printed when it started.",
+  },
+  4403: {
+    retry: false,
+    offer: "bench",
+    title: "This bench is not yours",
+    advice: "Another one took its place, or it belongs to somebody else.",
   },
   4404: {
     retry: false,

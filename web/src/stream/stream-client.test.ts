@@ -74,10 +74,17 @@ describe("StreamClient", () => {
 
   it("offers the wire version as its subprotocol and subscribes when it is open", () => {
     client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 10 }, vi.fn());
-    expect(last().protocol).toBe("combbench.v2");
+    expect(last().protocol).toEqual(["combbench.v2"]);
     expect(last().sent).toEqual([]);
     last().accept();
     expect(types(last())).toEqual(["subscribe"]);
+  });
+
+  it("answers a ping where it arrives, also while nothing is drawn", () => {
+    last().accept();
+    handlers.isDrawing.mockReturnValue(false);
+    last().say({ type: "ping" });
+    expect(types(last())).toEqual(["pong"]);
   });
 
   it("waits 0.5, 1, 2, 5 s between attempts, and starts over after a hello", async () => {

@@ -1,5 +1,6 @@
 import { ApiError } from "../api/client";
 import type { components } from "../api/schema";
+import { sessionProtocols } from "../api/session";
 import type { Command } from "../api/types";
 import { type CloseReason, closeReason } from "./close-reason";
 import { decodeFrame, type Frame } from "./decode-frame";
@@ -92,7 +93,7 @@ export class StreamClient {
   }
 
   private open(): void {
-    const socket = new WebSocket(this.url, SUBPROTOCOL);
+    const socket = new WebSocket(this.url, [SUBPROTOCOL, ...sessionProtocols()]);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     let opened = false;
@@ -134,6 +135,8 @@ export class StreamClient {
   }
 
   private receiveText(message: ServerMessage): void {
+    // At once, and by no timer: a page that is hidden still hears, and still drives.
+    if (message.type === "ping") this.send({ type: "pong" });
     if (message.type === "reply") this.reply(message);
     if (message.type === "hello") this.attempt = 0;
     this.handlers.onMessage(message);

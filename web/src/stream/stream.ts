@@ -4,7 +4,6 @@ import { type Connection, mergeStatus, useBench } from "./bench-store";
 import { DrawLoop } from "./draw-loop";
 import { appendEvent } from "./event-log";
 import { StreamClient } from "./stream-client";
-import { veil } from "./veil";
 import type { ServerMessage } from "./wire";
 
 const STALE_MS = 1000;
@@ -12,7 +11,6 @@ const STALE_MS = 1000;
 let benchId = "";
 let serverId = "";
 let pendingEvents: LogEntry[] = [];
-/** What the server said of the bench; the store has it as the veil lets it through. */
 let known: { bench: Bench | undefined; scores: Record<string, Score> } = { bench: undefined, scores: {} };
 
 const patch = (connection: Partial<Connection>) =>
@@ -38,7 +36,6 @@ export const stream = { client, loop, open, retry: () => client.retryNow() };
 
 function open(id: string): void {
   benchId = id;
-  veil.show(id);
   pendingEvents = [];
   client.head = { tick: 0, dtMs: 0, running: false };
   known = { bench: undefined, scores: {} };
@@ -54,8 +51,15 @@ function receive(message: ServerMessage): void {
     case "hello": {
       const restarted = serverId !== "" && serverId !== message.server;
       serverId = message.server;
-      if (restarted) useBench.setState({ events: [] });
-      known.bench = message.bench;
+      // while a fault is hidden the server keeps a log of its own for the page
+      const turned = known.bench !== undefined && known.bench.blind?.id !== message.bench.blind?.id;
+      if (restarted || turned) {
+        pendingEvents = [];
+        useBench.setState({ events: [] });
+      }
+      // back after a break, in which the page may have missed that it was called
+      if (known.bench) useBench.setState((s) => ({ called: s.called + 1 }));
+      known = { bench: message.bench, scores: turned ? {} : known.scores };
       tell();
       const last = useBench.getState().events.at(-1)?.seq ?? 0;
       if (message.last_event > last) client.send({ type: "resume", after: last });
@@ -77,44 +81,31 @@ function receive(message: ServerMessage): void {
       pendingEvents.push(...message.events);
       return;
     case "notice":
-      useBench.setState({ notice: { code: message.code, message: message.message } });
+      if (message.code === "ask_me") useBench.setState((s) => ({ called: s.called + 1 }));
+      else useBench.setState({ notice: { code: message.code, message: message.message } });
       return;
     case "error":
       client.feeds.refused();
+      // back on a bench where a fault is hidden, a panel asks for what is hidden before it says so itself
+      if (known.bench?.blind && message.error.field === "signals") return;
       console.error("the server refused a message", message.error);
       useBench.setState({ notice: { code: message.error.code, message: message.error.message } });
       return;
     case "reply":
+    case "ping": // answered where it arrives
       return;
   }
 }
 
 function flushEvents(): void {
-  const events = veil.events(pendingEvents).reduce(appendEvent, useBench.getState().events);
+  const events = pendingEvents.reduce(appendEvent, useBench.getState().events);
   pendingEvents = [];
   useBench.setState({ events });
 }
 
-/** Put what is known into the store, as far as it may be seen. */
+/** Put what is known into the store. */
 function tell(): void {
-  useBench.setState({
-    blind: veil.on,
-    bench: known.bench && veil.bench(known.bench),
-    scores: veil.scores(known.scores),
-  });
-}
-
-/** Hide what tells the fault of a bench. */
-export function dropVeil(bench: string): void {
-  veil.drop(bench);
-  tell();
-  useBench.setState({ events: veil.events(useBench.getState().events) });
-}
-
-/** Show again what was hidden. */
-export function liftVeil(): void {
-  useBench.setState({ events: veil.lift().reduce(appendEvent, useBench.getState().events) });
-  tell();
+  useBench.setState({ ...known, blind: Boolean(known.bench?.blind) });
 }
 
 setInterval(() => {

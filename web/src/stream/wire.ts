@@ -20,6 +20,7 @@ export type ClientMessage =
   | Schemas["Rearm"]
   | Schemas["Ack"]
   | Schemas["Resume"]
+  | Schemas["Pong"]
   | { type: "command"; id: string; command: Command };
 
 /** A status leaves the parameters out while they are as before. */
@@ -31,4 +32,5 @@ export type ServerMessage =
   | Schemas["Events"]
   | Schemas["Reply"]
   | Schemas["ErrorMessage"]
-  | Schemas["Notice"];
+  | Schemas["Notice"]
+  | Schemas["Ping"];

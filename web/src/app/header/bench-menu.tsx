@@ -1,9 +1,13 @@
 import { Menu, UnstyledButton } from "@mantine/core";
-import { IconChevronDown, IconPlus, IconTrash } from "@tabler/icons-react";
+import { IconChevronDown, IconPlus, IconSchool, IconTrash } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../../api/api";
+import { lectures } from "../../api/lectures";
+import { useMay } from "../../api/me";
+import { useAsked } from "../../api/queries";
 import type { Bench } from "../../api/types";
 import { actions } from "../../bench/actions";
+import { startLecture } from "../../bench/lecture";
 import { openBench, ownBench } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
@@ -18,6 +22,8 @@ export function BenchMenu() {
   const watchers = useBench((s) => s.bench?.watchers ?? 0);
   const closed = useBench((s) => s.connection.phase === "closed");
   const slow = useSlowPage() && !closed;
+  const drives = useMay("drive");
+  const teaches = useMay("teach");
   const [benches, setBenches] = useState<Bench[]>([]);
   const now = closed ? "not connected" : slow ? "this page is slow" : `${watchers} watching`;
   const load = () => api.benches().then(setBenches, showError);
@@ -34,18 +40,23 @@ export function BenchMenu() {
         </UnstyledButton>
       </Menu.Target>
       <Menu.Dropdown>
-        <Menu.Item leftSection={<IconPlus size={16} />} onClick={actions.newBench}>
-          New bench
-        </Menu.Item>
-        <Menu.Divider />
-        <Menu.Label>On this server</Menu.Label>
+        {drives && (
+          <>
+            <Menu.Item leftSection={<IconPlus size={16} />} onClick={actions.newBench}>
+              New bench
+            </Menu.Item>
+            <Menu.Divider />
+          </>
+        )}
+        {teaches && <Lectures />}
+        <Menu.Label>{teaches ? "On this server" : drives ? "Your bench" : "You watch"}</Menu.Label>
         {benches.map((b) => (
           <Menu.Item
             key={b.id}
             aria-current={b.id === id}
             fw={b.id === id ? 650 : undefined}
             onClick={() => b.id !== id && openBench(b.id)}
-            rightSection={b.id === id ? undefined : <Remove bench={b} onDone={load} />}
+            rightSection={b.id === id || !teaches ? undefined : <Remove bench={b} onDone={load} />}
           >
             {b.title}
             <small className={styles.menuNote}>
@@ -56,6 +67,23 @@ export function BenchMenu() {
         ))}
       </Menu.Dropdown>
     </Menu>
+  );
+}
+
+/** The lectures, each at a press. */
+function Lectures() {
+  const { answer: value } = useAsked(["lectures"], lectures.all);
+  return (
+    <>
+      <Menu.Label>Lectures</Menu.Label>
+      {(value ?? []).map(({ id, title, minutes }) => (
+        <Menu.Item key={id} leftSection={<IconSchool size={16} />} onClick={() => void startLecture(id)}>
+          {title}
+          <small className={styles.menuNote}>{formatShort(minutes, "min")}, with notes for the speaker</small>
+        </Menu.Item>
+      ))}
+      <Menu.Divider />
+    </>
   );
 }
 

@@ -3,6 +3,7 @@ import { useMediaQuery } from "@mantine/hooks";
 import { useRef } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
+import { useMay } from "../../api/me";
 import type { BlockCard } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
@@ -28,6 +29,7 @@ function SlotSelect({ slot, active }: { slot: string; active: string | undefined
   const controllers = useBench((s) => s.bench?.controllers);
   const replay = useBench((s) => Boolean(s.bench?.replay_of));
   const closed = useBench((s) => s.connection.phase === "closed");
+  const drives = useMay("drive");
   const input = useRef<HTMLInputElement>(null);
   const { blocks } = useCatalog();
   const laws = controllersOf(slot, controllers ?? [], blocks);
@@ -41,7 +43,7 @@ function SlotSelect({ slot, active }: { slot: string; active: string | undefined
       title={slotTitle(slot)}
       allowDeselect={false}
       value={active ?? null}
-      disabled={!controllers || replay || closed}
+      disabled={!controllers || replay || closed || !drives}
       data={laws.map(({ name, title }) => ({ value: name, label: title }))}
       renderOption={({ option }) => <ControllerWords law={laws.find((b) => b.name === option.value)} />}
       onChange={(name) => name && name !== active && actions.controller(name)}

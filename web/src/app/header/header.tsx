@@ -1,4 +1,6 @@
+import { useMay } from "../../api/me";
 import { BenchMenu } from "./bench-menu";
+import { CompanyMenu } from "./company";
 import { ControllerSelect } from "./controller-select";
 import { DeviceClock } from "./device-clock";
 import styles from "./header.module.css";
@@ -6,9 +8,11 @@ import { RunControls } from "./run-controls";
 import { StateBadge } from "./state-badge";
 import { TimeScaleControl } from "./time-scale-control";
 import { Tools } from "./tools";
+import { Visitor } from "./visitor";
 
 /** The strip along the top: what runs, how fast, and the few things done all the time. */
 export function Header() {
+  const drives = useMay("drive");
   return (
     <header className={styles.header}>
       <img src="./comb.svg" alt="" width="26" height="26" />
@@ -16,11 +20,13 @@ export function Header() {
       <BenchMenu />
       <ControllerSelect />
       <div className={styles.middle}>
-        <RunControls />
+        {drives && <RunControls />}
         <StateBadge />
-        <TimeScaleControl />
+        {drives && <TimeScaleControl />}
         <DeviceClock />
       </div>
+      <CompanyMenu />
+      <Visitor />
       <Tools />
     </header>
   );

@@ -1,6 +1,6 @@
 import { Menu } from "@mantine/core";
 import { type LayoutName, useView } from "../../bench/view-store";
-import { FROM_LINK, isBuiltIn, ownLayouts, resetLayout, setLayout } from "../layouts";
+import { FROM_LINK, FROM_TEACHER, isBuiltIn, ownLayouts, resetLayout, setLayout } from "../layouts";
 import { togglePresent } from "../present";
 import styles from "./header.module.css";
 
@@ -24,6 +24,9 @@ export function LayoutItems() {
       ))}
       {layout === FROM_LINK && (
         <Item name={FROM_LINK} title="Layout of the link" what="until you save it or choose another" />
+      )}
+      {layout === FROM_TEACHER && (
+        <Item name={FROM_TEACHER} title="Layout of your teacher" what="until you save it or choose another" />
       )}
       <Menu.Divider />
       {isBuiltIn(layout) && <Menu.Item onClick={resetLayout}>Reset the {layout} layout</Menu.Item>}

@@ -1,5 +1,6 @@
 import { ActionIcon } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
+import { useLecture } from "../../bench/lecture";
 import { useSteps } from "../../bench/steps";
 import { useBench } from "../../stream/bench-store";
 import { setPresent } from "../present";
@@ -12,10 +13,12 @@ import { StateBadge } from "./state-badge";
 export function PresentedHeader() {
   const bench = useBench((s) => s.bench);
   const steps = useSteps();
+  // what comes next in a lecture is asked before it is shown
+  const lectures = useLecture((s) => s.lecture !== undefined);
   return (
     <header className={`${styles.header} ${styles.presented}`}>
       <h1>{bench?.title ?? "CombBench"}</h1>
-      {bench && steps.length > 1 && <StepWords bench={bench} steps={steps} />}
+      {bench && !lectures && steps.length > 1 && <StepWords bench={bench} steps={steps} />}
       <StateBadge />
       <DeviceClock />
       <ActionIcon

@@ -12,11 +12,17 @@ import {
   IconMoon,
   IconPlayerRecord,
   IconPlayerRecordFilled,
+  IconPresentation,
   IconShare2,
   IconSun,
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import { classes } from "../../api/classes";
+import { may, type Right, useMay, useMe } from "../../api/me";
+import { useClasses } from "../../api/use-classes";
 import { actions } from "../../bench/actions";
+import { useCompany } from "../../bench/driving";
+import { showError } from "../../bench/send";
 import { benchChange } from "../../bench/undo";
 import { LECTURE_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
@@ -28,10 +34,14 @@ import { LayoutItems } from "./layout-items";
 
 /** Below this width, in letters of the usual size, the titles want the room of the tools. */
 const ROOM_PX = 1400;
+/** What one more tool takes, and who is here. */
+const TOOL_PX = 40;
+const COMPANY_PX = 140;
 
 interface Tool {
   label: string;
   icon: ReactNode;
+  needs?: Right;
   run(): void;
 }
 
@@ -40,31 +50,55 @@ export function Tools() {
   const scheme = useScheme();
   const { width } = useViewportSize();
   const scale = useView((s) => (s.large ? s.fontPx / LECTURE_PX : 1));
-  const narrow = (width || window.innerWidth) / scale < ROOM_PX;
+  const show = useShow();
+  const room = ROOM_PX + TOOL_PX * show.length + (useCompany() ? COMPANY_PX : 0);
+  const narrow = (width || window.innerWidth) / scale < room;
   const recording = useBench((s) => (s.bench?.recording.length ?? 0) > 0);
   const undo = useBench((s) => s.bench?.undo?.seq !== undefined && benchChange("undo")?.text);
   const redo = useBench((s) => s.bench?.redo?.seq !== undefined && benchChange("redo")?.text);
-  const keep: Tool[] = [
+  const role = useMe((s) => s.me?.role);
+  useMay("drive"); // which depends on the bench, too
+  const all: Tool[] = [
     {
       label: undo ? `Undo: ${undo} (Ctrl Z)` : "Undo (Ctrl Z)",
       icon: <IconArrowBackUp size={19} />,
+      needs: "drive",
       run: () => takeBack("undo"),
     },
     {
       label: redo ? `Redo: ${redo} (Ctrl Y)` : "Redo (Ctrl Y)",
       icon: <IconArrowForwardUp size={19} />,
+      needs: "drive",
       run: () => takeBack("redo"),
     },
     {
       label: recording ? "Stop recording (V)" : "Record every signal (V)",
       icon: recording ? <IconPlayerRecordFilled size={19} color="var(--alarm)" /> : <IconPlayerRecord size={19} />,
+      needs: "drive",
       run: actions.record,
     },
     { label: "Save what happened as a scenario (S)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
-    { label: "Fork: a copy of this bench from now on (F)", icon: <IconGitFork size={19} />, run: actions.fork },
-    { label: "Keep this moment, to fork from later (K)", icon: <IconBookmark size={19} />, run: actions.keep },
-    { label: "Share this experiment by a link (Shift S)", icon: <IconShare2 size={19} />, run: actions.share },
+    {
+      label: "Fork: a copy of this bench from now on (F)",
+      icon: <IconGitFork size={19} />,
+      needs: "teach",
+      run: actions.fork,
+    },
+    {
+      label: "Keep this moment, to fork from later (K)",
+      icon: <IconBookmark size={19} />,
+      needs: "teach",
+      run: actions.keep,
+    },
+    {
+      label: "Share this experiment by a link (Shift S)",
+      icon: <IconShare2 size={19} />,
+      needs: "teach",
+      run: actions.share,
+    },
+    ...show,
   ];
+  const keep = all.filter(({ needs }) => !needs || may(needs, role));
   const page: Tool[] = [
     {
       label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)",
@@ -113,6 +147,22 @@ export function Tools() {
       ))}
     </div>
   );
+}
+
+/** Showing the bench to a class, where there is one; with several, each has a button on its own page. */
+function useShow(): Tool[] {
+  const { all, again } = useClasses();
+  const bench = useBench((s) => s.bench?.id);
+  const [group, ...others] = all;
+  if (!group || !bench || others.length > 0 || group.shown === bench) return [];
+  return [
+    {
+      label: `Show this bench to all of ${group.name}`,
+      icon: <IconPresentation size={19} />,
+      needs: "teach",
+      run: () => void classes.show(group.id, bench).then(again, showError),
+    },
+  ];
 }
 
 function Button({ label, icon, run }: Tool) {

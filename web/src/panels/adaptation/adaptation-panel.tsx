@@ -1,5 +1,6 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
+import { useMay } from "../../api/me";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
@@ -94,13 +95,16 @@ export function AdaptationPanel() {
 /** A controller that adapts in the shadow of another may be given the drive. */
 function Shadow({ block }: { block: string }) {
   const controllers = useBench((s) => s.bench?.controllers);
+  const drives = useMay("drive");
   if (!controllers?.includes(block)) return null;
   return (
     <p className={styles.nometer}>
       {block.replaceAll("_", " ")} runs in shadow: it adapts to the voltage another applies.{" "}
-      <Button size="compact-xs" variant="light" onClick={() => actions.controller(block)}>
-        Give it the drive
-      </Button>
+      {drives && (
+        <Button size="compact-xs" variant="light" onClick={() => actions.controller(block)}>
+          Give it the drive
+        </Button>
+      )}
     </p>
   );
 }

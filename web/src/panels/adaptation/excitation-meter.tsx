@@ -1,5 +1,6 @@
 import { Button } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
+import { useMay } from "../../api/me";
 import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
@@ -15,6 +16,7 @@ export function ExcitationMeter() {
   const signals = useBench((s) => s.bench?.signals);
   const parameters = useBench((s) => s.bench?.parameters);
   const [busy, setBusy] = useState(false);
+  const teaches = useMay("teach");
   const source = signals?.find((s) => s.name.endsWith(".excitation_relative"))?.name.split(".")[0];
   const section = (parameters?.identifiers as Record<string, { least_excitation?: number }> | undefined)?.[
     source ?? ""
@@ -61,9 +63,11 @@ export function ExcitationMeter() {
     return (
       <p className={styles.nometer}>
         Nothing on this bench measures how much the input tells.{" "}
-        <Button size="compact-xs" variant="light" loading={busy} onClick={add}>
-          Begin again with an excitation monitor
-        </Button>
+        {teaches && (
+          <Button size="compact-xs" variant="light" loading={busy} onClick={add}>
+            Begin again with an excitation monitor
+          </Button>
+        )}
       </p>
     );
   }

@@ -1,6 +1,7 @@
 import { Button } from "@mantine/core";
 import { useCallback } from "react";
 import { api } from "../../api/api";
+import { useMay } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import { openVariant } from "../../bench/open-bench";
 import { send, showError } from "../../bench/send";
@@ -25,6 +26,7 @@ export function AllanPanel() {
   const id = useBench((s) => s.bench?.id);
   const readouts = useBench((s) => s.bench?.parameters.readouts) as Record<string, { kind?: string }> | undefined;
   const visible = usePanelVisible();
+  const teaches = useMay("teach");
   const name = Object.entries(readouts ?? {}).find(([, { kind }]) => kind === "allan")?.[0];
   if (!id)
     return <EmptyState title="No bench yet">The noise of the rate appears with the bench of a gyroscope.</EmptyState>;
@@ -33,16 +35,19 @@ export function AllanPanel() {
       <EmptyState
         title="No read-out on this bench"
         action={
-          <Button
-            size="xs"
-            onClick={() => openVariant({ "readouts.allan.kind": "allan" }, "Bench with a read-out").catch(showError)}
-          >
-            Begin again with one
-          </Button>
+          teaches && (
+            <Button
+              size="xs"
+              onClick={() => openVariant({ "readouts.allan.kind": "allan" }, "Bench with a read-out").catch(showError)}
+            >
+              Begin again with one
+            </Button>
+          )
         }
       >
-        An Allan deviation gathers the rate from the first tick on, so the bench begins again from tick 0; the one
-        before stays.
+        {teaches
+          ? "An Allan deviation gathers the rate from the first tick on, so the bench begins again from tick 0; the one before stays."
+          : "An Allan deviation gathers the rate from the first tick on; the scenario of this bench has no read-out."}
       </EmptyState>
     );
   return visible ? <Readout key={`${id} ${name}`} bench={id} name={name} /> : null;
@@ -55,7 +60,8 @@ function Readout({ bench, name }: { bench: string; name: string }) {
     () => EVERY_MS,
   );
   const scheme = useScheme();
-  const limited = useBench((s) => s.bench?.time_scale !== null && !s.bench?.replay_of);
+  const drives = useMay("drive");
+  const limited = useBench((s) => drives && s.bench?.time_scale !== null && !s.bench?.replay_of);
   const paint = useCallback(
     (pen: Pen, box: Box, look: Look) => readout && paintAllan(pen, box, readout, look),
     [readout],

@@ -1,5 +1,6 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
+import { useMay } from "../../api/me";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { hypothesisWords } from "../../bench/hypothesis-words";
@@ -37,6 +38,7 @@ export function BehaviourPanel() {
   const { block } = useCatalog();
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const [busy, setBusy] = useState(false);
+  const teaches = useMay("teach");
   const picture = useRef<TakePicture>(null);
   const regions = block("diagnose", "regions");
   const all = useMemo(() => {
@@ -59,6 +61,7 @@ export function BehaviourPanel() {
         title="No behaviour to draw"
         action={
           bench &&
+          teaches &&
           !replay && (
             <>
               <Button

@@ -1,4 +1,5 @@
 import { Button, NativeSelect } from "@mantine/core";
+import { useMay } from "../../api/me";
 import { useCatalog } from "../../api/use-catalog";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
@@ -21,6 +22,7 @@ export function CardPanel() {
   const parameters = useBench((s) => s.bench?.parameters);
   const controller = useBench((s) => s.bench?.controller);
   const list = useInstances();
+  const drives = useMay("drive");
   const { blocks, block, failed, retry } = useCatalog();
   const wanted = card === "controller" ? `controllers.${controller}` : card;
   const instance = list.find((i) => i.id === wanted) ?? list[0];
@@ -57,13 +59,16 @@ export function CardPanel() {
             </div>
           )}
           <LiveValues key={`live ${instance.id} ${instance.name}`} instance={instance} />
-          {GENERATORS.includes(instance.family) && <KindChoice instance={instance} />}
-          <ParameterList
-            key={`${instance.id} ${instance.name}`}
-            instance={instance}
-            parameters={found.parameters}
-            document={parameters}
-          />
+          {!drives && <p className={styles.summary}>You watch this bench; its values cannot be changed here.</p>}
+          <fieldset className={styles.values} disabled={!drives}>
+            {GENERATORS.includes(instance.family) && <KindChoice instance={instance} />}
+            <ParameterList
+              key={`${instance.id} ${instance.name}`}
+              instance={instance}
+              parameters={found.parameters}
+              document={parameters}
+            />
+          </fieldset>
         </>
       ) : (
         <EmptyState

@@ -1,14 +1,43 @@
+import { SegmentedControl } from "@mantine/core";
+import { useState } from "react";
+import { useMay } from "../../api/me";
+import { useClasses } from "../../api/use-classes";
 import { eventTone } from "../../bench/flag-words";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment } from "../../ui/format";
 import { jump } from "../../ui/hover";
 import styles from "./events.module.css";
+import { WhoDid } from "./who-did";
 
 const SHOWN = 300;
 
 /** Everything that happened, numbered, newest first; a click takes the scopes there. */
 export function EventsPanel() {
+  const bench = useBench((s) => s.bench?.id);
+  const shared = useBench((s) => Boolean(s.bench?.company));
+  const classes = useClasses().all.length > 0;
+  const teaches = useMay("teach");
+  const [who, setWho] = useState(false);
+  if (!bench || !teaches || !(shared || classes || who)) return <Events />;
+  return (
+    <div className={styles.panel}>
+      <SegmentedControl
+        size="xs"
+        aria-label="What is listed"
+        data={[
+          { value: "what", label: "What happened" },
+          { value: "who", label: "Who did what" },
+        ]}
+        value={who ? "who" : "what"}
+        onChange={(value) => setWho(value === "who")}
+      />
+      {who ? <WhoDid bench={bench} /> : <Events />}
+    </div>
+  );
+}
+
+function Events() {
   const events = useBench((s) => s.events);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (events.length === 0)

@@ -3,6 +3,7 @@ import { IconPlus } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
 import { fits } from "../../api/fits";
+import { useMay } from "../../api/me";
 import { useAsked } from "../../api/queries";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-bench";
@@ -26,6 +27,7 @@ export function HypothesesPanel() {
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const [drafts, setDrafts] = useState<Record<string, Hypothesis[]>>({});
   const [busy, setBusy] = useState(false);
+  const teaches = useMay("teach");
   const [id, bank] = banks.find(([name]) => name === wanted) ?? banks[0] ?? [];
   const key = `${bench} ${id}`;
   const list = drafts[key] ?? bank?.hypotheses ?? [];
@@ -82,34 +84,40 @@ export function HypothesesPanel() {
             As it was
           </Button>
         )}
-        <Button
-          size="compact-sm"
-          loading={busy}
-          disabled={!changed || wrong !== undefined}
-          onClick={() => begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench begins again with the new list.")}
-        >
-          Begin again with this list
-        </Button>
-        <NativeSelect
-          size="xs"
-          aria-label="Let another method race on the same list"
-          value=""
-          disabled={busy || wrong !== undefined}
-          data={[
-            { value: "", label: "Race another method…" },
-            ...kinds
-              .filter((b) => !(b.name in Object.fromEntries(banks)))
-              .map((b) => ({ value: b.name, label: b.title })),
-          ]}
-          onChange={(e) => {
-            const kind = e.currentTarget.value;
-            if (kind)
-              begin(
-                { [`diagnosers.${kind}`]: { kind, hypotheses: list } },
-                "The bench begins again with another method.",
-              );
-          }}
-        />
+        {teaches && (
+          <Button
+            size="compact-sm"
+            loading={busy}
+            disabled={!changed || wrong !== undefined}
+            onClick={() =>
+              begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench begins again with the new list.")
+            }
+          >
+            Begin again with this list
+          </Button>
+        )}
+        {teaches && (
+          <NativeSelect
+            size="xs"
+            aria-label="Let another method race on the same list"
+            value=""
+            disabled={busy || wrong !== undefined}
+            data={[
+              { value: "", label: "Race another method…" },
+              ...kinds
+                .filter((b) => !(b.name in Object.fromEntries(banks)))
+                .map((b) => ({ value: b.name, label: b.title })),
+            ]}
+            onChange={(e) => {
+              const kind = e.currentTarget.value;
+              if (kind)
+                begin(
+                  { [`diagnosers.${kind}`]: { kind, hypotheses: list } },
+                  "The bench begins again with another method.",
+                );
+            }}
+          />
+        )}
       </div>
       {wrong && (
         <p role="alert" className={styles.wrong}>

@@ -17,6 +17,7 @@ it("puts banks before states, and leaves out what says nothing", () => {
       "kalman.probability.healthy",
       "kalman.probability.m+5",
       "kalman.winner",
+      "kalman.truth",
       "mute.estimate",
     ),
   });
@@ -24,4 +25,9 @@ it("puts banks before states, and leaves out what says nothing", () => {
   expect(found[0]).toMatchObject({ verdict: "kalman.winner", truth: true, names: ["healthy", "m+5"] });
   expect(found[1]).toMatchObject({ verdict: "regions.region", truth: false, probabilities: [] });
   expect(found[1].names[3]).toBe("danger");
+  const blind = contestants({
+    diagnosers: { kalman: { kind: "mmae", names: ["healthy"], factors: [] } },
+    signals: signals("kalman.winner"),
+  });
+  expect(blind[0].truth).toBe(false); // while a fault is hidden
 });

@@ -23,7 +23,10 @@ export function contestants(bench: Pick<Bench, "diagnosers" | "signals">): Conte
   const known = new Set(bench.signals.map((s) => s.name));
   const found = Object.entries(bench.diagnosers).flatMap(([id, { names }]): Contestant[] => {
     const probabilities = names.map((name) => `${id}.probability.${name}`).filter((name) => known.has(name));
-    if (known.has(`${id}.winner`)) return [{ id, names, probabilities, verdict: `${id}.winner`, truth: true }];
+    if (known.has(`${id}.winner`)) {
+      const truth = known.has(`${id}.truth`); // not while a fault is hidden
+      return [{ id, names, probabilities, verdict: `${id}.winner`, truth }];
+    }
     const state = Object.keys(STATES).find((port) => known.has(`${id}.${port}`));
     return state ? [{ id, names: STATES[state], probabilities: [], verdict: `${id}.${state}`, truth: false }] : [];
   });

@@ -13,7 +13,9 @@ import styles from "./lanes.module.css";
 import { LanesHeadline } from "./lanes-headline";
 import { lanesLayout, leastHeight } from "./lanes-layout";
 import { type LanesShown, lanesPicture, paintLanes } from "./paint-lanes";
+import { paintVotes, votesInWords } from "./paint-votes";
 import type { LaneTime } from "./use-lane-time";
+import { useRevealed } from "./use-revealed";
 
 /** Share of the panel that the words of the hypotheses may take; otherwise their names stand there. */
 const WORDS_SHARE = 0.32;
@@ -33,6 +35,7 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
   const { element, size } = useSize<HTMLElement>();
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const switches = useMemo(() => truthSwitches(currentEvents(events), id), [events, id]);
+  const votes = useRevealed(id, names);
   const unexplained = `${id}.unexplained`; // traces recorded earlier do not have it
   const withUnexplained = useBench((s) => s.bench?.signals.some(({ name }) => name === unexplained) ?? false);
   const signals = useMemo(
@@ -56,8 +59,9 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
     () => (pen, box, now, look) => {
       shown.current = { ...now, names, labels, gutter: left / fontSize, switches, withUnexplained, picked };
       paintLanes(pen, box, shown.current, look);
+      if (votes) paintVotes(pen, box, shown.current, look, votes);
     },
-    [names, labels, left, fontSize, switches, withUnexplained, picked],
+    [names, labels, left, fontSize, switches, withUnexplained, picked, votes],
   );
   const edges = lanesLayout(1000, 400, names.length, fontSize, left);
 
@@ -73,7 +77,7 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
         <LaneTools time={time} onWindow={onWindow} take={() => shown.current && lanesPicture(shown.current, id)} />
       </div>
       <LaneCanvas
-        label={`Probability of ${labels.join(", ")} over time`}
+        label={`Probability of ${labels.join(", ")} over time${votes ? `; ${votesInWords(votes, labels)}` : ""}`}
         legend={hypothesesExplained(names)}
         signals={signals}
         time={time}

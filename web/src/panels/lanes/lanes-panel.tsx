@@ -30,6 +30,7 @@ function usualWindow(step: number | undefined, dtMs: number | undefined): number
 export function LanesPanel() {
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const signals = useBench((s) => s.bench?.signals);
+  const blind = useBench((s) => s.blind);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const end = useBench((s) => s.bench?.samples);
   const step = longestStep(useSteps(), end);
@@ -42,6 +43,12 @@ export function LanesPanel() {
     () => contestants({ diagnosers: diagnosers ?? {}, signals: signals ?? [] }),
     [diagnosers, signals],
   );
+  if (all.length === 0 && blind)
+    return (
+      <EmptyState title="Hidden while you look for the fault">
+        The server hides what the diagnosers say until you answer under Blind diagnosis.
+      </EmptyState>
+    );
   if (all.length === 0)
     return (
       <EmptyState title="No diagnoser on this bench" action={<OfferDiagnoser />}>

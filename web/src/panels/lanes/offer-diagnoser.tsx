@@ -1,6 +1,7 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { fits } from "../../api/fits";
+import { useMay } from "../../api/me";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
@@ -15,11 +16,12 @@ export function OfferDiagnoser() {
   const { blocks } = useCatalog();
   const [wanted, setWanted] = useState(USUAL);
   const [busy, setBusy] = useState(false);
+  const teaches = useMay("teach");
   const banks = blocks.filter(
     (b) => b.family === "diagnose" && fits(b, axes) && b.parameters.some((p) => p.name === "hypotheses"),
   );
   const bank = banks.find((b) => b.name === wanted) ?? banks[0];
-  if (!bank || replay) return null; // the past cannot be changed
+  if (!bank || replay || !teaches) return null; // the past cannot be changed
   const begin = () => {
     setBusy(true);
     openVariant({ [`diagnosers.${bank.name}`]: { kind: bank.name } }, `The bench begins again with ${bank.title}.`)

@@ -29,7 +29,7 @@ export interface LanesShown extends LaneShown {
 const LANE_PX = 46;
 const BANDS_PX = 100;
 
-const layoutOf = ({ width, height }: Box, { names, gutter }: LanesShown, { fontSize }: Look) =>
+export const layoutOf = ({ width, height }: Box, { names, gutter }: LanesShown, { fontSize }: Look) =>
   lanesLayout(width, height, names.length, fontSize, gutter * fontSize);
 
 /** Paint a bank: one filled lane per hypothesis, the guess hatched, the truth solid, the delay between them. */

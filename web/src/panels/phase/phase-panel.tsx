@@ -1,6 +1,7 @@
 import { Button, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
 import { hasAxes } from "../../api/fits";
+import { useMay } from "../../api/me";
 import { send } from "../../bench/send";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
@@ -14,6 +15,7 @@ import { useUnstableRegion } from "./use-unstable-region";
 
 /** One signal over another, with the map of the unstable region beneath travel and velocity. */
 export function PhasePanel() {
+  const drives = useMay("drive");
   const signals = useBench((s) => s.bench?.signals);
   const plant = useBench((s) =>
     String((s.bench?.parameters.plant as { model?: string } | undefined)?.model ?? "linear"),
@@ -84,13 +86,15 @@ export function PhasePanel() {
           ) : flat ? (
             <>
               No unstable region: the {plant} plant cannot move sideways. The planar one can.{" "}
-              <Button
-                size="compact-xs"
-                variant="light"
-                onClick={() => send({ set: { "plant.model": "planar" } }, "Planar plant")}
-              >
-                Use the planar plant
-              </Button>
+              {drives && (
+                <Button
+                  size="compact-xs"
+                  variant="light"
+                  onClick={() => send({ set: { "plant.model": "planar" } }, "Planar plant")}
+                >
+                  Use the planar plant
+                </Button>
+              )}
             </>
           ) : fits.folds ? (
             map ? (

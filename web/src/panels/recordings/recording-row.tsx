@@ -2,6 +2,7 @@ import { ActionIcon, Button } from "@mantine/core";
 import { IconPlayerPlay, IconTrash } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
+import { useMay } from "../../api/me";
 import type { Recording } from "../../api/types";
 import { openReplay } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
@@ -28,6 +29,7 @@ interface RecordingRowProps {
 /** One recording: what it is, and what can be done with it. */
 export function RecordingRow({ recording, isHere, onCompare, onChanged }: RecordingRowProps) {
   const [busy, setBusy] = useState(false);
+  const teaches = useMay("teach");
   const { id, name, state, ticks, dt_ms, start_tick, condition, created, bytes, reason, signals } = recording;
   const open = state === "armed" || state === "recording";
   const play = async () => {
@@ -66,22 +68,28 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
       {!open && (
         <div className={rows.do}>
           <Downloads href={(format) => `./api/v1/recordings/${id}/trace?format=${format}`} formats={TRACE_FORMATS} />
-          <Button
-            size="compact-xs"
-            variant="light"
-            loading={busy}
-            leftSection={<IconPlayerPlay size={13} />}
-            onClick={play}
-            aria-label={`Replay ${name}`}
-          >
-            Replay
-          </Button>
-          <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${name} with another`}>
-            Compare
-          </Button>
-          <ActionIcon size={22} variant="subtle" aria-label={`Delete ${name}`} onClick={remove}>
-            <IconTrash size={14} />
-          </ActionIcon>
+          {teaches && (
+            <Button
+              size="compact-xs"
+              variant="light"
+              loading={busy}
+              leftSection={<IconPlayerPlay size={13} />}
+              onClick={play}
+              aria-label={`Replay ${name}`}
+            >
+              Replay
+            </Button>
+          )}
+          {teaches && (
+            <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${name} with another`}>
+              Compare
+            </Button>
+          )}
+          {teaches && (
+            <ActionIcon size={22} variant="subtle" aria-label={`Delete ${name}`} onClick={remove}>
+              <IconTrash size={14} />
+            </ActionIcon>
+          )}
         </div>
       )}
     </li>

@@ -1,5 +1,6 @@
 import { useState } from "react";
 import { api } from "../../api/api";
+import { useMay } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
@@ -20,6 +21,7 @@ export function RecordingsPanel() {
 
 function Recordings() {
   const bench = useBench((s) => s.bench?.id);
+  const drives = useMay("drive");
   const replay = useBench((s) => s.bench?.replay_of);
   const underWay = useBench((s) => (s.bench?.recording.length ?? 0) + (s.bench?.armed.length ?? 0));
   const { value, error, since, again } = useAnswer(["recordings"], api.recordings, (list) =>
@@ -30,7 +32,7 @@ function Recordings() {
 
   return (
     <section className={rows.panel} aria-label="Recordings">
-      {bench && !replay && <RecordForm onChanged={again} />}
+      {bench && !replay && drives && <RecordForm onChanged={again} />}
       <Stale error={error} since={since} onRetry={again} />
       {comparing && value && (
         <CompareView key={comparing.id} first={comparing} others={value} onClose={() => setFirst(undefined)} />

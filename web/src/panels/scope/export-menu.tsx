@@ -1,5 +1,6 @@
 import { Menu } from "@mantine/core";
 import type { RefObject } from "react";
+import { ticketed } from "../../api/launch";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { scopePicture } from "./paint-scope";
@@ -23,7 +24,7 @@ export function ExportMenu({ plot }: { plot: RefObject<ScopePlot | undefined> })
       start_tick: String(Math.max(bench.first_tick, Math.floor(picture.span.start))),
       end_tick: String(Math.ceil(picture.span.end)),
     });
-    window.location.assign(`./api/v1/benches/${bench.id}/trace?${query}`);
+    ticketed(`./api/v1/benches/${bench.id}/trace?${query}`).then((address) => window.location.assign(address));
   };
   return (
     <PictureMenu take={take}>

@@ -2,6 +2,7 @@ import { ActionIcon, Button, TextInput } from "@mantine/core";
 import { IconPencil, IconTrash } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
+import { useMay } from "../../api/me";
 import type { ParameterSet } from "../../api/types";
 import { announce } from "../../bench/announce";
 import { send, showError } from "../../bench/send";
@@ -19,6 +20,7 @@ interface SetRowProps {
 /** One set: put it on the bench, compare it, name it anew, delete it. */
 export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
   const [name, setName] = useState<string | undefined>(undefined);
+  const teaches = useMay("teach");
   const apply = async () => {
     try {
       const { result, left_out } = await api.applyParameterSet(bench, set.id);
@@ -69,12 +71,16 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
         <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${set.name}`}>
           Compare
         </Button>
-        <ActionIcon size={24} variant="subtle" aria-label={`Rename ${set.name}`} onClick={() => setName(set.name)}>
-          <IconPencil size={14} />
-        </ActionIcon>
-        <ActionIcon size={24} variant="subtle" aria-label={`Delete ${set.name}`} onClick={remove}>
-          <IconTrash size={14} />
-        </ActionIcon>
+        {teaches && (
+          <>
+            <ActionIcon size={24} variant="subtle" aria-label={`Rename ${set.name}`} onClick={() => setName(set.name)}>
+              <IconPencil size={14} />
+            </ActionIcon>
+            <ActionIcon size={24} variant="subtle" aria-label={`Delete ${set.name}`} onClick={remove}>
+              <IconTrash size={14} />
+            </ActionIcon>
+          </>
+        )}
       </div>
     </li>
   );

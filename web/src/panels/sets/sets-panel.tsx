@@ -1,6 +1,7 @@
 import { Button, TextInput } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
+import { useMay } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
@@ -22,6 +23,7 @@ function Sets() {
   const bench = useBench((s) => s.bench?.id) ?? "";
   const { value: sets, error, since, again } = useAnswer(["parameter sets"], api.parameterSets, () => EVERY_MS);
   const [name, setName] = useState("");
+  const teaches = useMay("teach");
   const [chosen, setChosen] = useState<string | undefined>(undefined);
   const comparing = sets?.find((one) => one.id === chosen);
   const keep = async () => {
@@ -35,33 +37,37 @@ function Sets() {
   };
   return (
     <section className={rows.panel} aria-label="Parameter sets">
-      <form
-        className={rows.form}
-        onSubmit={(event) => {
-          event.preventDefault();
-          void keep();
-        }}
-      >
-        <TextInput
-          size="xs"
-          label="Keep the values of now as"
-          placeholder="soft PID, lecture 3"
-          maxLength={100}
-          value={name}
-          onChange={(e) => setName(e.currentTarget.value)}
-        />
-        <Button type="submit" size="xs" disabled={!name.trim()}>
-          Keep
-        </Button>
-      </form>
+      {teaches && (
+        <form
+          className={rows.form}
+          onSubmit={(event) => {
+            event.preventDefault();
+            void keep();
+          }}
+        >
+          <TextInput
+            size="xs"
+            label="Keep the values of now as"
+            placeholder="soft PID, lecture 3"
+            maxLength={100}
+            value={name}
+            onChange={(e) => setName(e.currentTarget.value)}
+          />
+          <Button type="submit" size="xs" disabled={!name.trim()}>
+            Keep
+          </Button>
+        </form>
+      )}
       <Stale error={error} since={since} onRetry={again} />
       {comparing && sets && (
         <SetDifference key={comparing.id} first={comparing} others={sets} onClose={() => setChosen(undefined)} />
       )}
       {sets?.length === 0 ? (
         <EmptyState title="No set yet">
-          A set holds every value that may change while the bench runs. Keep one, change what you like, and put it back
-          in one tick.
+          A set holds every value that may change while the bench runs.{" "}
+          {teaches
+            ? "Keep one, change what you like, and put it back in one tick."
+            : "The teacher keeps some here; you can put them on your bench in one tick."}
         </EmptyState>
       ) : (
         <ul className={rows.list}>

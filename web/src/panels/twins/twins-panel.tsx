@@ -1,4 +1,5 @@
 import { useMemo, useRef, useState } from "react";
+import { useMay } from "../../api/me";
 import { useView } from "../../bench/view-store";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
@@ -25,6 +26,7 @@ export function TwinsPanel() {
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const fontSize = useView((s) => s.fontPx);
   const [windowMs, setWindowMs] = useState(4);
+  const teaches = useMay("teach");
   const time = useLaneTime(windowMs, dtMs);
   const boards = useMemo(
     () => (parameters && controller ? boardsOf({ parameters, controller }) : []),
@@ -45,12 +47,14 @@ export function TwinsPanel() {
     [strips],
   );
   if (!id || boards.length === 0) return <EmptyState title="No bench yet">Twins begin with a bench.</EmptyState>;
-  const form = <TwinsForm key={id} chosen={boards.slice(1).map((b) => b.chosen)} />;
+  const form = teaches && <TwinsForm key={id} chosen={boards.slice(1).map((b) => b.chosen)} />;
   if (boards.length === 1)
     return (
       <EmptyState title="No twins on this bench" action={form}>
-        A twin is a second board that meets the same input, noise and faults, tick by tick, under another controller.
-        Choose up to three; the bench begins again at tick 0 with them beside it.
+        A twin is a second board that meets the same input, noise and faults, tick by tick, under another controller.{" "}
+        {teaches
+          ? "Choose up to three; the bench begins again at tick 0 with them beside it."
+          : "Only the teacher gives a bench twins; scenarios of the gallery have some."}
       </EmptyState>
     );
   const take = () => shown.current && stripsPicture(shown.current, strips, "Twins", boards);

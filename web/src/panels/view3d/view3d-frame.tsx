@@ -1,4 +1,6 @@
 import { useEffect, useRef, useState } from "react";
+import { ticketed } from "../../api/launch";
+import { isInFrame, sessionHeaders } from "../../api/session";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { usePageVisible } from "../../ui/panel-visible";
@@ -38,7 +40,8 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
   const [closed, setClosed] = useState(false);
   const [connected, setConnected] = useState(0);
   const [camera, setCamera] = useState<Camera>("whole");
-  const [address] = useState(() => `${path}?${query(scheme)}`);
+  const shown = ready && !idle;
+  const address = useAddress(path, scheme, shown, loads);
 
   useEffect(() => {
     const timer = setTimeout(() => setReady(true), HEAD_START_MS);
@@ -70,7 +73,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
   useEffect(() => {
     if (!closed || !visible || gone) return;
     const timer = setInterval(async () => {
-      const answer = await fetch(path).catch(() => undefined);
+      const answer = await fetch(path, { headers: sessionHeaders() }).catch(() => undefined);
       if (!answer?.ok) return;
       setClosed(false);
       setLoads((n) => n + 1);
@@ -94,7 +97,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
 
   return (
     <div className={styles.view}>
-      {ready && !idle && (
+      {shown && address && (
         <iframe
           key={`${path}-${loads}`}
           ref={frame}
@@ -124,6 +127,27 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
       )}
     </div>
   );
+}
+
+/** Where the frame is loaded from; in a page that has no cookie, by tickets that are made for each time it loads. */
+function useAddress(path: string, scheme: string, shown: boolean, loads: number): string | undefined {
+  const [plain] = useState(() => `${path}?${query(scheme)}`);
+  const [withTickets, setWithTickets] = useState<string | undefined>(undefined);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: one that is loaded again needs new tickets
+  useEffect(() => {
+    if (!isInFrame()) return;
+    setWithTickets(undefined);
+    let wanted = shown;
+    if (shown)
+      Promise.all([ticketed(plain), ticketed(path.replace(/\/$/, ""))]).then(([page, socket]) => {
+        const server = encodeURIComponent(socket.replace(/^http/, "ws"));
+        if (wanted) setWithTickets(`${page}&websocket=${server}`);
+      });
+    return () => {
+      wanted = false;
+    };
+  }, [plain, shown, loads]);
+  return isInFrame() ? withTickets : plain;
 }
 
 function query(scheme: string): URLSearchParams {

@@ -1,0 +1,128 @@
+"""A board as plain data: what was done to it and the numbers it is made of; from these it goes on, bit for bit.
+
+The wiring is not stored. It follows from the bench and from what was done to it, in that order; only its numbers are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.board import changes
+from core.board.board import Board
+from core.board.commands import Trip, parse_command
+from core.board.condition import parse_condition
+from core.board.document import Document
+from core.board.ensemble import Ensemble, make
+from core.board.pending import Pending, Queue
+from core.errors import InputError
+
+Arrays = Mapping[str, NDArray[Any]]
+NUMBERS = ("p", "s", "w", "io")
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A board at a tick edge.
+
+    Parameters
+    ----------
+    document : dict
+        Its bench, its commands and where it stands; JSON can hold all of it.
+    arrays : mapping of str to ndarray
+        Copies of its numbers.
+    """
+
+    document: Document
+    arrays: Arrays = field(repr=False)
+
+
+def stored(board: Board) -> Stored:
+    """Return a board as plain data; the board goes on by itself."""
+    document, arrays = _one(board)
+    document["base"] = board.base
+    if isinstance(board, Ensemble):
+        document |= {"mirrored": board.mirrored, "warned": sorted(board.warned), "twins": {}}
+        for name, twin in board.twins.items():
+            document["twins"][name], own = _one(twin)
+            arrays |= {f"{name}:{key}": value for key, value in own.items()}
+    return Stored(document, arrays)
+
+
+def revived(kept: Stored) -> Board:
+    """Return a board that goes on from what was stored.
+
+    Raises
+    ------
+    InputError
+        If this version gives the bench other numbers.
+    """
+    board = make(kept.document["base"])
+    _go_on(board, kept.document, kept.arrays)
+    if isinstance(board, Ensemble):
+        board.mirrored, board.warned = kept.document["mirrored"], set(kept.document["warned"])
+        for name, twin in board.twins.items():
+            prefix = f"{name}:"
+            own = {key.removeprefix(prefix): value for key, value in kept.arrays.items() if key.startswith(prefix)}
+            _go_on(twin, kept.document["twins"][name], own)
+    return board
+
+
+def _one(board: Board) -> tuple[Document, dict[str, NDArray[Any]]]:
+    last, cautions = board.observer.seen()
+    document = {
+        "tick": board.tick,
+        "done": [[tick, command.document()] for tick, command in board.done],
+        "pending": [_waiting(entry) for entry in board.pending],
+        "asked": board.pending.asked,
+        "trip": board.trip.model_dump(mode="json") if board.trip is not None else None,
+        "used": sorted(board.used),
+        "cautions": cautions,
+    }
+    arrays = {name: getattr(board.wiring, name).copy() for name in NUMBERS}
+    return document, {**arrays, "folds": board.folds.copy(), "last": last}
+
+
+def _go_on(board: Board, document: Document, arrays: Arrays) -> None:
+    """Do to a board at tick 0 all that was done to the one before, then give it its numbers."""
+    for tick, command in document["done"]:
+        parsed = parse_command(command)
+        board.tick = tick
+        if parsed.kind == "reset_trip":  # only a board that has tripped takes it; here no tick has run
+            board.trip = Trip(tick=tick, time_ms=0.0, reason="", signal="", value=None)
+        changes.carry_out(board, parsed)
+        board.done.append((tick, parsed))
+    board.tick, board.used = document["tick"], set(document["used"])
+    board.trip = Trip.model_validate(document["trip"]) if document["trip"] is not None else None
+    board.pending = Queue.of([_entry(entry, board) for entry in document["pending"]], document["asked"])
+    for name in NUMBERS:
+        _fill(getattr(board.wiring, name), arrays[name])
+    _fill(board.folds, arrays["folds"])
+    board.observer.go_on(arrays["last"], document["cautions"])
+
+
+def _fill(numbers: NDArray[Any], kept: NDArray[Any]) -> None:
+    if numbers.shape != kept.shape or numbers.dtype != kept.dtype:
+        raise InputError("this version gives the bench other numbers")
+    np.copyto(numbers, kept)
+
+
+def _waiting(entry: Pending) -> Document:
+    return {
+        "command": entry.command.document(),
+        "actor": entry.actor,
+        "tick": entry.tick,
+        "watched": entry.condition is not None,
+        "since": entry.since,
+        "number": entry.number,
+    }
+
+
+def _entry(kept: Document, board: Board) -> Pending:
+    command = parse_command(kept["command"])
+    watched = parse_condition(command.when or "", board.wiring.signals.names) if kept["watched"] else None
+    return Pending(command, kept["actor"], kept["tick"], watched, kept["since"], kept["number"])

@@ -1,0 +1,21 @@
+"""What all worker processes have in common: loaded once, in the process that they are forked from.
+
+Code takes more than a second to load, and compiled kernels half of one. This process has no work of its own.
+"""
+
+from __future__ import annotations
+
+import gc
+
+from scenarios.campaign.batch import FEWEST, outcomes
+from scenarios.edit import with_values
+from scenarios.kernels import FIRST_BENCH, complete
+from scenarios.library import get
+
+marker = complete()
+if marker is not None and marker.exists():  # otherwise each is compiled by who needs it
+    short = with_values(get(FIRST_BENCH), {"samples": 1})
+    outcomes([(short, 1)])
+    outcomes([(short, seed) for seed in range(FEWEST)])
+
+gc.freeze()  # what is loaded stays: no collection looks at it again, and no process copies it

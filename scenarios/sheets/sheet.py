@@ -1,0 +1,278 @@
+"""What a sheet is: its head, and sections of text, each with at most one step that the server checks."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Formula = float | Annotated[str, Field(min_length=1, max_length=300)]
+"""A number, or a formula over the facts of the bench."""
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
+Words = Annotated[str, Field(min_length=1, max_length=400)]
+Share = Annotated[float, Field(ge=0, le=1)]
+NUMBER_COSTS = 0.25
+"""Share of the points of a number that a wrong answer costs unless the sheet says otherwise."""
+
+
+class Part(BaseModel):
+    """Base of all parts of a sheet: no field it does not know, no silent conversion."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class Drawn(Part):
+    """A number that varies with the student: low, low + step, and so on up to high."""
+
+    low: float
+    high: float
+    step: float = Field(gt=0)
+
+    @model_validator(mode="after")
+    def _has_some(self) -> Self:
+        if self.count < 2:
+            raise ValueError("high is less than one step above low")
+        return self
+
+    @property
+    def count(self) -> int:
+        """How many numbers there are."""
+        return int((self.high - self.low) / self.step + 1e-9) + 1
+
+    def of(self, seed: int) -> float:
+        """Return the number that a seed draws."""
+        return self.low + seed % self.count * self.step
+
+
+class Bench(Part):
+    """The bench that a sheet begins with."""
+
+    scenario: str = Field(description="Id of a scenario of the library")
+    drawn_device: bool = Field(False, description="Draw the device from the process spread, one for each student")
+    set: dict[str, float | bool | str | dict[str, Any] | list[Any]] = Field({}, description="Written over the scenario")
+    time_scale: float | None = Field(None, gt=0, le=1, description="Device seconds per wall second; that of the device")
+
+
+class Head(Part):
+    """The front matter."""
+
+    schema_: Literal[1] = Field(alias="schema")
+    title: Words
+    summary: Words
+    minutes: int = Field(ge=5, le=90)
+    bench: Bench
+    draws: dict[Name, Drawn] = {}
+    numbers: dict[Name, Formula] = Field({}, description="Named formulas, each over the facts and the ones before")
+
+
+class Hint(Part):
+    """Help, and what it costs; the price is said before."""
+
+    text: Words
+    costs: float = Field(ge=0, description="Points")
+
+
+class Step(Part):
+    """What all steps have."""
+
+    id: Name
+    points: float = Field(gt=0, le=20)
+    hints: list[Hint] = []
+
+
+class Limits(Part):
+    """A quantity of the bench, and what it is to be."""
+
+    label: Words
+    name: Name | None = Field(None, description="Its value when the step is done is the fact <step>_<name>")
+    signal: str | None = None
+    measure: Literal["value", "mean", "rms", "peak", "swing", "amplitude", "phase", "share"] = "value"
+    over: str | None = Field(None, description="A signal whose rms, swing or amplitude it is divided by")
+    setting: str | None = Field(None, description="Dotted path of the bench as it is now")
+    verdict: str | None = Field(None, description="Id of a diagnoser: the name of the hypothesis it believes")
+    fault: str | None = Field(None, description="The severity of this fault, 0 while it is not there")
+    between: tuple[Formula, Formula] | None = None
+    equals: str | None = None
+    unit: str = ""
+    told: bool = Field(True, description="Whether the page says what it is to be")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _pair(cls, values: Any) -> Any:
+        """Take a list of two for the limits."""
+        if isinstance(values, dict) and isinstance(values.get("between"), list):
+            return {**values, "between": tuple(values["between"])}
+        return values
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        if sum(source is not None for source in (self.signal, self.setting, self.verdict, self.fault)) != 1:
+            raise ValueError("needs one of signal, setting, verdict, fault")
+        if (self.between is None) == (self.equals is None):
+            raise ValueError("needs between or equals, not both")
+        if self.equals is not None and not (self.setting or self.verdict):
+            raise ValueError("equals is for a setting or a verdict")
+        if self.between is not None and self.verdict:
+            raise ValueError("a verdict has a name: use equals")
+        return self
+
+
+class Hold(Step):
+    """Conditions that hold together for a time of the device."""
+
+    kind: Literal["hold"]
+    for_ms: float = Field(gt=0, le=10_000)
+    window_ms: float = Field(1.0, gt=0, le=1000, description="Looked at at the end of every so much device time")
+    conditions: list[Limits] = Field(min_length=1, max_length=8)
+    trace: list[str] = Field([], max_length=3, description="Signals of which a small trace is kept")
+
+
+class Option(Part):
+    """One of the answers to choose from."""
+
+    id: Name
+    text: Words
+    share: Share = 0.0
+    because: str = Field("", max_length=400)
+
+
+class Choice(Part):
+    """A question with answers to choose from."""
+
+    options: list[Option] = Field(min_length=2, max_length=8)
+
+    @model_validator(mode="after")
+    def _has_right_one(self) -> Self:
+        if not any(option.share == 1.0 for option in self.options):
+            raise ValueError("needs an option with share = 1.0")
+        if len({option.id for option in self.options}) != len(self.options):
+            raise ValueError("two options have the same id")
+        return self
+
+
+class Partly(Part):
+    """A wider tolerance, and the share it earns."""
+
+    within: float = Field(gt=0, lt=1)
+    share: Share
+
+
+class Mistake(Part):
+    """A number that a known mistake leads to, the share it earns, and what went wrong."""
+
+    value: Formula
+    share: Share = 0.0
+    because: Words
+
+
+class Number(Part):
+    """A question for a number."""
+
+    value: Formula
+    unit: str = Field("", max_length=20)
+    within: float = Field(0.02, ge=0, lt=1, description="Relative")
+    within_absolute: float = Field(0.0, ge=0, description="In the unit")
+    partly: Partly | None = None
+    wrong_unit: Share = 0.5
+    wrong_sign: Share = 0.0
+    right_sign: Share = 0.0
+    mistakes: list[Mistake] = []
+
+
+class Answered(Step):
+    """A step that is answered in words: a question, or a prediction."""
+
+    question: Words
+    choice: Choice | None = None
+    number: Number | None = None
+    tries: int = Field(3, ge=1, le=10)
+    wrong_costs: float | None = Field(None, ge=0, description="Points that a wrong answer loses")
+
+    @model_validator(mode="after")
+    def _asks_one(self) -> Self:
+        if (self.choice is None) == (self.number is None):
+            raise ValueError("needs choice or number, not both")
+        return self
+
+    @property
+    def asks(self) -> Choice | Number:
+        """What is asked."""
+        asked = self.choice or self.number
+        assert asked is not None
+        return asked
+
+    @property
+    def costs(self) -> float:
+        """Points that a wrong answer loses; whoever tries all options earns nothing by it."""
+        if self.wrong_costs is not None:
+            return self.wrong_costs
+        if self.choice is not None:
+            return self.points / (len(self.choice.options) - 1)
+        return NUMBER_COSTS * self.points
+
+
+class Question(Answered):
+    """Answered after a run."""
+
+    kind: Literal["question"]
+
+
+class Prediction(Answered):
+    """Answered once and for all before a run; what it was worth is told when a later step is done."""
+
+    kind: Literal["prediction"]
+    until: Name = Field(description="The step behind which it is judged")
+    tries: Literal[1] = 1
+    wrong_costs: float | None = 0.0
+
+
+class Blind(Step):
+    """A blind diagnosis: done with the first answer committed behind the opening of this step."""
+
+    kind: Literal["blind"]
+
+
+AnyStep = Annotated[Hold | Question | Prediction | Blind, Field(discriminator="kind")]
+
+
+@dataclass(frozen=True)
+class Section:
+    """Text, a step perhaps, and the text that is shown once it is done."""
+
+    heading: str
+    text: str
+    step: Hold | Question | Prediction | Blind | None
+    after: str
+    line: int
+    step_line: int = 0
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A lab sheet."""
+
+    id: str
+    head: Head
+    intro: str
+    sections: tuple[Section, ...]
+    source: str
+
+    @property
+    def steps(self) -> list[Hold | Question | Prediction | Blind]:
+        """The steps in their order."""
+        return [section.step for section in self.sections if section.step is not None]
+
+    @property
+    def points(self) -> float:
+        """What can be earned."""
+        return sum(step.points for step in self.steps)
+
+    def step(self, name: str) -> Hold | Question | Prediction | Blind | None:
+        """Return a step, or nothing."""
+        return next((step for step in self.steps if step.id == name), None)
+
+
+INSERTED = re.compile(r"\{\{\s*([^{}|]+?)\s*(?:\|\s*([^{}|]*?)\s*)?\}\}")
+"""A number in a text: ``{{formula | unit}}``."""

@@ -1,0 +1,35 @@
+"""What people did, in a class or to a bench."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel
+
+from server.api.bodies import StrictRoute
+from server.api.deps import ServiceDep
+from server.people.audit import AuditEntry
+
+router = APIRouter(tags=["classes"], route_class=StrictRoute)
+
+Limit = Annotated[int, Query(ge=1, le=10_000)]
+
+
+class AuditList(BaseModel):
+    """What people did, newest first."""
+
+    entries: list[AuditEntry]
+
+
+@router.get("/classes/{class_id}/audit")
+async def get_class_audit(class_id: str, service: ServiceDep, limit: Limit = 1000) -> AuditList:
+    """List what people did in a class."""
+    await service.classes.row(class_id)
+    return AuditList(entries=await service.audit.entries(class_id=class_id, limit=limit))
+
+
+@router.get("/benches/{bench_id}/audit")
+async def get_bench_audit(bench_id: str, service: ServiceDep, limit: Limit = 1000) -> AuditList:
+    """List what people did to a bench, also to one that is gone."""
+    return AuditList(entries=await service.audit.entries(bench_id=bench_id, limit=limit))

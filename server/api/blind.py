@@ -1,0 +1,137 @@
+"""Hidden faults: begin one, answer, give up; for a class, begin for all, look at the answers, reveal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from core.errors import InputError
+from server.api.bodies import Body, StrictRoute
+from server.api.classes import Outcomes
+from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
+from server.api.students import students_of
+from server.bench.blind import Question
+from server.errors import ApiError
+from server.people.blind_class import begin_for
+from server.people.blinds import Answer
+
+router = APIRouter(tags=["blind"], route_class=StrictRoute)
+
+BENCH = "/benches/{bench_id}/blind"
+CLASS = "/classes/{class_id}/blind"
+RULE = (
+    "A right answer that is 100 % sure earns 100 points, a wrong one loses more than 100. No answer, and an answer "
+    "that is no surer than a guess, earns 0. On average you earn most by saying how sure you really are."
+)
+
+
+class Hide(Body):
+    """What is hidden on a bench of one's own."""
+
+    seed: int = Field(ge=0, le=2**53, description="The same one hides the same fault, but for students of a class")
+    shows: bool = Field(False, description="The diagnosers may be looked at: whether to trust them is the question")
+
+
+class Said(Body):
+    """What somebody takes the device for, and how sure that is."""
+
+    said: str = Field(max_length=24)
+    confidence: float = Field(ge=0, le=1)
+
+
+class Blindness(BaseModel):
+    """What is hidden on a bench, and what was answered before."""
+
+    question: Question | None = Field(description="Null while nothing is hidden")
+    rule: str = Field(description="How points are counted")
+    answers: list[Answer] = Field(description="Oldest first, each with the truth")
+
+
+class HideForAll(Body):
+    """What the students of a class are asked."""
+
+    scenario: str | dict[str, Any] = Field("ch5-seven-step", description="Library id, TOML text, or document")
+    shows: bool = Field(False, description="The diagnosers may be looked at: whether to trust them is the question")
+    members: list[str] | None = Field(None, max_length=500, description="Ids of students; null: all of them")
+
+
+class BlindClass(BaseModel):
+    """What was hidden from the students of a class, and what they answered."""
+
+    rule: str
+    hidden: int = Field(description="How many have not answered yet")
+    answers: list[Answer] = Field(description="Oldest first, those that are hidden still among them")
+
+
+@router.get(BENCH)
+async def get_blind(session: SessionDep, service: ServiceDep, person: PersonDep) -> Blindness:
+    """Say what is asked on a bench, and what was answered."""
+    hiding = session.hiding
+    return Blindness(
+        question=hiding.blind.question if hiding.blind is not None else None,
+        rule=RULE,
+        answers=service.blinds.of_person(person.id),
+    )
+
+
+@router.post(BENCH, status_code=201, dependencies=[RateLimited])
+async def hide_fault(body: Hide, session: SessionDep, service: ServiceDep, person: PersonDep) -> Blindness:
+    """Hide a fault on a bench, or none; its doors serve no more than may be seen until it is answered."""
+    if session.class_id and person.is_teacher:
+        raise ApiError(409, "conflict", "this is the bench of a student", hint="hide one for the class")
+    secret = (await service.classes.row(person.class_id)).secret if person.class_id else ""
+    await service.blinds.begin(session, person, body.seed, body.shows, secret)
+    await service.checkpoints.write()  # that of a student is blind after a crash too
+    return await get_blind(session, service, person)
+
+
+@router.post(f"{BENCH}/answer", dependencies=[RateLimited])
+async def answer(body: Said, session: SessionDep, service: ServiceDep, person: PersonDep) -> Answer:
+    """Say what the device is; what was hidden is in the answer, and served from then on."""
+    if session.class_id and person.is_teacher:
+        raise ApiError(403, "forbidden", "only the student whose bench it is may answer")
+    return await service.blinds.commit(session, person, body.said, body.confidence)
+
+
+@router.delete(BENCH, dependencies=[RateLimited])
+async def give_up(session: SessionDep, service: ServiceDep, person: PersonDep) -> Answer:
+    """Show what was hidden without an answer."""
+    return await service.blinds.reveal(session, person)
+
+
+@router.post(CLASS, dependencies=[RateLimited])
+async def hide_for_class(class_id: str, body: HideForAll, service: ServiceDep) -> Outcomes:
+    """Give students a new bench each, with a device and a hidden fault of their own."""
+    students = await students_of(service, class_id, body.members)
+    failed = await begin_for(service.classes, service.blinds, students, body.scenario, body.shows)
+    await service.checkpoints.write()  # they are blind after a crash too
+    service.audit.add("teacher", "blind", f"hid a fault on {len(students) - len(failed)} benches", class_id)
+    return Outcomes(done=len(students) - len(failed), failed=failed)
+
+
+@router.get(CLASS)
+async def get_class_blind(class_id: str, service: ServiceDep) -> BlindClass:
+    """List what was hidden in a class and what was answered, with the truth."""
+    await service.classes.row(class_id)
+    answers = service.blinds.of_class(class_id)
+    return BlindClass(rule=RULE, hidden=sum(one.state == "hidden" for one in answers), answers=answers)
+
+
+@router.delete(CLASS, dependencies=[RateLimited])
+async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) -> Outcomes:
+    """Show all students of a class what was hidden from them; who has not answered gets no points."""
+    await service.classes.row(class_id)
+    done, failed = 0, []
+    for student in service.people.students(class_id):
+        session = service.student_benches.find(student)
+        if session is None or session.hiding.blind is None:
+            continue
+        try:
+            await service.blinds.reveal(session, person)
+            done += 1
+        except (InputError, ApiError) as error:
+            failed.append(f"{student.name}: {error}")
+    service.audit.add("teacher", "blind", f"showed {done} students what was hidden", class_id)
+    return Outcomes(done=done, failed=failed)

@@ -1,0 +1,191 @@
+"""Classes: open one, let students join, look at all benches, do something on all of them."""
+
+from __future__ import annotations
+
+import asyncio
+
+from fastapi import APIRouter, Request, Response
+from pydantic import BaseModel, Field
+
+from core.errors import InputError
+from server.api.benches import NewBench
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import RateLimited, ServiceDep
+from server.api.joining import address_of, give_session
+from server.api.students import student_of, students_of
+from server.bench.commands import Command
+from server.classroom import join_addresses
+from server.errors import ApiError
+from server.people.classes import Class
+from server.people.person import Person
+from server.people.sheet_work import brief
+from server.people.tile import Tile, tile_of
+from server.service import Service
+
+router = APIRouter(prefix="/classes", tags=["classes"], route_class=StrictRoute)
+
+LONGEST_H = 24.0 * 14
+
+
+class Minutes(Body):
+    """How long a code lets students in."""
+
+    minutes: float = Field(120.0, gt=0, le=60 * LONGEST_H)
+
+
+class NewClass(Body):
+    """A class, and what the benches of its students begin with."""
+
+    name: str = Field(min_length=1, max_length=100)
+    bench: NewBench = Field(default_factory=lambda: NewBench(scenario="first-look"))
+    hours: float = Field(8.0, gt=0, le=LONGEST_H, description="Until it ends and its students are forgotten")
+    minutes: float = Field(120.0, gt=0, le=60 * LONGEST_H, description="How long the first code lets students in")
+
+
+class ClassList(BaseModel):
+    """The classes, oldest first."""
+
+    classes: list[Class]
+
+
+class Join(Body):
+    """What a student gives."""
+
+    code: str = Field(max_length=40)
+    name: str = Field(max_length=200)
+
+
+class Joined(BaseModel):
+    """A session, for a program: send it as a bearer. Browsers join by the page and get a cookie."""
+
+    id: str
+    session: str
+    bench: str
+
+
+class Members(BaseModel):
+    """The students of a class in the order in which they came, each with a picture of the bench."""
+
+    members: list[Tile]
+
+
+class ForAll(Body):
+    """A command to the benches of a class."""
+
+    command: Command
+    members: list[str] | None = Field(None, max_length=500, description="Ids of students; null: all of them")
+
+
+class Outcomes(BaseModel):
+    """What became of something done on many benches."""
+
+    done: int
+    failed: list[str] = Field(description="Name and reason of each that refused")
+
+
+@router.post("", status_code=201, dependencies=[RateLimited])
+async def open_class(body: NewClass, service: ServiceDep, request: Request, response: Response) -> Class:
+    """Open a class; its code is in the answer."""
+    made = await service.classes.open(body.name, body.bench.wanted(), body.hours, body.minutes)
+    response.headers["Location"] = f"/api/v1/classes/{made.id}"
+    return _addressed(made, service, request)
+
+
+@router.get("")
+async def list_classes(service: ServiceDep, request: Request) -> ClassList:
+    """List the classes."""
+    return ClassList(classes=[_addressed(one, service, request) for one in await service.classes.all()])
+
+
+@router.get("/{class_id}")
+async def get_class(class_id: str, service: ServiceDep, request: Request) -> Class:
+    """Describe a class."""
+    return _addressed(await service.classes.get(class_id), service, request)
+
+
+@router.delete("/{class_id}", status_code=204, dependencies=[RateLimited])
+async def end_class(class_id: str, service: ServiceDep) -> None:
+    """End a class: its sessions and benches, the names of its students and what they did are gone."""
+    await service.classes.end(class_id)
+
+
+@router.post("/{class_id}/code", dependencies=[RateLimited])
+async def make_code(class_id: str, body: Minutes, service: ServiceDep, request: Request) -> Class:
+    """Let students join by a new code; an earlier one ends."""
+    return _addressed(await service.classes.new_code(class_id, body.minutes), service, request)
+
+
+@router.delete("/{class_id}/code", dependencies=[RateLimited])
+async def end_code(class_id: str, service: ServiceDep, request: Request) -> Class:
+    """Let nobody else join; who is there stays."""
+    return _addressed(await service.classes.close_joining(class_id), service, request)
+
+
+@router.post("/{class_id}/join", status_code=201)
+async def join_class(class_id: str, body: Join, request: Request, response: Response, service: ServiceDep) -> Joined:
+    """Join a class by its code."""
+    person, secret = await service.joining.join(address_of(request), body.code, body.name, class_id)
+    give_session(request, response, person, secret)
+    return Joined(id=person.id, session=secret, bench=(await service.student_benches.get(person)).id)
+
+
+@router.get("/{class_id}/members", response_model=Members)
+async def list_members(class_id: str, service: ServiceDep) -> Response:
+    """Show every student: name, bench, state, verdict beside truth, a small trace."""
+    await service.classes.row(class_id)
+    found = Members(members=[_tile(service, person) for person in service.people.students(class_id)])
+    # written at once: checking sixty tiles again takes the loop ten times as long
+    return Response(found.model_dump_json(), media_type="application/json")
+
+
+@router.delete("/{class_id}/members/{member_id}", status_code=204, dependencies=[RateLimited])
+async def remove_member(class_id: str, member_id: str, service: ServiceDep) -> None:
+    """Send a student away: the session ends at once, the bench is closed."""
+    await service.classes.remove(await student_of(service, class_id, member_id))
+
+
+@router.post("/{class_id}/commands", dependencies=[RateLimited])
+async def command_all(class_id: str, body: ForAll, service: ServiceDep) -> Outcomes:
+    """Carry out a command on the benches of all students or of some, each at its own next tick edge, whoever drives."""
+    students = await students_of(service, class_id, body.members)
+
+    async def one(person: Person) -> str | None:
+        try:
+            session = await service.student_benches.get(person)
+            await service.benches.command(session, body.command, "teacher")
+        except (InputError, ApiError) as error:
+            return f"{person.name}: {error}"
+        return None
+
+    said = await asyncio.gather(*(one(person) for person in students))
+    failed = [text for text in said if text is not None]
+    return Outcomes(done=len(said) - len(failed), failed=failed)
+
+
+@router.post("/{class_id}/scenario", dependencies=[RateLimited])
+async def begin_scenario(class_id: str, body: NewBench, service: ServiceDep) -> Outcomes:
+    """Begin a scenario on the benches of all students; who joins later begins with it too."""
+    failed = await service.classes.begin_all(class_id, body.wanted())
+    return Outcomes(done=len(service.people.students(class_id)) - len(failed), failed=failed)
+
+
+def _tile(service: Service, person: Person) -> Tile:
+    """Show a student."""
+    session = service.student_benches.find(person)
+    # a student who looks at a bench that is shown to all is there too
+    watchers = max(service.hub.watchers(session.id) if session is not None else 0, service.hub.pages_of(person))
+    work = service.sheets.current(person)
+    tile = tile_of(person, session, watchers, hand=person.id in service.people.hands)
+    done = {"blind": service.blinds.last_of(person.id), "sheet": brief(*work) if work is not None else None}
+    return tile.model_copy(update=done)
+
+
+def _addressed(group: Class, service: Service, request: Request) -> Class:
+    """Add the addresses that students open from elsewhere."""
+    if group.path is None:
+        return group
+    found = [f"{service.public}{group.path}"] if service.public.origin else []
+    if service.settings.classroom:
+        pages = join_addresses(service.settings.host, request.scope["server"][1])
+        found = [f"{page}{group.path.removeprefix('/join')}" for page in pages]
+    return group.model_copy(update={"addresses": found})

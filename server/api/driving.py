@@ -1,0 +1,51 @@
+"""Driving a bench that several have open: ask for it, hand it over, take it back."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field, model_validator
+
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
+from server.bench.status import Company
+
+router = APIRouter(prefix="/benches/{bench_id}/driving", tags=["classes"], route_class=StrictRoute)
+
+
+class DrivingTurn(Body):
+    """What is asked for."""
+
+    do: Literal["ask", "hand_over", "refuse", "take", "leave"] = Field(
+        description=(
+            "ask whoever drives for the bench; hand it over to somebody, or refuse who has asked; take it (the "
+            "teacher, or a student what was lent from the own bench); leave it to whoever does something next"
+        )
+    )
+    to: str = Field("", max_length=32, description="Id of whom it is handed over to, or who is refused")
+
+    @model_validator(mode="after")
+    def _has_a_person(self) -> Self:
+        if (self.do in ("hand_over", "refuse")) != bool(self.to):
+            raise ValueError("hand_over and refuse need to; nothing else has it")
+        return self
+
+
+class Drives(BaseModel):
+    """Who is at the bench now."""
+
+    company: Company | None = Field(description="Null while it is one person")
+
+
+@router.post("", dependencies=[RateLimited])
+async def change_driver(body: DrivingTurn, session: SessionDep, person: PersonDep, service: ServiceDep) -> Drives:
+    """Change who drives a bench, or ask for it."""
+    driving = service.driving
+    if body.do == "hand_over":
+        driving.hand_over(session.id, person, body.to)
+    elif body.do == "refuse":
+        driving.refuse(session.id, person, body.to)
+    else:
+        {"ask": driving.ask, "take": driving.take, "leave": driving.leave}[body.do](session.id, person)
+    return Drives(company=driving.company(session.id))

@@ -1,0 +1,67 @@
+"""Who is asking: the page shows a teacher, a student and a watcher what each may do."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import PersonDep, ServiceDep
+from server.errors import ApiError
+from server.people.person import Role
+from server.people.votes import OpenVote
+
+router = APIRouter(prefix="/me", tags=["classes"], route_class=StrictRoute)
+
+
+class Me(BaseModel):
+    """The person who asks."""
+
+    id: str = Field(description="As the company of a bench names people")
+    role: Role
+    name: str
+    bench: str | None = Field(description="The bench of a student or a watcher; the teacher has all of them")
+    class_id: str | None = Field(None, description="The class of a student")
+    class_name: str | None = None
+    hand: bool = Field(False, description="Whether a student has raised a hand")
+    shown: str | None = Field(None, description="A bench that the teacher shows to all; a student sees it")
+    lent: str | None = Field(None, description="A bench of the teacher that a student was handed, and drives")
+    layout: str | None = Field(None, description="Id of the layout given to all last; /me/layout has it")
+    vote: OpenVote | None = Field(None, description="What the class of a student is asked")
+
+
+class Hand(Body):
+    """Whether a hand is up."""
+
+    raised: bool
+
+
+@router.get("")
+async def get_me(person: PersonDep, service: ServiceDep) -> Me:
+    """Say who is asking; a student whose bench is not there gets it here."""
+    if person.role != "student":
+        return Me(id=person.id, role=person.role, name=person.name, bench=service.people.bench_of(person) or None)
+    given = service.lesson.layout_for(person)
+    group, session = await service.classes.get(person.class_id), await service.student_benches.get(person)
+    return Me(
+        id=person.id,
+        role=person.role,
+        name=person.name,
+        bench=session.id,
+        class_id=group.id,
+        class_name=group.name,
+        hand=person.id in service.people.hands,
+        shown=service.people.shown_to(person.class_id) or None,
+        lent=service.people.lent_to(person) or None,
+        layout=given.id if given is not None else None,
+        vote=await service.votes.of(person),
+    )
+
+
+@router.put("/hand")
+async def raise_hand(body: Hand, person: PersonDep, service: ServiceDep) -> Me:
+    """Raise a hand, or take it down; the teacher sees it."""
+    if person.role != "student":
+        raise ApiError(403, "forbidden", "only a student of a class has a hand to raise")
+    (service.people.hands.add if body.raised else service.people.hands.discard)(person.id)
+    return await get_me(person, service)

@@ -1,0 +1,247 @@
+"""Lab sheets: list them, begin one, answer its steps, hand it in; push one to a class, and take its grades."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Path, Query, Response
+from pydantic import BaseModel, Field
+
+from core.errors import InputError
+from core.format import format_short
+from scenarios.report.sheet import sheet_html
+from scenarios.sheets.sheet import Sheet
+from server.api.bodies import Body, StrictRoute
+from server.api.classes import Outcomes
+from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.students import student_of, students_of
+from server.errors import ApiError, not_found
+from server.people.grades import Grade, grades_csv, grades_of
+from server.people.person import Person
+from server.people.sheet_view import SheetView
+from server.people.sheet_work import SheetBrief, brief
+from server.service import Service
+from server.store.recordings import Recording
+
+router = APIRouter(tags=["sheets"], route_class=StrictRoute)
+
+Id = Annotated[str, Path(max_length=80)]
+
+
+class SheetCard(BaseModel):
+    """A sheet in a list."""
+
+    id: str
+    title: str
+    summary: str
+    minutes: int
+    points: float
+    steps: int
+    own: bool = Field(description="Somebody opened it; the others are those of the library")
+    work: SheetBrief | None = Field(description="How far who asks has come")
+
+
+class SheetList(BaseModel):
+    """The sheets, in the order in which they are taught."""
+
+    sheets: list[SheetCard]
+    current: str | None = Field(description="The one who asks began last")
+
+
+class NewSheet(Body):
+    """A sheet as Markdown."""
+
+    text: str = Field(min_length=1, max_length=200_000)
+
+
+class StepAnswer(Body):
+    """An answer: a number with its unit, or the id of an option."""
+
+    answer: str = Field(min_length=1, max_length=200)
+
+
+class SheetForAll(Body):
+    """A sheet for the students of a class."""
+
+    sheet: str
+    members: list[str] | None = Field(None, max_length=500, description="Ids of students; null: all of them")
+
+
+class Grades(BaseModel):
+    """What the students of a class have done at sheets."""
+
+    grades: list[Grade]
+
+
+@router.get("/sheets")
+async def list_sheets(person: PersonDep, service: ServiceDep) -> SheetList:
+    """List the sheets."""
+    await service.sheets.shelf.refresh()
+    works = {work.sheet_id: work for work in service.sheets.works(person.id)}
+    current = service.sheets.current(person)
+    return SheetList(
+        sheets=[
+            SheetCard(
+                id=sheet.id,
+                title=sheet.head.title,
+                summary=sheet.head.summary,
+                minutes=sheet.head.minutes,
+                points=sheet.points,
+                steps=len(sheet.steps),
+                own=service.sheets.shelf.is_own(sheet.id),
+                work=brief(works[sheet.id], sheet) if sheet.id in works else None,
+            )
+            for sheet in service.sheets.all()
+        ],
+        current=current[0].sheet_id if current is not None else None,
+    )
+
+
+@router.post("/sheets", status_code=201, dependencies=[RateLimited])
+async def open_sheet(body: NewSheet, person: PersonDep, service: ServiceDep, response: Response) -> SheetView:
+    """Open a sheet of one's own; one that is not right is refused with its line and field."""
+    sheet = await service.sheets.shelf.open(body.text)
+    response.headers["Location"] = f"/api/v1/sheets/{sheet.id}"
+    return await service.sheets.view(person, sheet.id)
+
+
+@router.get("/sheets/{sheet_id}")
+async def get_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+    """Show a sheet as far as who asks has come."""
+    return await service.sheets.view(person, sheet_id)
+
+
+@router.delete("/sheets/{sheet_id}", status_code=204, dependencies=[RateLimited])
+async def delete_sheet(sheet_id: Id, service: ServiceDep) -> None:
+    """Delete a sheet that somebody opened, and what was done at it."""
+    await service.sheets.delete(sheet_id)
+
+
+@router.post("/sheets/{sheet_id}/begin", dependencies=[RateLimited])
+async def begin_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+    """Begin a sheet, or go on with it on a new bench; answers stay."""
+    _must_work(person)
+    await service.sheets.begin(person, sheet_id)
+    return await service.sheets.view(person, sheet_id)
+
+
+@router.delete("/sheets/{sheet_id}/progress", status_code=204, dependencies=[RateLimited])
+async def start_over(sheet_id: Id, person: PersonDep, service: ServiceDep) -> None:
+    """Forget one's own answers at a sheet."""
+    await service.sheets.start_over(person, sheet_id)
+
+
+@router.post("/sheets/{sheet_id}/steps/{step_id}/answer", dependencies=[RateLimited])
+async def answer_step(sheet_id: Id, step_id: Id, body: StepAnswer, person: PersonDep, service: ServiceDep) -> SheetView:
+    """Answer the step that is open."""
+    _must_work(person)
+    await service.sheets.change(
+        person, sheet_id, lambda progress, sheet, tick: progress.answer(sheet, step_id, body.answer, tick)
+    )
+    return await service.sheets.view(person, sheet_id)
+
+
+@router.post("/sheets/{sheet_id}/steps/{step_id}/hint", dependencies=[RateLimited])
+async def take_hint(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+    """Take the next hint, for the points that it costs."""
+    _must_work(person)
+    await service.sheets.change(person, sheet_id, lambda progress, sheet, _: progress.take_hint(sheet, step_id))
+    return await service.sheets.view(person, sheet_id)
+
+
+@router.post("/sheets/{sheet_id}/steps/{step_id}/close", dependencies=[RateLimited])
+async def close_step(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+    """Close the step that is open with what it has earned; the right answer is told."""
+    _must_work(person)
+    await service.sheets.change(person, sheet_id, lambda progress, sheet, tick: progress.go_on(sheet, step_id, tick))
+    return await service.sheets.view(person, sheet_id)
+
+
+@router.put("/sheets/{sheet_id}/recordings/{recording_id}", dependencies=[RateLimited])
+async def add_recording(sheet_id: Id, recording_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+    """Hand a recording of one's own in with the sheet."""
+    _must_work(person)
+    recording = await service.recordings.get(recording_id)
+    if not service.people.may_see_recordings(person, recording.bench_id):
+        raise not_found("recording", recording_id)
+    await service.sheets.change(person, sheet_id, lambda progress, *_: progress.keep(recording_id))
+    return await service.sheets.view(person, sheet_id)
+
+
+@router.get("/sheets/{sheet_id}/report", response_class=Response, responses={200: {"content": {"text/html": {}}}})
+async def get_report(sheet_id: Id, person: PersonDep, service: ServiceDep) -> Response:
+    """Return the sheet to hand in: text, answers, points and reasons in one HTML file."""
+    return await _report(service, person, service.sheets.get(sheet_id))
+
+
+@router.post("/classes/{class_id}/sheet", dependencies=[RateLimited])
+async def begin_for_all(class_id: Id, body: SheetForAll, service: ServiceDep) -> Outcomes:
+    """Begin a sheet with all students of a class, also those who join later, or with some; each gets its bench."""
+    service.sheets.get(body.sheet)
+    chosen = await students_of(service, class_id, body.members)
+    if body.members is None:
+        await service.classes.keep_sheet(class_id, body.sheet)
+
+    async def one(person: Person) -> str | None:
+        try:
+            await service.sheets.begin(person, body.sheet)
+        except (InputError, ApiError) as error:
+            return f"{person.name}: {error}"
+        return None
+
+    failed = [said for person in chosen if (said := await one(person)) is not None]
+    service.audit.add("teacher", "sheet", f"began the sheet {body.sheet} on all benches", class_id)
+    return Outcomes(done=len(chosen) - len(failed), failed=failed)
+
+
+@router.get("/classes/{class_id}/grades", responses={200: {"content": {"text/csv": {}}}})
+async def get_grades(
+    class_id: Id, service: ServiceDep, kind: Annotated[Literal["json", "csv"], Query(alias="format")] = "json"
+) -> Response:
+    """Return points, answers and reasons of all students, by student, sheet and step."""
+    group = await service.classes.row(class_id)
+    found = grades_of(service.people.students(class_id), service.sheets)
+    if kind == "json":
+        return Response(Grades(grades=found).model_dump_json(), media_type="application/json")
+    headers = {"Content-Disposition": f'attachment; filename="grades-{group.id}.csv"'}
+    return Response(grades_csv(found), media_type="text/csv; charset=utf-8", headers=headers)
+
+
+@router.get(
+    "/classes/{class_id}/sheets/{sheet_id}/{member_id}/report",
+    response_class=Response,
+    responses={200: {"content": {"text/html": {}}}},
+)
+async def get_report_of(class_id: Id, sheet_id: Id, member_id: Id, service: ServiceDep) -> Response:
+    """Return the sheet of a student."""
+    person = await student_of(service, class_id, member_id)
+    return await _report(service, person, service.sheets.get(sheet_id))
+
+
+async def _report(service: Service, person: Person, sheet: Sheet) -> Response:
+    work = next((work for work in service.sheets.works(person.id) if work.sheet_id == sheet.id), None)
+    if work is None:
+        raise ApiError(409, "conflict", "the sheet has not been begun", "sheet", "begin it first")
+    view = await service.sheets.view(person, sheet.id)
+    traces = {name: step.trace for name, step in work.progress.steps.items() if step.trace}
+    name = person.name if person.role == "student" else ""
+    kept = {one.id: one for one in await service.recordings.all()} if view.recordings else {}
+    recordings = [_recording(kept.get(recording_id), recording_id) for recording_id in view.recordings]
+    html = await asyncio.to_thread(sheet_html, view.model_dump(), traces, recordings, name, work.begun)
+    headers = {"Content-Disposition": f'inline; filename="{sheet.id}.html"'}
+    return Response(html, media_type="text/html", headers=headers)
+
+
+def _recording(recording: Recording | None, recording_id: str) -> str:
+    """Say which recording was handed in."""
+    if recording is None:
+        return f"{recording_id}, which has been deleted"
+    length, start = (format_short(ticks * recording.dt_ms, "ms") for ticks in (recording.ticks, recording.start_tick))
+    return f"{recording.name}: {length} from {start} ({recording.id})"
+
+
+def _must_work(person: Person) -> None:
+    """Refuse somebody who only watches: there is no bench of theirs that a sheet could begin on."""
+    if person.role == "watcher":
+        raise ApiError(409, "conflict", "who watches a bench has no sheet")

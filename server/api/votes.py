@@ -1,0 +1,109 @@
+"""Votes: a question to a class or to the room, and how many said what once it is revealed."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from scenarios.lecture import Span
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.errors import ApiError
+from server.people.votes import Asked, Ballot, OpenVote, Vote
+
+router = APIRouter(tags=["votes"], route_class=StrictRoute)
+
+MOST_WORDS, MOST_LANES = 6, 12
+
+
+class NewVote(Body):
+    """A question: two to six answers in words, or the hypotheses of a diagnoser, at most twelve."""
+
+    class_id: str | None = Field(None, max_length=32, description="Without one, hands are raised in the room")
+    text: str = Field(min_length=1, max_length=300)
+    answers: list[Annotated[str, Field(min_length=1, max_length=100)]] = Field(min_length=2, max_length=MOST_LANES)
+    diagnoser: str = Field("", max_length=64, description="Whose lanes the answers are, by the names of hypotheses")
+    when: Span | None = Field(None, description="Within which a moment is guessed, too")
+    right: str = Field("", max_length=100, description="One of the answers, shown with the votes")
+
+
+class Hands(Body):
+    """Hands raised in the room, for each answer."""
+
+    counts: list[Annotated[int, Field(ge=0, le=10_000)]] = Field(max_length=MOST_LANES)
+
+
+class NewBallot(Body):
+    """What a student answers."""
+
+    vote: str = Field(max_length=32)
+    answer: int = Field(ge=0, lt=MOST_LANES, description="Position among the answers")
+    at_ms: float | None = Field(None, description="The moment guessed, where one is asked for")
+
+
+class VoteList(BaseModel):
+    """The votes."""
+
+    votes: list[Vote]
+
+
+@router.post("/votes", status_code=201, dependencies=[RateLimited])
+async def open_vote(body: NewVote, service: ServiceDep) -> Vote:
+    """Ask a class, or the room; one vote of a class is open at a time."""
+    if len(set(body.answers)) < len(body.answers):
+        raise ApiError(422, "invalid", "must all be different", "answers")
+    if not body.diagnoser and len(body.answers) > MOST_WORDS:
+        raise ApiError(422, "invalid", f"at most {MOST_WORDS}, unless they are the lanes of a diagnoser", "answers")
+    if body.right and body.right not in body.answers:
+        raise ApiError(422, "invalid", "must be one of the answers", "right")
+    if body.class_id is not None:
+        await service.classes.row(body.class_id)
+    asked = Asked(text=body.text, answers=body.answers, diagnoser=body.diagnoser, when=body.when)
+    return await service.votes.open(body.class_id, asked, body.right)
+
+
+@router.get("/votes")
+async def list_votes(service: ServiceDep) -> VoteList:
+    """List the votes: one of each class, and one by hands."""
+    return VoteList(votes=await service.votes.all())
+
+
+@router.get("/votes/{vote_id}")
+async def get_vote(vote_id: str, service: ServiceDep) -> Vote:
+    """Return a vote; until it is revealed only how many have voted."""
+    return await service.votes.get(vote_id)
+
+
+@router.post("/votes/{vote_id}/close", dependencies=[RateLimited])
+async def close_vote(vote_id: str, service: ServiceDep) -> Vote:
+    """Take no more answers."""
+    return await service.votes.move(vote_id, "closed")
+
+
+@router.post("/votes/{vote_id}/reveal", dependencies=[RateLimited])
+async def reveal_vote(vote_id: str, service: ServiceDep) -> Vote:
+    """Close a vote and show how many said what."""
+    return await service.votes.move(vote_id, "revealed")
+
+
+@router.put("/votes/{vote_id}/hands", dependencies=[RateLimited])
+async def count_hands(vote_id: str, body: Hands, service: ServiceDep) -> Vote:
+    """Take the hands that were counted in the room."""
+    return await service.votes.count_hands(vote_id, body.counts)
+
+
+@router.delete("/votes/{vote_id}", status_code=204, dependencies=[RateLimited])
+async def remove_vote(vote_id: str, service: ServiceDep) -> None:
+    """Take a vote back; its ballots are gone."""
+    await service.votes.remove(vote_id)
+
+
+@router.put("/me/vote", dependencies=[RateLimited])
+async def cast(body: NewBallot, person: PersonDep, service: ServiceDep) -> OpenVote | None:
+    """Answer the vote of one's class, or change one's answer."""
+    if person.role != "student":
+        raise ApiError(403, "forbidden", "only a student of a class votes")
+    await service.votes.cast(person, body.vote, Ballot(answer=body.answer, at_ms=body.at_ms))
+    return await service.votes.of(person)

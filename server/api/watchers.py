@@ -1,0 +1,65 @@
+"""Links to watch a bench: whoever opens one sees it live and can change nothing, until the link ends."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import RateLimited, ServiceDep, SessionDep
+from server.errors import ApiError, not_found
+from server.store.models import now
+
+router = APIRouter(prefix="/benches/{bench_id}/watchers", tags=["classes"], route_class=StrictRoute)
+
+MOST = 20
+
+
+class NewWatcher(Body):
+    """How long a link lasts."""
+
+    hours: float = Field(4.0, gt=0, le=24 * 14)
+
+
+class Watcher(BaseModel):
+    """A link to watch; its address is told once."""
+
+    id: str
+    until: datetime
+    path: str | None = Field(None, description="Path of the address; only its hash is kept")
+
+
+class WatcherList(BaseModel):
+    """The links to watch a bench."""
+
+    watchers: list[Watcher]
+
+
+@router.post("", status_code=201, dependencies=[RateLimited])
+async def make_watcher(body: NewWatcher, session: SessionDep, service: ServiceDep) -> Watcher:
+    """Make a link to watch the bench."""
+    if len(service.people.watchers(session.id)) >= MOST:
+        raise ApiError(409, "limit", f"{MOST} links lead to this bench, the limit", hint="end one first")
+    until = now() + timedelta(hours=body.hours)
+    person, secret = await service.people.add("watcher", "watcher", until, bench_id=session.id)
+    service.audit.add("teacher", "watcher", "made a link to watch", session.class_id, session.id)
+    return Watcher(id=person.id, until=until, path=f"/watch/{secret}")
+
+
+@router.get("")
+async def list_watchers(session: SessionDep, service: ServiceDep) -> WatcherList:
+    """List the links to watch the bench."""
+    people = service.people.watchers(session.id)
+    return WatcherList(watchers=[Watcher(id=one.id, until=one.until or now()) for one in people])
+
+
+@router.delete("/{watcher_id}", status_code=204, dependencies=[RateLimited])
+async def end_watcher(watcher_id: str, session: SessionDep, service: ServiceDep) -> None:
+    """End a link to watch; pages that it opened are closed."""
+    for person in service.people.watchers(session.id):
+        if person.id == watcher_id:
+            service.audit.add("teacher", "watcher", "ended a link to watch", session.class_id, session.id)
+            return await service.people.remove(person)
+    raise not_found("link to watch", watcher_id)

@@ -1,0 +1,182 @@
+"""Blind: a fault that is hidden on a bench until somebody has said what it is, and what is shown meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from pydantic import BaseModel, Field
+
+from core.board.commands import Command, Inject, ResetTrip, Set, Switch
+from core.board.document import Document
+from core.board.spec import Section, Spec
+from core.diagnose.hypothesis import ModelList, NamedModel
+from core.errors import InputError
+from server.bench import commands
+from server.bench.making import usual_scale
+from server.bench.tick_source import TickSource
+from server.errors import ApiError
+
+ACTOR = "board"
+"""Who injects the fault: nobody who could be asked."""
+
+EARLIEST_S, LATEST_S = 1.0, 4.0
+"""When the fault comes: seconds of wall time after the beginning, at the usual pace of the device."""
+
+COMMANDS = (
+    commands.Start,
+    commands.Pause,
+    commands.Step,
+    commands.StepPeriod,
+    commands.TimeScale,
+    Set,
+    Switch,
+    ResetTrip,
+)
+"""What may be done meanwhile: let time run, change the reference and the controller."""
+MAY_SET = ("reference", "controller", "controllers")
+"""First words of the parameters that may be set meanwhile."""
+
+SIGNALS = ("reference", "sensor", "drive", "model.displacement", "model.velocity")
+"""What may be seen meanwhile: what is asked for, measured and applied; `model` follows the reference alone."""
+OF_A_DIAGNOSER = ("probability", "winner", "residual", "nis", "information", "unexcited", "least_nis", "unexplained")
+"""Ports of a diagnoser that may be seen if the exercise adds it; its score knows the truth."""
+
+SHEET = ("sample_rate_khz", "device", "plant", "reference", "controller", "sensor", "sensors", "controllers", "slots")
+"""Tables of the bench that are told: as the device is meant to be, before it was drawn."""
+
+REFUSAL = "a fault is hidden on this bench"
+HINT = "answer or give up first, under Blind diagnosis"
+
+FAULTS: dict[str, tuple[str, Callable[[float], float]]] = {
+    "mass": ("added_mass", lambda factor: factor - 1.0),
+    "stiffness": ("stiffness", lambda factor: factor - 1.0),
+    "damping": ("damping", lambda factor: factor - 1.0),
+    "gain": ("drive_gain", lambda factor: factor - 1.0),
+    "second_stiffness": ("sense_stiffness", lambda factor: factor - 1.0),
+    "quadrature_dps": ("quadrature", lambda dps: dps),
+    "drive_gain": ("drive_loss", lambda gain: 1.0 - gain),
+}
+"""The fault that makes a factor of a hypothesis true, and its severity."""
+
+
+class Question(BaseModel):
+    """What is told of a hidden fault."""
+
+    id: str
+    answers: list[str] = Field(description="One of these is true, each as likely as the others")
+    factors: list[dict[str, float]] = Field(description="How each differs from the nominal device")
+    shows: list[str] = Field(description="Diagnosers that may be looked at; none unless the exercise is about trust")
+    began_tick: int
+    by_tick: int = Field(description="The fault has come by then, if there is one")
+
+
+class Blind(BaseModel):
+    """A hidden fault: the question, and what answers it."""
+
+    question: Question
+    truth: str
+    came_tick: int | None = Field(description="When the fault comes; null for a healthy device")
+    faults: list[Document]
+    sheet: Document
+
+    def inject(self, board: TickSource) -> None:
+        """Let the fault wait for its moment."""
+        for fault in self.faults:
+            board.apply(Inject(**fault, at_sample=self.came_tick), ACTOR)
+
+    def may_see(self, signal: str) -> bool:
+        """Whether a signal is served meanwhile."""
+        block, _, port = signal.partition(".")
+        if block in self.question.shows:
+            return port.partition(".")[0] in OF_A_DIAGNOSER
+        return block in SIGNALS or signal in SIGNALS
+
+    def check(self, command: Command | commands.RunCommand) -> None:
+        """Refuse a command that would tell or change what is hidden, by whomever.
+
+        Raises
+        ------
+        ApiError
+            The same line for all of them.
+        """
+        is_free = isinstance(command, COMMANDS)
+        if isinstance(command, Set | Switch | ResetTrip):
+            is_free &= command.at_sample is None and command.at_ms is None and command.when is None
+        if isinstance(command, Set):
+            is_free &= all(path.partition(".")[0] in MAY_SET for path in command.set)
+        if not is_free:
+            raise refusal("only time, the reference and the controller may be changed")
+
+
+def refusal(what: str = "") -> ApiError:
+    """Refuse what would tell."""
+    return ApiError(403, "blind", f"{REFUSAL}; {what}" if what else REFUSAL, hint=HINT)
+
+
+def bank_of(spec: Spec) -> Section:
+    """Return the diagnoser whose hypotheses are the answers.
+
+    Raises
+    ------
+    InputError
+        If the bench has none.
+    """
+    for section in spec.diagnosers.values():
+        if isinstance(section.params, ModelList):
+            return section
+    raise InputError("has no bank of hypotheses to choose an answer from", "scenario", "take one of chapter 5")
+
+
+def faults_of(hypothesis: NamedModel) -> list[Document]:
+    """Return the faults that make a hypothesis true; none for a healthy device."""
+    said = hypothesis.model_dump(exclude_defaults=True, exclude={"name"})
+    return [
+        {"fault": FAULTS[factor][0], "severity": round(FAULTS[factor][1](value), 10)} for factor, value in said.items()
+    ]
+
+
+def hide(board: TickSource, sheet: Document, id_: str, shows: bool, which: int, when: float) -> Blind:
+    """Choose what is hidden on a board from now on.
+
+    Parameters
+    ----------
+    board : TickSource
+        The board, healthy and with nothing that waits.
+    sheet : dict
+        Its bench as people may know it.
+    id_ : str
+        Of the question.
+    shows : bool
+        Whether the diagnosers may be looked at: then it is the question whether to trust them.
+    which : int
+        Number that chooses among the answers, all of them as likely.
+    when : float
+        0 to 1: between the earliest and the latest moment.
+
+    Raises
+    ------
+    InputError
+        If the bench has no bank.
+    """
+    params: Any = bank_of(board.spec).params
+    answers: list[NamedModel] = list(params.hypotheses)
+    truth = answers[which % len(answers)]
+    faults = faults_of(truth)
+    ms_per_s = usual_scale(board) * 1e3
+    latest = board.tick + round(LATEST_S * ms_per_s / board.dt_ms)
+    came = board.tick + round((EARLIEST_S + when * (LATEST_S - EARLIEST_S)) * ms_per_s / board.dt_ms)
+    return Blind(
+        question=Question(
+            id=id_,
+            answers=[item.name for item in answers],
+            factors=[item.model_dump(exclude_defaults=True, exclude={"name"}) for item in answers],
+            shows=list(board.diagnosers) if shows else [],
+            began_tick=board.tick,
+            by_tick=latest,
+        ),
+        truth=truth.name,
+        came_tick=came if faults else None,
+        faults=faults,
+        sheet={key: value for key, value in sheet.items() if key in SHEET},
+    )

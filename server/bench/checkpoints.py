@@ -1,0 +1,215 @@
+"""Checkpoints of live benches on disk: after a crash each goes on at its tick, bit for bit, with its log.
+
+A bench has two files. One is replaced as a whole and holds the board, the other grows by the events. A crash between
+two writes loses what came since the last: less than a second.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from core.board.board import Board
+from core.board.document import Document
+from core.board.stored import Stored, revived, stored
+from core.errors import InputError
+from scenarios.schema import Scenario
+from server.bench.blind import Blind
+from server.bench.engine import Engine
+from server.bench.events import KEPT, Event
+from server.bench.experiment import THIS_VERSION
+from server.bench.session import Session
+from server.bench.watch import KeptWatch
+from server.errors import ApiError
+
+log = logging.getLogger(__name__)
+
+EVERY_S = 0.7
+BOARD, EVENTS, PART, DOCUMENT, WATCH = ".npz", ".events", ".part", "document", "watch"
+
+
+class Head(BaseModel):
+    """What a bench is beside its board and its events."""
+
+    id: str
+    class_id: str
+    scenario: dict[str, Any]
+    created: datetime
+    time_scale: float | None
+    running: bool
+    tick: int
+    last_event: int
+    version: str
+    blind: Blind | None = None
+    hidden_since: int = 0
+    watch: Document | None = None
+
+
+@dataclass
+class Kept:
+    """A bench as its files have it."""
+
+    head: Head
+    stored: Stored
+    events: list[Event]
+    watch: KeptWatch | None = None
+
+    def board_of(self) -> tuple[Scenario, Board]:
+        """Return the scenario, and the board that goes on.
+
+        Raises
+        ------
+        InputError
+            If this version of the code is another.
+        """
+        if self.head.version != THIS_VERSION:
+            raise InputError(f"was kept by version {self.head.version}")
+        return Scenario.load(self.head.scenario), revived(self.stored)
+
+    def put_into(self, session: Session) -> None:
+        """Make a new bench the one that was kept."""
+        session.id, session.created = self.head.id, self.head.created
+        session.events.go_on(self.events)
+        if (blind := self.head.blind) is not None:
+            session.hiding.begin(blind, [event for event in self.events if event.seq >= self.head.hidden_since])
+
+
+class Checkpoints:
+    """The files of the benches that are to survive a crash.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they are.
+    engine : Engine
+        Whose thread may read a bench.
+    benches : callable
+        Lists the benches to keep.
+    """
+
+    def __init__(self, folder: Path, engine: Engine, benches: Callable[[], list[Session]]) -> None:
+        self._folder, self._engine, self._benches = folder, engine, benches
+        self._written: dict[str, tuple[int, int, bool]] = {}
+        self._turn = asyncio.Lock()
+
+    async def run(self) -> None:
+        """Write again and again what has changed."""
+        while True:
+            await asyncio.sleep(EVERY_S)
+            await self.write()
+
+    async def write(self) -> None:
+        """Write the benches that have changed since the last time."""
+        async with self._turn:
+            for session in self._benches():
+                now = (session.board.tick, session.events.last, session.is_started)
+                if self._written.get(session.id) == now:
+                    continue
+                try:
+                    kept = await self._engine.call(_taken, session)
+                    head = kept.head
+                    events = session.events.after(self._written.get(session.id, (0, 0))[1])[1]
+                    events = [event for event in events if event.seq <= head.last_event]
+                    await asyncio.to_thread(self._save, kept, events)
+                    self._written[session.id] = (head.tick, head.last_event, head.running)
+                except ApiError:
+                    continue  # it has been closed meanwhile
+                except Exception:
+                    log.exception("bench %s could not be kept; it is tried again", session.id)
+
+    async def load(self, bench_id: str) -> Kept | None:
+        """Return a bench that was kept; nothing if there is none that can be read."""
+        async with self._turn:
+            try:
+                return await asyncio.to_thread(self._load, bench_id)
+            except FileNotFoundError:
+                return None
+            except Exception:
+                log.exception("what was kept of bench %s cannot be read", bench_id)
+                return None
+
+    async def forget(self, bench_id: str) -> None:
+        """Delete what was kept of a bench."""
+        async with self._turn:
+            self._written.pop(bench_id, None)
+            for suffix in (BOARD, EVENTS, BOARD + PART):
+                await asyncio.to_thread(self._path(bench_id, suffix).unlink, missing_ok=True)
+
+    async def forget_others(self) -> None:
+        """Delete what was kept of benches that are not there."""
+        async with self._turn:
+            live = {session.id for session in self._benches()}
+            for path in list(self._folder.glob("*")):
+                if path.name.partition(".")[0] not in live:
+                    await asyncio.to_thread(path.unlink, missing_ok=True)
+
+    def _path(self, bench_id: str, suffix: str) -> Path:
+        return self._folder / f"{bench_id}{suffix}"
+
+    def _save(self, kept: Kept, events: list[Event]) -> None:
+        """Write the events first: those beyond the board are left out when they are read."""
+        head = kept.head
+        self._folder.mkdir(parents=True, exist_ok=True)
+        if events:
+            with self._path(head.id, EVENTS).open("a", encoding="utf-8") as file:
+                file.write("".join(f"{event.model_dump_json()}\n" for event in events))
+        text = json.dumps({**head.model_dump(), "board": kept.stored.document}, default=str).encode()
+        part = self._path(head.id, BOARD + PART)
+        with part.open("wb") as file:
+            arrays: dict[str, Any] = {DOCUMENT: np.frombuffer(text, np.uint8), **kept.stored.arrays}
+            if kept.watch is not None:
+                arrays[WATCH] = kept.watch.samples
+            np.savez(file, **arrays)
+        os.replace(part, self._path(head.id, BOARD))
+
+    def _load(self, bench_id: str) -> Kept:
+        with self._path(bench_id, BOARD).open("rb") as file, np.load(file, allow_pickle=False) as parts:
+            document = json.loads(parts[DOCUMENT].tobytes())
+            arrays = {name: parts[name] for name in parts.files if name != DOCUMENT}
+        board, samples = document.pop("board"), arrays.pop(WATCH, None)
+        head, path = Head.model_validate(document), self._path(bench_id, EVENTS)
+        lines = path.read_text("utf-8").splitlines() if path.exists() else []
+        known: dict[int, Event] = {}
+        for line in lines:
+            try:
+                event = Event.model_validate_json(line)
+            except ValueError:
+                continue  # the crash came in the middle of it
+            if event.seq <= head.last_event:
+                known[event.seq] = event
+        events = [known[seq] for seq in sorted(known)]
+        path.write_text("".join(f"{event.model_dump_json()}\n" for event in events), "utf-8")
+        self._written[bench_id] = (head.tick, head.last_event, head.running)
+        watch = KeptWatch(head.watch, samples) if head.watch is not None and samples is not None else None
+        return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
+
+
+def _taken(session: Session) -> Kept:
+    """Return what a bench is now, without its events (a job of the engine)."""
+    session.must_be_open()
+    watch = session.watch.kept(session) if session.watch is not None else None
+    head = Head(
+        id=session.id,
+        class_id=session.class_id,
+        scenario=session.scenario.document,
+        created=session.created,
+        time_scale=session.pacer.scale,
+        running=session.is_started,
+        tick=session.board.tick,
+        last_event=session.events.last,
+        version=THIS_VERSION,
+        blind=session.hiding.blind,
+        hidden_since=session.hiding.since,
+        watch=watch.document if watch is not None else None,
+    )
+    return Kept(head, stored(session.board), [], watch)  # type: ignore[arg-type]

@@ -1,0 +1,222 @@
+"""Hiding: what a bench keeps to itself while a fault is hidden on it, and the view that people have of it meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from core.board.commands import Heal, Set, Switch, Trip
+from core.board.document import Document
+from core.board.history import History
+from core.errors import unknown
+from core.signals import Signal
+from server.bench.blind import ACTOR, MAY_SET, Blind
+from server.bench.events import Event, EventLog
+from server.bench.portrait import ShownBench, bench_of, document_now
+from server.bench.status import Bench, BenchStatus
+from server.people.person import Person
+
+STOPPED = "the board has stopped itself"
+"""All that is told of a trip: its reason and its signal would tell the fault."""
+
+RUNNING = ("opened", "start", "pause", "step", "step_period", "reset_trip", "finished", "blind")
+CHANGES = ("time_scale", Set.kind, Switch.kind)
+"""Kinds of events that are told, the latter with what was before; of a trip it is told that the board has stopped."""
+
+STATUS = (
+    *("state", "tick", "first_tick", "time_scale", "achieved_scale", "capped", "overruns", "given_up_ms"),
+    *("controller", "slots", "watchers", "loop_lag_ms", "wake_late_ms"),
+)
+BENCH = (
+    *("id", "title", "scenario_id", "source", "created", "dt_ms", "sample_rate_khz", "samples", "history_ticks"),
+    *("drive_period_ticks", "axes", "controllers", "keep"),
+)
+"""Fields of a status and of a bench that are told; any other is not."""
+
+
+class HidingBench(ShownBench, Protocol):
+    """A bench on which a fault can be hidden."""
+
+    class_id: str
+
+
+class Hiding:
+    """The hidden fault of a bench, if it has one.
+
+    Parameters
+    ----------
+    bench : HidingBench
+        The bench.
+    """
+
+    def __init__(self, bench: HidingBench) -> None:
+        self._bench = bench
+        self.view: BlindView | None = None
+        """What is seen of the bench while a fault is hidden."""
+        self.since = 0
+        """Number of the first event that came then."""
+
+    @property
+    def blind(self) -> Blind | None:
+        """What is hidden."""
+        return self.view.blind if self.view is not None else None
+
+    def hides_from(self, person: Person) -> bool:
+        """Whether somebody sees the view alone; a teacher sees all of the bench of a student."""
+        return self.view is not None and not (self._bench.class_id and person.is_teacher)
+
+    def begin(self, blind: Blind, log: Sequence[Event] = ()) -> None:
+        """Serve the view alone from now on; after a crash, with the log since then."""
+        self.view = BlindView(self._bench, blind)
+        self.since = log[0].seq if log else self._bench.events.last + 1
+        for event in log:
+            self.hear(event)
+
+    def clear(self) -> None:
+        """Heal the device, and let nothing that was to come or was being kept tell more (a job of the engine)."""
+        bench = self._bench
+        bench.fast_forward.end()
+        bench.fast_forward.leads = False
+        bench.recordings.close("a fault was hidden")
+        bench.board.pending.clear()
+        bench.board.apply(Heal(heal="all"), ACTOR)
+
+    def inject(self, actor: str) -> None:
+        """Let the fault wait for its moment (a job of the engine)."""
+        assert self.blind is not None
+        self.blind.inject(self._bench.board)
+        self._bench.note(actor, "blind", "a fault was hidden, or none")
+        self._bench.refresh_status()
+
+    def reveal(self, actor: str) -> None:
+        """Serve everything again (a job of the engine)."""
+        self.view = None
+        self._bench.note(actor, "revealed", "what was hidden was shown")
+        self._bench.refresh_status()
+
+    def hear(self, event: Event) -> bool:
+        """Put an event of the bench into the log that is told, if it may be; return whether a fault is hidden."""
+        if self.view is not None:
+            self.view.hear(event)
+        return self.view is not None
+
+
+class BlindView:
+    """A bench as it is seen while a fault is hidden on it: whatever is not named here is not served.
+
+    Parameters
+    ----------
+    bench : HidingBench
+        The bench.
+    blind : Blind
+        What is hidden.
+    """
+
+    def __init__(self, bench: HidingBench, blind: Blind) -> None:
+        self._bench, self.blind = bench, blind
+        self.events = EventLog(lambda _event: None)
+        self._known: tuple[BenchStatus, int] | None = None
+        self._status: BenchStatus | None = None
+
+    @property
+    def id(self) -> str:
+        """Of the bench."""
+        return self._bench.id
+
+    @property
+    def dt_ms(self) -> float:
+        """Device time of one tick."""
+        return self._bench.dt_ms
+
+    @property
+    def history(self) -> History:
+        """All samples; `indices` gives the columns of signals that may be seen."""
+        return self._bench.history
+
+    @property
+    def is_running(self) -> bool:
+        """Whether time runs."""
+        return self._bench.is_running
+
+    @property
+    def scenario_id(self) -> str:
+        """Of its scenario, for the names of files."""
+        return self._bench.scenario.id
+
+    @property
+    def about(self) -> Document:
+        """What a file of its trace says of it."""
+        return {"bench": self.id}
+
+    @property
+    def signals(self) -> Sequence[Signal]:
+        """The signals that may be seen."""
+        return [signal for signal in self._bench.signals if self.blind.may_see(signal.name)]
+
+    def indices(self, names: Sequence[str]) -> list[int]:
+        """Return the columns of signals; one that may not be seen is unknown."""
+        known = {signal.name: signal.index for signal in self.signals}
+        for name in names:
+            if name not in known:
+                raise unknown("signal", name, list(known), "signals")
+        return [known[name] for name in names]
+
+    @property
+    def status(self) -> BenchStatus:
+        """The status, the same object until something of it changes."""
+        whole, last = self._bench.status, self.events.last
+        if self._status is None or self._known is None or self._known[0] is not whole or self._known[1] != last:
+            self._known, self._status = (whole, last), self._told(whole)
+        return self._status
+
+    @property
+    def document(self) -> Document:
+        """The bench as it is meant to be, with the reference and the controller of now."""
+        now = document_now(self._bench)
+        return {**self.blind.sheet, **{key: now[key] for key in MAY_SET if key in now}}
+
+    def describe(self, around: dict[str, Any], _view3d: str | None) -> Bench:
+        """Describe the bench."""
+        whole = bench_of(self._bench, around, None)
+        return Bench(
+            **{**dict(self._told(whole)), **{name: getattr(whole, name) for name in BENCH}},
+            seed=0,
+            signals=list(self.signals),
+            diagnosers={name: whole.diagnosers[name] for name in self.blind.question.shows},
+            parameters=self.document,
+            view3d=None,
+            blind=self.blind.question,
+        )
+
+    def hear(self, event: Event) -> None:
+        """Take an event into the log that is told, if it may be."""
+        if event.kind == "tripped":
+            self._keep(event, text=STOPPED)
+        elif event.kind in CHANGES:
+            self._keep(event, text=event.text, command=event.command, old=event.old, new=event.new)
+        elif event.kind in RUNNING:
+            self._keep(event, text=event.text, command=event.command)
+
+    def told(self, event: Event) -> Event:
+        """Return an event of the bench as the log that is told has it."""
+        return next(one for one in reversed(self.events.after(0)[1]) if one.at == event.at)
+
+    def _keep(self, event: Event, **told: Any) -> None:
+        self.events.keep(tick=event.tick, actor=event.actor, kind=event.kind, at=event.at, **told)
+
+    def _told(self, whole: BenchStatus) -> BenchStatus:
+        """Return what may be told of a status."""
+        stopped = whole.trip
+        if stopped is not None:
+            stopped = Trip(tick=stopped.tick, time_ms=stopped.time_ms, reason=STOPPED, signal="", value=None)
+        return BenchStatus(
+            **{name: getattr(whole, name) for name in STATUS},
+            fast_forward=None,
+            faults=[],
+            pending=[],
+            trip=stopped,
+            scores={},
+            last_event=self.events.last,
+            recording=[],
+            armed=[],
+        )

@@ -1,0 +1,273 @@
+"""What a person needs for each door of the service: one table, which the gate asks and the tests walk.
+
+A door is a method and a path; those of WebSockets have the method ``SOCKET``. A door that is not in the table is the
+teacher's alone, so that a new route is closed until somebody decides. While a fault is hidden on the bench of a
+student, only the doors marked ``*`` stay open for that student.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum
+
+from starlette.routing import compile_path
+
+SOCKET = "SOCKET"
+Door = tuple[str, str]
+"""A method and a path."""
+
+
+class Need(Enum):
+    """What opens a door."""
+
+    NOTHING = "nothing"
+    SESSION = "any session"
+    WATCH = "may watch the bench in the path"
+    MAY_DRIVE = "may drive the bench in the path, whoever does now"
+    DRIVE = "may drive the bench in the path, and nobody else does"
+    TEACHER = "the teacher"
+
+
+API = "/api/v1"
+BENCH = f"{API}/benches/{{bench_id}}"
+CLASS = f"{API}/classes/{{class_id}}"
+
+_DOORS = {
+    Need.NOTHING: f"""
+        GET /health/live
+        GET /health/ready
+        GET /join
+        POST /join
+        GET /watch/{{link}}
+        POST {CLASS}/join
+    """,
+    Need.SESSION: f"""
+        GET {API}/openapi.json  *
+        GET {API}/me  *
+        PUT {API}/me/hand  *
+        GET {API}/me/layout  *
+        PUT {API}/me/vote  *
+        GET {API}/catalog  *
+        GET {API}/devices  *
+        POST {API}/devices/evaluate  *
+        POST {API}/devices/bode  *
+        POST {API}/devices/spread  *
+        GET {API}/scenarios  *
+        GET {API}/scenarios/{{scenario_id}}  *
+        POST {API}/scenarios/check
+        GET {API}/benches  *
+        POST {API}/benches  *
+        GET {API}/parameter-sets
+        GET {API}/parameter-sets/{{set_id}}
+        GET {API}/parameter-sets/{{set_id}}/difference
+        GET {API}/recordings
+        GET {API}/recordings/{{recording_id}}
+        GET {API}/recordings/{{recording_id}}/trace
+        GET {API}/gallery  *
+        GET {API}/gallery/{{scenario_id}}/figure  *
+        GET {API}/sheets  *
+        GET {API}/sheets/{{sheet_id}}  *
+        GET {API}/sheets/{{sheet_id}}/report  *
+        POST {API}/sheets/{{sheet_id}}/begin
+        POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/answer  *
+        POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/hint  *
+        POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/close  *
+        PUT {API}/sheets/{{sheet_id}}/recordings/{{recording_id}}
+        POST {API}/theory/positive-real  *
+        POST {API}/theory/positive-definite  *
+        POST {API}/theory/persistency  *
+        POST {API}/theory/aliases  *
+        POST {API}/theory/instability-map  *
+    """,
+    Need.WATCH: f"""
+        GET {BENCH}  *
+        GET {BENCH}/events  *
+        GET {BENCH}/scenario
+        GET {BENCH}/digest
+        GET {BENCH}/trace  *
+        GET {BENCH}/unstable-region
+        GET {BENCH}/plants
+        GET {BENCH}/flops
+        GET {BENCH}/diagnosers/{{name}}/explain
+        GET {BENCH}/diagnosers/{{name}}/turn
+        GET {BENCH}/diagnosers/{{name}}/aliases
+        GET {BENCH}/readouts/{{name}}
+        GET {BENCH}/snapshots
+        GET {BENCH}/recordings
+        SOCKET {BENCH}/stream  *
+        GET /benches/{{bench_id}}/3d/
+        SOCKET /benches/{{bench_id}}/3d
+    """,
+    Need.MAY_DRIVE: f"""
+        POST {BENCH}/reopen  *
+        POST {BENCH}/driving  *
+        POST {BENCH}/identification
+        POST {BENCH}/diagnosers/{{name}}/aliases
+    """,
+    Need.DRIVE: f"""
+        POST {BENCH}/commands  *
+        POST {BENCH}/snapshots
+        DELETE {BENCH}/snapshots/{{snapshot_id}}
+        POST {BENCH}/snapshots/{{snapshot_id}}/restore
+        POST {BENCH}/parameter-sets/{{set_id}}
+        POST {BENCH}/recordings
+        POST {BENCH}/recordings/{{recording_id}}/stop
+        GET {BENCH}/blind  *
+        POST {BENCH}/blind  *
+        POST {BENCH}/blind/answer  *
+        DELETE {BENCH}/blind  *
+    """,
+    Need.TEACHER: f"""
+        DELETE {BENCH}  *
+        POST {BENCH}/fork
+        POST {BENCH}/variant
+        POST {BENCH}/parameter-sets
+        GET {BENCH}/audit
+        POST {BENCH}/watchers
+        GET {BENCH}/watchers
+        DELETE {BENCH}/watchers/{{watcher_id}}
+        PATCH {API}/parameter-sets/{{set_id}}
+        DELETE {API}/parameter-sets/{{set_id}}
+        DELETE {API}/recordings/{{recording_id}}
+        POST {API}/recordings/{{recording_id}}/replay
+        POST {API}/recordings/{{recording_id}}/compare
+        POST {API}/runs
+        GET {API}/runs
+        POST {API}/runs/remove
+        GET {API}/runs/compare
+        GET {API}/runs/compare/trace
+        GET {API}/runs/{{run_id}}
+        PATCH {API}/runs/{{run_id}}
+        DELETE {API}/runs/{{run_id}}
+        GET {API}/runs/{{run_id}}/trace
+        GET {API}/runs/{{run_id}}/report
+        GET {API}/runs/{{run_id}}/thumbnail
+        GET {API}/runs/{{run_id}}/script
+        POST {API}/sweeps
+        GET {API}/sweeps
+        POST {API}/sweeps/remove
+        GET {API}/sweeps/{{sweep_id}}
+        PATCH {API}/sweeps/{{sweep_id}}
+        DELETE {API}/sweeps/{{sweep_id}}
+        GET {API}/sweeps/{{sweep_id}}/points
+        GET {API}/sweeps/{{sweep_id}}/distribution
+        GET {API}/sweeps/{{sweep_id}}/runs
+        GET {API}/sweeps/{{sweep_id}}/report
+        GET {API}/sweeps/{{sweep_id}}/script
+        POST {API}/gallery/run
+        POST {API}/sheets
+        DELETE {API}/sheets/{{sheet_id}}
+        DELETE {API}/sheets/{{sheet_id}}/progress
+        POST {CLASS}/sheet
+        GET {CLASS}/grades
+        GET {CLASS}/sheets/{{sheet_id}}/{{member_id}}/report
+        POST {API}/links
+        GET {API}/links
+        GET {API}/links/{{link_id}}
+        PATCH {API}/links/{{link_id}}
+        DELETE {API}/links/{{link_id}}
+        POST {API}/links/{{link_id}}/open
+        GET {API}/lectures
+        GET {API}/lectures/{{lecture_id}}
+        POST {API}/lectures/{{lecture_id}}/cues/{{number}}
+        POST {API}/votes
+        GET {API}/votes
+        GET {API}/votes/{{vote_id}}
+        DELETE {API}/votes/{{vote_id}}
+        POST {API}/votes/{{vote_id}}/close
+        POST {API}/votes/{{vote_id}}/reveal
+        PUT {API}/votes/{{vote_id}}/hands
+        POST {API}/classes
+        GET {API}/classes
+        GET {CLASS}
+        DELETE {CLASS}
+        POST {CLASS}/code
+        DELETE {CLASS}/code
+        GET {CLASS}/members
+        DELETE {CLASS}/members/{{member_id}}
+        DELETE {CLASS}/members/{{member_id}}/hand
+        POST {CLASS}/commands
+        POST {CLASS}/scenario
+        POST {CLASS}/start
+        PUT {CLASS}/shown
+        DELETE {CLASS}/shown
+        PUT {CLASS}/layout
+        GET {CLASS}/audit
+        POST {CLASS}/blind
+        GET {CLASS}/blind
+        DELETE {CLASS}/blind
+        GET /metrics
+    """,
+}
+
+LTI = "/lti"
+_LTI_DOORS = {
+    # A launch proves by a signature who it is, or leads to a secret that works once; keys and addresses are public.
+    # The page at LTI itself is the same for all, and shows nothing until it has exchanged such a secret.
+    Need.NOTHING: f"""
+        GET {LTI}
+        GET {LTI}/login
+        POST {LTI}/login
+        POST {LTI}/launch
+        POST {LTI}/link
+        POST {LTI}/session
+        GET {LTI}/jwks
+        GET {LTI}/configuration
+    """,
+    # A ticket opens what its holder may open anyway.
+    Need.SESSION: f"""
+        POST {LTI}/ticket  *
+    """,
+}
+
+
+def _table(doors: Mapping[Need, str]) -> tuple[dict[Door, Need], set[Door]]:
+    """Return what each door needs, and the doors that stay open while a fault is hidden."""
+    needs: dict[Door, Need] = {}
+    open_while_blind: set[Door] = set()
+    for need, lines in doors.items():
+        for method, path, *mark in (line.split() for line in lines.split("\n") if line.strip()):
+            needs[method, path] = need
+            if mark:
+                open_while_blind.add((method, path))
+    return needs, open_while_blind
+
+
+DOORS, _own = _table(_DOORS)
+"""What each door needs, by its method and its path."""
+LTI_DOORS, _of_platforms = _table(_LTI_DOORS)
+"""The same of the doors that are there where learning platforms are configured, and nowhere else."""
+OPEN_WHILE_BLIND = frozenset(_own | _of_platforms)
+"""The doors marked ``*``: those that know no bench, and those that serve the view of one whose fault is hidden."""
+
+_PATTERNS = [(method, compile_path(path)[0], need, path) for (method, path), need in {**DOORS, **LTI_DOORS}.items()]
+_PAGE = ("/api/", "/health/", "/benches/", "/metrics")
+"""Below these, what is not in the table is no part of the page."""
+
+
+def serves_blind(method: str, path: str) -> bool:
+    """Return whether a door stays open while a fault is hidden on the bench of whoever asks."""
+    asked = "GET" if method == "HEAD" else method
+    for known, pattern, need, shape in _PATTERNS:
+        if known == asked and pattern.match(path):
+            return need is Need.NOTHING or (known, shape) in OPEN_WHILE_BLIND
+    return asked == "GET" and not path.startswith(_PAGE)
+
+
+def need_of(method: str, path: str) -> tuple[Need, str]:
+    """Return what a request needs, and the bench in its path if there is one.
+
+    Parameters
+    ----------
+    method : str
+        Of HTTP, or ``SOCKET``.
+    path : str
+        As the router sees it.
+    """
+    asked = "GET" if method == "HEAD" else method
+    for known, pattern, need, _ in _PATTERNS:
+        if known == asked and (match := pattern.match(path)):
+            return need, match.groupdict().get("bench_id", "")
+    if asked == "GET" and not path.startswith(_PAGE):
+        return Need.SESSION, ""  # the page and its files
+    return Need.TEACHER, ""

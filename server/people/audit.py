@@ -1,0 +1,110 @@
+"""What people did, to which bench and when: it stays when the bench goes, and goes with the class."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from datetime import datetime
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+from sqlalchemy import delete, func, select
+
+from server.bench.events import Event
+from server.bench.session import Session
+from server.store.database import Database
+from server.store.models import AuditRow, now
+
+log = logging.getLogger(__name__)
+
+EVERY_S = 1.0
+"""Between two writes; a crash loses no more."""
+MOST = 100_000
+"""Entries kept; beyond, the oldest are forgotten."""
+OF_THE_BENCH = frozenset({"board", "scenario"})
+"""Actors that are no people."""
+
+
+class AuditEntry(BaseModel):
+    """One thing that somebody did."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    at: datetime
+    actor: str
+    class_id: str | None
+    bench_id: str | None
+    tick: int | None
+    kind: str
+    text: str
+
+
+class Audit:
+    """The log of what people did.
+
+    Parameters
+    ----------
+    database : Database
+        Where it is kept.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+        self._waiting: deque[dict[str, Any]] = deque(maxlen=MOST)
+
+    def witness(self, bench: Session, event: Event) -> None:
+        """Keep an event of a bench that a person caused; called on the engine's thread too."""
+        if event.actor not in OF_THE_BENCH:
+            self.add(event.actor, event.kind, event.text, bench.class_id, bench.id, event.tick)
+
+    def add(
+        self, actor: str, kind: str, text: str, class_id: str = "", bench_id: str = "", tick: int | None = None
+    ) -> None:
+        """Keep what somebody did; it is written within a second."""
+        self._waiting.append(
+            {
+                "at": now(),
+                "actor": actor[:120],
+                "kind": kind[:32],
+                "text": text[:400],
+                "class_id": class_id or None,
+                "bench_id": bench_id or None,
+                "tick": tick,
+            }
+        )
+
+    async def run(self) -> None:
+        """Write what came, again and again."""
+        while True:
+            await asyncio.sleep(EVERY_S)
+            try:
+                await self.write()
+            except Exception:
+                log.exception("what people did could not be written; it is tried again")
+
+    async def write(self) -> None:
+        """Write what came since the last time."""
+        rows = [self._waiting.popleft() for _ in range(len(self._waiting))]
+        if not rows:
+            return
+        try:
+            await self._database.run(lambda session: session.add_all([AuditRow(**row) for row in rows]))
+        except Exception:
+            self._waiting.extendleft(reversed(rows))
+            raise
+        newest = select(func.max(AuditRow.id)).scalar_subquery()
+        await self._database.run(lambda session: session.execute(delete(AuditRow).where(AuditRow.id <= newest - MOST)))
+
+    async def entries(self, *, class_id: str = "", bench_id: str = "", limit: int = 1000) -> list[AuditEntry]:
+        """Return what was done in a class or to a bench, newest first."""
+        await self.write()
+        query = select(AuditRow).order_by(AuditRow.id.desc()).limit(limit)
+        query = query.where(AuditRow.class_id == class_id if class_id else AuditRow.bench_id == bench_id)
+        rows = await self._database.run(lambda session: list(session.scalars(query)))
+        return [AuditEntry.model_validate(row) for row in rows]
+
+    async def forget(self, class_id: str) -> None:
+        """Forget what was done in a class."""
+        await self.write()
+        await self._database.run(lambda session: session.execute(delete(AuditRow).where(AuditRow.class_id == class_id)))

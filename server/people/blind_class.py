@@ -1,0 +1,104 @@
+"""A hidden fault for each student of a class: a device, noise and a fault of one's own, none of which leaves here."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from typing import Any
+
+from core.board.board import Board
+from core.errors import InputError
+from scenarios.schema import Scenario
+from server.bench.blind import Blind, bank_of, hide
+from server.bench.making import read_scenario
+from server.errors import ApiError
+from server.people.blinds import OF_DRAW, Blinds
+from server.people.classes import Classes
+from server.people.draw import device_of
+from server.people.person import Person
+
+LEFT_OUT = frozenset({"events", "samples", "duration_ms", "expect", "metrics", "claim", "note", "faults", "twins"})
+"""What of a scenario would tell, or has nothing to do with the bench."""
+
+
+async def begin_for(
+    classes: Classes, blinds: Blinds, students: list[Person], source: str | dict[str, Any], shows: bool
+) -> list[str]:
+    """Give students a blind bench each; return what went wrong, by name.
+
+    Parameters
+    ----------
+    classes : Classes
+        Their classes, from whose secret all is drawn.
+    blinds : Blinds
+        Where it is kept what is hidden.
+    students : list of Person
+        Who is asked.
+    source : str or dict
+        The scenario of the bench; what happens in it is left out.
+    shows : bool
+        Whether the diagnosers may be looked at meanwhile.
+
+    Raises
+    ------
+    InputError
+        If no bench can be made of the scenario; nothing has changed then.
+    """
+    scenario = await asyncio.to_thread(quiet, source)
+    exercise = secrets.token_hex(6)
+    failed: list[str] = []
+    for person in students:
+        try:
+            await _begin(classes, blinds, person, scenario, exercise, shows)
+        except (InputError, ApiError) as error:
+            failed.append(f"{person.name}: {error}")
+    return failed
+
+
+async def _begin(
+    classes: Classes, blinds: Blinds, person: Person, scenario: Scenario, exercise: str, shows: bool
+) -> None:
+    """Give a student a blind bench, drawn from the secret of the class."""
+    device, noise, which, moment = [
+        await classes.draw(person, exercise, purpose) for purpose in ("device", "noise", "fault", "moment")
+    ]
+
+    def hidden(board: Board) -> Blind:
+        return hide(board, scenario.spec.document, secrets.token_hex(8), shows, which, moment / OF_DRAW)
+
+    wanted = {
+        "source": scenario.document,
+        "values": device_of(scenario.spec.device, device),
+        "seed": noise,
+        "paused": False,
+        "time_scale": None,
+        "own_scale": True,
+    }
+    session = await classes.benches.replace(person, wanted, hidden)
+    await blinds.note(session, person, exercise)
+
+
+def quiet(source: str | dict[str, Any]) -> Scenario:
+    """Return a scenario in which nothing happens, of a resonator with a bank of hypotheses.
+
+    Raises
+    ------
+    InputError
+        If it is of something else.
+    """
+    whole = read_scenario(source)
+    check(whole)
+    return Scenario.load({key: value for key, value in whole.document.items() if key not in LEFT_OUT})
+
+
+def check(scenario: Scenario) -> None:
+    """Refuse a scenario on whose bench no fault can be hidden.
+
+    Raises
+    ------
+    InputError
+        If it is of something else than a resonator with a bank of hypotheses.
+    """
+    if scenario.study is not None or scenario.spec.device.usual_plant != "linear":
+        raise InputError("is no bench of a resonator", "scenario", "take one of chapter 5")
+    bank_of(scenario.spec)

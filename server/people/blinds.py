@@ -1,0 +1,242 @@
+"""Hidden faults: they are begun for somebody alone or for a class, answered, revealed, and the answers are kept."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Awaitable, Callable
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, Field
+from sqlalchemy import delete, select
+
+from core.errors import InputError, unknown
+from server.bench.blind import Blind, hide
+from server.bench.engine import Engine
+from server.bench.session import Session
+from server.errors import ApiError
+from server.people.brier import points
+from server.people.draw import draw
+from server.people.person import Person
+from server.store.database import Database
+from server.store.models import BlindAnswerRow, now
+
+OF_DRAW = 2**31
+"""Numbers that are drawn are below this."""
+ALONE_KEPT = 100
+"""Answers kept of somebody who is alone."""
+
+
+class Answer(BaseModel):
+    """A hidden fault, and what somebody said of it."""
+
+    id: str
+    exercise: str = Field(description="Shared by the students of a class who were asked at once; empty: alone")
+    class_id: str
+    person_id: str
+    name: str
+    bench: str
+    title: str
+    seed: int | None = Field(description="Of somebody alone: the same one hides the same fault")
+    state: Literal["hidden", "answered", "revealed"] = "hidden"
+    said: str | None = None
+    confidence: float | None = None
+    points: float = 0.0
+    truth: str
+    factors: dict[str, dict[str, float]] = Field(description="How each answer differs from the nominal device")
+    came_tick: int | None = Field(description="When the fault came; null for a healthy device")
+    ended_tick: int | None = None
+    took_ms: float | None = Field(None, description="Device time from the fault to the answer; null: none had come")
+    verdicts: dict[str, str] = Field({}, description="What each diagnoser said then")
+    began: datetime
+    ended: datetime | None = None
+
+
+class Blinds:
+    """The hidden faults of all benches, and the answers to them.
+
+    Parameters
+    ----------
+    database : Database
+        Where the answers are kept.
+    engine : Engine
+        Whose thread changes a bench.
+    turn : callable
+        Closes the pages of a bench, so that they come back to what may be seen of it now.
+    """
+
+    def __init__(self, database: Database, engine: Engine, turn: Callable[[Session], Awaitable[None]]) -> None:
+        self._database, self._engine, self._turn_pages = database, engine, turn
+        self._answers: dict[str, Answer] = {}
+        self._turn = asyncio.Lock()
+
+    async def recover(self) -> None:
+        """Take the answers of the last start back."""
+        query = select(BlindAnswerRow).order_by(BlindAnswerRow.began)
+        rows = await self._database.run(lambda session: list(session.scalars(query)))
+        self._answers = {row.id: Answer.model_validate(row.answer) for row in rows}
+
+    def of_person(self, person_id: str, exercise: str | None = None) -> list[Answer]:
+        """Return what somebody has answered, or what was revealed, oldest first; exercise "" is what they began."""
+        return [
+            one
+            for one in self._answers.values()
+            if one.person_id == person_id and one.state != "hidden" and exercise in (None, one.exercise)
+        ]
+
+    def of_class(self, class_id: str) -> list[Answer]:
+        """Return what the teacher hid from the students of a class, oldest first; with what is hidden still."""
+        return [one for one in self._answers.values() if one.class_id == class_id and one.exercise]
+
+    def last_of(self, person_id: str) -> Answer | None:
+        """Return what the teacher hid last from a student."""
+        found = (one for one in reversed(self._answers.values()) if one.person_id == person_id and one.exercise)
+        return next(found, None)
+
+    async def begin(self, session: Session, person: Person, seed: int, shows: bool, secret: str = "") -> None:
+        """Hide a fault on a bench that is there, by a seed; a student cannot know beforehand what a seed hides.
+
+        Raises
+        ------
+        ApiError
+            If one is hidden there already, or the past is played.
+        InputError
+            If the bench has no bank of hypotheses.
+        """
+        async with self._turn:
+            if session.hiding.blind is not None:
+                raise ApiError(409, "blind", "a fault is hidden here already", hint="answer or give up first")
+            if session.replay_of:
+                raise ApiError(409, "conflict", "a recording that is played has no faults to hide")
+            words = [str(seed), *([person.id, str(len(self.of_person(person.id)))] if secret else [])]
+            which, when = draw(secret, *words, "fault"), draw(secret, *words, "moment") / OF_DRAW
+
+            def chosen() -> Blind:
+                return hide(session.board, session.document, secrets.token_hex(8), shows, which, when)
+
+            def inject() -> None:
+                session.hiding.clear()
+                session.hiding.begin(chosen())
+                session.hiding.inject(person.name)
+
+            blind = await self._engine.call(chosen)  # refuses before anything has changed
+            session.hiding.begin(blind)  # from here on no page and no program is told more
+            await self._turn_pages(session)
+            try:
+                await self._engine.call(inject)
+            except InputError:  # the bench has no such fault
+                session.hiding.view = None
+                raise
+            finally:
+                await self._turn_pages(session)
+            await self.note(session, person, seed=seed)
+
+    async def note(self, session: Session, person: Person, exercise: str = "", seed: int | None = None) -> Answer:
+        """Keep that a fault is hidden from somebody."""
+        blind = _of(session)
+        answer = Answer(
+            id=blind.question.id,
+            exercise=exercise,
+            class_id=session.class_id,
+            person_id=person.id,
+            name=person.name,
+            bench=session.id,
+            title=session.scenario.head.title or session.scenario.id,
+            seed=seed,
+            truth=blind.truth,
+            factors=dict(zip(blind.question.answers, blind.question.factors, strict=True)),
+            came_tick=blind.came_tick,
+            began=now(),
+        )
+        await self._keep(answer)
+        return answer
+
+    async def commit(self, session: Session, person: Person, said: str, confidence: float) -> Answer:
+        """Take an answer, count it and reveal the fault; one that was given before a crash stays what it was.
+
+        Raises
+        ------
+        ApiError
+            If nothing is hidden here.
+        InputError
+            If it is none of the answers.
+        """
+        async with self._turn:
+            blind = _of(session)
+            answers = blind.question.answers
+            if said not in answers:
+                raise unknown("answer", said, answers, "said")
+            given = {"said": said, "confidence": confidence, "state": "answered"}
+            worth = points(said == blind.truth, confidence, len(answers))
+            return await self._end(session, person, {**given, "points": worth})
+
+    async def reveal(self, session: Session, person: Person) -> Answer:
+        """Reveal a fault without an answer: no points.
+
+        Raises
+        ------
+        ApiError
+            If nothing is hidden here.
+        """
+        async with self._turn:
+            _of(session)
+            return await self._end(session, person, {"state": "revealed"})
+
+    async def close(self, session: Session) -> None:
+        """Keep that the bench of a hidden fault has gone without an answer."""
+        if (blind := session.hiding.blind) is not None and (known := self._answers.get(blind.question.id)) is not None:
+            await self._keep(known.model_copy(update={"state": "revealed", "ended": now()}))
+
+    async def forget(self, class_id: str) -> None:
+        """Forget what was answered in a class."""
+        self._answers = {key: one for key, one in self._answers.items() if one.class_id != class_id}
+        statement = delete(BlindAnswerRow).where(BlindAnswerRow.class_id == class_id)
+        await self._database.run(lambda session: session.execute(statement))
+
+    async def _end(self, session: Session, person: Person, said: dict[str, object]) -> Answer:
+        """Keep how it ended, then serve everything again: a crash between the two reveals on the next try."""
+        blind = _of(session)
+        answer = self._answers.get(blind.question.id) or await self.note(session, person)
+        if answer.state == "hidden":
+            tick, verdicts = await self._engine.call(lambda: (session.board.tick, verdicts_of(session)))
+            came = blind.came_tick
+            took = (tick - came) * session.dt_ms if came is not None and tick >= came else None
+            ending = {"ended_tick": tick, "took_ms": took, "verdicts": verdicts, "ended": now()}
+            answer = answer.model_copy(update={**said, **ending})
+            await self._keep(answer)
+        await self._engine.call(session.hiding.reveal, person.name)
+        await self._turn_pages(session)
+        return answer
+
+    async def _keep(self, answer: Answer) -> None:
+        """Write an answer; of somebody alone the oldest are forgotten."""
+        row = BlindAnswerRow(
+            id=answer.id,
+            class_id=answer.class_id or None,
+            person_id=answer.person_id,
+            began=answer.began,
+            answer=answer.model_dump(mode="json"),
+        )
+        await self._database.run(lambda session: session.merge(row))
+        self._answers[answer.id] = answer
+        alone = [key for key, one in self._answers.items() if not one.class_id and one.state != "hidden"]
+        if old := alone[:-ALONE_KEPT]:
+            self._answers = {key: one for key, one in self._answers.items() if key not in old}
+            statement = delete(BlindAnswerRow).where(BlindAnswerRow.id.in_(old))
+            await self._database.run(lambda session: session.execute(statement))
+
+
+def _of(session: Session) -> Blind:
+    """Return what is hidden on a bench, or refuse."""
+    if (blind := session.hiding.blind) is None:
+        raise ApiError(409, "conflict", "no fault is hidden on this bench")
+    return blind
+
+
+def verdicts_of(session: Session) -> dict[str, str]:
+    """Return what each diagnoser says now (a job of the engine)."""
+    return {
+        name: score.names[score.winner] if 0 <= score.winner < len(score.names) else "none"
+        for name, score in session.board.scores().items()
+    }

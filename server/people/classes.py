@@ -1,0 +1,289 @@
+"""Classes: students who join by a code, each with a bench of their own."""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import logging
+from datetime import datetime, timedelta
+from typing import Any
+
+from pydantic import BaseModel, Field
+from sqlalchemy import delete, select, update
+
+from core.errors import InputError
+from server.bench.making import prepare
+from server.errors import ApiError, not_found
+from server.people.audit import Audit
+from server.people.blinds import Blinds
+from server.people.code import new_class_id, new_code, shown, split
+from server.people.draw import draw
+from server.people.lesson import Lesson
+from server.people.name import clean
+from server.people.people import People
+from server.people.person import Person, hash_of, new_secret
+from server.people.student_benches import StudentBenches
+from server.people.votes import Votes
+from server.store.database import Database
+from server.store.models import ClassRow, now
+
+log = logging.getLogger(__name__)
+
+EVERY_S = 30.0
+"""Between two looks for classes that have ended."""
+MOST_CLASSES = 20
+
+
+class Class(BaseModel):
+    """A class as the teacher sees it."""
+
+    id: str
+    name: str
+    scenario: str = Field(description="What the benches of new students begin with")
+    created: datetime
+    until: datetime = Field(description="When it ends, and its students are forgotten")
+    students: int
+    shown: str | None = Field(None, description="The bench that all students see now; null: each sees the own one")
+    code: str | None = Field(description="As it stands on the wall; null: nobody can join, or it has to be made anew")
+    code_until: datetime | None
+    path: str | None = Field(description="Path of the address by which students join")
+    addresses: list[str] = Field(
+        [], description="Whole addresses from elsewhere, likeliest first; none: nobody can come"
+    )
+
+
+class Classes:
+    """The classes of this server.
+
+    Parameters
+    ----------
+    database : Database
+        Where they are kept.
+    people : People
+        The students.
+    benches : StudentBenches
+        Their benches.
+    audit : Audit
+        Where it is kept what people did.
+    lesson : Lesson
+        What they are shown.
+    blinds : Blinds
+        Where it is kept what was hidden from them.
+    votes : Votes
+        Their votes, which go with them.
+    most_students : int
+        Students of all classes.
+    shard : str
+        With which their ids, and so the codes, begin.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        people: People,
+        benches: StudentBenches,
+        audit: Audit,
+        lesson: Lesson,
+        blinds: Blinds,
+        votes: Votes,
+        most_students: int,
+        shard: str,
+    ) -> None:
+        self._database, self._people, self.benches = database, people, benches
+        self._audit, self._lesson, self._blinds, self._votes = audit, lesson, blinds, votes
+        self._most, self._shard = most_students, shard
+        self._codes: dict[str, str] = {}
+        self._turn = asyncio.Lock()
+
+    async def open(
+        self, name: str, wanted: dict[str, Any], hours: float, code_minutes: float, actor: str = "teacher"
+    ) -> Class:
+        """Open a class; students can join at once.
+
+        Raises
+        ------
+        InputError
+            If the scenario is not valid.
+        ApiError
+            If there are too many.
+        """
+        await self._check(wanted)
+        there = {row.id for row in await self._rows()}
+        if len(there) >= MOST_CLASSES:
+            raise ApiError(409, "limit", f"{MOST_CLASSES} classes are open, the limit", hint="end one first")
+        row = ClassRow(
+            id=new_class_id(self._shard, there),
+            name=name,
+            scenario=wanted,
+            secret=new_secret(),
+            created=now(),
+            until=now() + timedelta(hours=hours),
+        )
+        await self._database.run(lambda session: session.add(row))
+        self._audit.add(actor, "class", f"opened the class {name}", row.id)
+        return await self.new_code(row.id, code_minutes)
+
+    async def new_code(self, class_id: str, minutes: float) -> Class:
+        """Let students join for a while by a new code; an earlier one opens nothing any more."""
+        row = await self.row(class_id)
+        code, until = new_code(), min(row.until, now() + timedelta(minutes=minutes))
+        await self._change(class_id, code_hash=hash_of(code), code_until=until)
+        self._codes[class_id] = code
+        return await self.get(class_id)
+
+    async def close_joining(self, class_id: str) -> Class:
+        """Let nobody else join."""
+        await self.row(class_id)
+        await self._change(class_id, code_hash=None, code_until=None)
+        self._codes.pop(class_id, None)
+        return await self.get(class_id)
+
+    async def all(self) -> list[Class]:
+        """List the classes, oldest first."""
+        return [self._shown(row) for row in await self._rows()]
+
+    async def get(self, class_id: str) -> Class:
+        """Return a class, or refuse with 404."""
+        return self._shown(await self.row(class_id))
+
+    async def join(self, typed: str, name: str) -> tuple[Person, str]:
+        """Let a student in; return the person and the secret of the session.
+
+        Raises
+        ------
+        ApiError
+            For a code that opens no class, a name that is taken, or a class that is full.
+        """
+        class_id, code = split(typed)
+        async with self._turn:  # two may give the same name at once
+            row = await self._database.run(lambda session: session.get(ClassRow, class_id))
+            known = row.code_hash if row is not None and row.code_hash and _lasts(row.code_until) else ""
+            if row is None or not hmac.compare_digest(hash_of(code), known or ""):
+                raise ApiError(
+                    403, "wrong_code", "no class is open under this code", "code", "ask for the current code"
+                )
+            name = clean(name)
+            if self.is_called(class_id, name):
+                raise ApiError(409, "conflict", f"somebody is called {name} here already", "name", "add a letter to it")
+            return await self.admit(row, name)
+
+    async def admit(self, row: ClassRow, name: str) -> tuple[Person, str]:
+        """Let a student in whose name is clean and free; return the person and the secret of the session."""
+        if len(self._people.students()) >= self._most:
+            text = f"the class is full: this server has room for {self._most} students"
+            raise ApiError(409, "limit", text, hint="tell your teacher, who can raise max_students")
+        person, secret = await self._people.add("student", name, row.until, row.id)
+        self._audit.add(name, "joined", "joined the class", row.id)
+        return person, secret
+
+    def is_called(self, class_id: str, name: str) -> bool:
+        """Whether somebody in a class has a name."""
+        return name.casefold() in {person.name.casefold() for person in self._people.students(class_id)}
+
+    async def prolong(self, class_id: str, until: datetime) -> ClassRow:
+        """Let a class last longer; return its row, or refuse with 404."""
+        row = await self.row(class_id)
+        if until > row.until:
+            await self._change(class_id, until=until)
+        return await self.row(class_id)
+
+    async def begin_all(self, class_id: str, wanted: dict[str, Any]) -> list[str]:
+        """Begin a scenario on the bench of every student, and for all who join later; return what went wrong, by name.
+
+        Raises
+        ------
+        InputError
+            If the scenario is not valid; nothing has changed then.
+        """
+        await self.row(class_id)
+        await self._check(wanted)
+        failed: list[str] = []
+        for person in self._people.students(class_id):
+            try:
+                await self.benches.replace(person, wanted)
+            except (InputError, ApiError) as error:
+                failed.append(f"{person.name}: {error}")
+        await self._change(class_id, scenario=wanted, sheet=None)
+        self._audit.add("teacher", "scenario", "began a scenario on all benches", class_id)
+        return failed
+
+    async def keep_sheet(self, class_id: str, sheet_id: str) -> None:
+        """Let all who join later begin with a sheet."""
+        await self._change(class_id, sheet=sheet_id)
+
+    async def remove(self, person: Person) -> None:
+        """Send a student away: the session ends, the bench is closed."""
+        await self.benches.remove(person)
+        await self._people.remove(person)
+        await self._votes.forget(person_id=person.id)
+        self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)
+
+    async def end(self, class_id: str) -> None:
+        """End a class: sessions, benches, names and what was done are gone."""
+        await self.row(class_id)
+        self._codes.pop(class_id, None)
+        for person in self._people.students(class_id):
+            await self.remove(person)
+        await self._lesson.end(class_id)
+        await self._audit.forget(class_id)
+        await self._blinds.forget(class_id)
+        await self._votes.forget(class_id)
+        await self._database.run(lambda session: session.execute(delete(ClassRow).where(ClassRow.id == class_id)))
+
+    async def run(self) -> None:
+        """Bring the benches back that there were, then end classes whose time is over, again and again."""
+        await self.benches.recover(self._people.students())
+        while True:
+            try:
+                for row in await self._rows():
+                    if not _lasts(row.until):
+                        await self.end(row.id)
+            except Exception:
+                log.exception("a class that is over could not be ended; it is tried again")
+            await asyncio.sleep(EVERY_S)
+
+    async def row(self, class_id: str) -> ClassRow:
+        """Return the row of a class, or refuse with 404."""
+        row = await self._database.run(lambda session: session.get(ClassRow, class_id[:32]))
+        if row is None:
+            raise not_found("class", class_id, "it may have ended")
+        return row
+
+    async def draw(self, person: Person, *what: str) -> int:
+        """Return the number that is drawn for somebody and a purpose; see `draw`."""
+        secret = (await self.row(person.class_id)).secret if person.class_id else ""
+        return draw(secret, person.id, *what)
+
+    @staticmethod
+    async def _check(wanted: dict[str, Any]) -> None:
+        """Refuse a bench that could not be made, whether or not there are students."""
+        await asyncio.to_thread(prepare, wanted["source"], wanted["values"], wanted["seed"])
+
+    async def _rows(self) -> list[ClassRow]:
+        query = select(ClassRow).order_by(ClassRow.created)
+        return await self._database.run(lambda session: list(session.scalars(query)))
+
+    async def _change(self, class_id: str, **values: Any) -> None:
+        statement = update(ClassRow).where(ClassRow.id == class_id).values(**values)
+        await self._database.run(lambda session: session.execute(statement))
+
+    def _shown(self, row: ClassRow) -> Class:
+        """Describe a class; its code is known only to the process that made it."""
+        code = self._codes.get(row.id) if _lasts(row.code_until) else None
+        source = row.scenario["source"]
+        return Class(
+            id=row.id,
+            name=row.name,
+            scenario=source if isinstance(source, str) and "\n" not in source else "own",
+            created=row.created,
+            until=row.until,
+            students=len(self._people.students(row.id)),
+            shown=self._people.shown_to(row.id) or None,
+            code=shown(row.id, code) if code else None,
+            code_until=row.code_until if _lasts(row.code_until) else None,
+            path=f"/join?code={row.id}{code}" if code else None,
+        )
+
+
+def _lasts(until: datetime | None) -> bool:
+    return until is not None and until > now()

@@ -1,0 +1,42 @@
+"""The join code of a class: what stands on the wall."""
+
+from __future__ import annotations
+
+import re
+import secrets
+from collections.abc import Container
+
+from server.store.links import LETTERS
+
+CLASS_LETTERS, CODE_LETTERS = 4, 6
+"""The first letters say which class it is; the others are the secret, some 7e8 of them, and tries are limited."""
+
+
+def new_class_id(shard: str, taken: Container[str]) -> str:
+    """Return the id of a new class, which begins with the letter of the process."""
+    while True:
+        made = shard + "".join(secrets.choice(LETTERS) for _ in range(CLASS_LETTERS - len(shard)))
+        if made not in taken:
+            return made
+
+
+def new_code() -> str:
+    """Return the secret part of a new code."""
+    return "".join(secrets.choice(LETTERS) for _ in range(CODE_LETTERS))
+
+
+def shown(class_id: str, code: str) -> str:
+    """Write a code as people read it aloud, such as ``K7M4 X9P 2TQ``."""
+    return f"{class_id} {code[:3]} {code[3:]}".upper()
+
+
+def shard_of(typed: str) -> str:
+    """Return the letter of the process whose code somebody typed, where several serve one address; "" for none."""
+    first = split(typed)[0][:1]
+    return first if first and first in LETTERS else ""
+
+
+def split(typed: str) -> tuple[str, str]:
+    """Return class and secret of a code as somebody typed it: small or capital, with or without spaces."""
+    letters = re.sub(r"[\s-]+", "", typed).lower()
+    return letters[:CLASS_LETTERS], letters[CLASS_LETTERS:]

@@ -1,0 +1,104 @@
+"""The page by which people join a class, which needs no session, and how often somebody may try."""
+
+from __future__ import annotations
+
+import html
+
+from server.errors import ApiError, ErrorBody
+from server.people.classes import Classes
+from server.people.code import split
+from server.people.name import LONGEST_NAME
+from server.people.person import Person
+from server.security.limits import Buckets
+from server.security.visitor import STYLE
+
+JOINS_PER_S, JOINS_AT_ONCE = 2.0, 80
+"""Tries of one address, behind which a whole class may be."""
+WRONG = 10.0
+"""What a wrong code costs: eight at once, then one in five seconds; all codes would take a hundred years."""
+
+PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>Join a class · CombBench</title>
+{style}
+<main><h1>Join a class</h1>
+<p>You get a bench of your own: a tiny resonator that you drive, break and look after. Your teacher sees your bench and
+the name you give here. Both are forgotten when the class ends.</p>
+{wrong}<form method="post" action="{action}">
+<label>Code on the wall<input class="code" name="code" value="{code}" autocapitalize="characters" autocomplete="off"
+spellcheck="false" required maxlength="40"{focus_code}></label>
+<label>Your name<input name="name" value="{name}" autocomplete="nickname" required maxlength="{longest}"{focus_name}>
+</label><button>Join</button></form></main>
+"""
+
+
+class Joining:
+    """Lets students in, and limits how often somebody may try.
+
+    Parameters
+    ----------
+    classes : Classes
+        Which they join.
+    """
+
+    def __init__(self, classes: Classes) -> None:
+        self._classes = classes
+        self._tries = Buckets(JOINS_PER_S, JOINS_AT_ONCE)
+
+    def check(self, address: str) -> None:
+        """Refuse an address from which too much is tried."""
+        if not self._tries.take(address):
+            headers = {"Retry-After": "10"}
+            raise ApiError(429, "rate_limited", "too many tries from here", hint="wait a minute", headers=headers)
+
+    async def join(self, address: str, code: str, name: str, class_id: str = "") -> tuple[Person, str]:
+        """Let a student in, into one class if it is named; return the person and the secret of the session.
+
+        Raises
+        ------
+        ApiError
+            As `Classes.join`, for the code of another class, and for an address from which too much is tried.
+        """
+        self.check(address)
+        if class_id and split(code)[0] != class_id:
+            raise ApiError(422, "invalid", "begins with the id of another class", "code")
+        try:
+            return await self._classes.join(code, name)
+        except ApiError as error:
+            if error.body.code == "wrong_code":
+                self._tries.take(address, WRONG)
+            raise
+
+
+def join_page(action: str, code: str = "", name: str = "", refusal: ErrorBody | None = None) -> str:
+    """Build the page.
+
+    Parameters
+    ----------
+    action : str
+        Where the form goes.
+    code, name : str
+        What has been given so far.
+    refusal : ErrorBody, optional
+        Why it did not work.
+    """
+    wrong = ""
+    if refusal is not None:
+        said = [part[:1].upper() + part[1:] for part in (_whose(refusal), refusal.hint) if part]
+        wrong = f'<p class="wrong" role="alert">{html.escape(". ".join(said))}.</p>\n'
+    focus = " autofocus"
+    to_code = not code or (refusal is not None and refusal.field == "code")
+    return PAGE.format(
+        style=STYLE,
+        wrong=wrong,
+        action=html.escape(action),
+        code=html.escape(code),
+        name=html.escape(name),
+        longest=LONGEST_NAME,
+        focus_code=focus if to_code else "",
+        focus_name="" if to_code else focus,
+    )
+
+
+def _whose(refusal: ErrorBody) -> str:
+    """Return what is wrong; a complaint about a value says whose."""
+    return f"{refusal.field} {refusal.message}" if refusal.code == "invalid" else refusal.message

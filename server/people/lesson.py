@@ -1,0 +1,93 @@
+"""A lesson: what the teacher puts before a whole class, a bench that all see and a layout of their panels."""
+
+from __future__ import annotations
+
+import secrets
+from typing import Any
+
+from pydantic import BaseModel, Field
+from sqlalchemy import select, update
+
+from server.errors import ApiError
+from server.people.audit import Audit
+from server.people.lease import Pages
+from server.people.people import People
+from server.people.person import Person
+from server.store.database import Database
+from server.store.models import ClassRow
+
+
+class GivenLayout(BaseModel):
+    """A layout that the teacher has given to a class."""
+
+    id: str = Field(description="Another one each time")
+    name: str
+    layout: dict[str, Any] | None = Field(None, description="As the page writes it; null: the built-in one of its name")
+
+
+class Lesson:
+    """What classes are shown. It lasts until the teacher ends it, or the bench that is shown is gone.
+
+    Parameters
+    ----------
+    database : Database
+        Where it is kept.
+    people : People
+        The students.
+    audit : Audit
+        Where it is kept what the teacher did.
+    pages : Pages
+        Those of the students, which are told.
+    """
+
+    def __init__(self, database: Database, people: People, audit: Audit, pages: Pages) -> None:
+        self._database, self._people, self._audit, self._pages = database, people, audit, pages
+        self._layouts: dict[str, GivenLayout] = {}
+
+    async def recover(self) -> None:
+        """Take back the layouts that were given."""
+        for row in await self._database.run(lambda session: list(session.scalars(select(ClassRow)))):
+            if row.layout is not None:
+                self._layouts[row.id] = GivenLayout.model_validate(row.layout)
+
+    async def show(self, class_id: str, bench_id: str, title: str) -> None:
+        """Let all students of a class see a bench."""
+        await self._people.show(class_id, bench_id)
+        self._audit.add("teacher", "shown", f"showed {title} to all", class_id, bench_id)
+        self._pages.call(self._people.students(class_id))
+
+    async def end_showing(self, class_id: str) -> None:
+        """Let the students of a class see their own benches again."""
+        if bench_id := self._people.shown_to(class_id):
+            await self._people.show(class_id, "")
+            self._audit.add("teacher", "shown", "ended showing a bench to all", class_id, bench_id)
+            self._pages.call(self._people.students(class_id))
+
+    async def give_layout(self, class_id: str, name: str, layout: dict[str, Any] | None) -> None:
+        """Arrange the panels of all students of a class, also of those who join later."""
+        given = self._layouts[class_id] = GivenLayout(id=secrets.token_hex(4), name=name, layout=layout)
+        change = update(ClassRow).where(ClassRow.id == class_id).values(layout=given.model_dump())
+        await self._database.run(lambda session: session.execute(change))
+        self._audit.add("teacher", "layout", f"gave the layout {name} to all", class_id)
+        self._pages.call(self._people.students(class_id))
+
+    def layout_for(self, person: Person) -> GivenLayout | None:
+        """Return the layout that the class of a student was given last."""
+        return self._layouts.get(person.class_id)
+
+    def lower_hand(self, person: Person) -> None:
+        """Take down the hand of a student."""
+        if person.id not in self._people.hands:
+            raise ApiError(409, "conflict", f"{person.name} has not raised a hand")
+        self._people.hands.discard(person.id)
+        self._pages.call([person])
+
+    async def forget(self, bench_id: str) -> None:
+        """End showing a bench that is gone."""
+        for class_id in self._people.shown_at(bench_id):
+            await self.end_showing(class_id)
+
+    async def end(self, class_id: str) -> None:
+        """Forget what a class was shown that has ended."""
+        await self._people.show(class_id, "")
+        self._layouts.pop(class_id, None)

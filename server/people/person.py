@@ -1,0 +1,55 @@
+"""A person at the bench: the teacher, a student of a class, or somebody with a link to watch."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Literal
+
+Role = Literal["teacher", "student", "watcher"]
+
+
+@dataclass(frozen=True)
+class Person:
+    """Somebody whom the gate has let in.
+
+    Parameters
+    ----------
+    id : str
+        Known to the server; names may be shared by several classes.
+    name : str
+        As the person gave it, or the kind of visitor.
+    role : Role
+        What decides over most doors.
+    class_id : str
+        The class of a student.
+    until : datetime, optional
+        When the session ends.
+    """
+
+    id: str
+    name: str
+    role: Role
+    class_id: str = ""
+    until: datetime | None = None
+
+    @property
+    def is_teacher(self) -> bool:
+        """Whether every door is open."""
+        return self.role == "teacher"
+
+
+TEACHER = Person("teacher", "teacher", "teacher")
+"""Whoever has the access token: also somebody who is alone with the bench."""
+
+
+def new_secret() -> str:
+    """Return a secret of 256 bits, for a session or a link."""
+    return secrets.token_urlsafe(32)
+
+
+def hash_of(secret: str) -> str:
+    """Return what is kept of a secret: it is long and random, so a plain hash cannot be turned back."""
+    return hashlib.sha256(secret.encode()).hexdigest()

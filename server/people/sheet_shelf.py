@@ -1,0 +1,88 @@
+"""The sheets there are: those of the library, and those that somebody opened."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import secrets
+
+from sqlalchemy import delete, select
+from sqlalchemy.exc import DBAPIError
+
+from core.errors import InputError
+from scenarios import sheets as library
+from scenarios.sheets.check import check
+from scenarios.sheets.sheet import Sheet
+from server.errors import ApiError, not_found
+from server.store.database import Database, reason_of
+from server.store.models import SheetRow, now
+
+log = logging.getLogger(__name__)
+
+MOST_OWN = 100
+"""Sheets that may be opened beside those of the library."""
+
+
+class Shelf:
+    """The sheets of this server.
+
+    Parameters
+    ----------
+    database : Database
+        Where those are kept that somebody opened.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+        self._own: dict[str, Sheet] = {}
+        self._unread: set[str] = set()
+
+    async def refresh(self) -> None:
+        """Take in the sheets that somebody opened, at another process perhaps, and drop those that were deleted."""
+        known = set(self._own)
+        try:
+            there = await self._database.run(lambda session: set(session.scalars(select(SheetRow.id))))
+            query = select(SheetRow).where(SheetRow.id.in_(there - known - self._unread)).order_by(SheetRow.created)
+            new = await self._database.run(lambda session: list(session.scalars(query)))
+        except DBAPIError as error:  # a class goes on with the sheets that are known
+            log.warning("the sheets cannot be looked up: %s", reason_of(error))
+            return
+        for gone in known - there:
+            self._own.pop(gone, None)
+        for row in new:
+            try:
+                self._own[row.id] = await asyncio.to_thread(check, row.text, row.id)
+            except InputError as error:
+                self._unread.add(row.id)
+                log.warning("a sheet of somebody cannot be read any more: %s", error)
+
+    def all(self) -> list[Sheet]:
+        """List the sheets: those of the library in their order, then those somebody opened."""
+        return [library.get(name) for name in library.ids()] + list(self._own.values())
+
+    def is_own(self, sheet_id: str) -> bool:
+        """Whether somebody opened it."""
+        return sheet_id in self._own
+
+    async def open(self, text: str) -> Sheet:
+        """Keep a sheet that somebody wrote.
+
+        Raises
+        ------
+        InputError
+            If it is not right; nothing is kept.
+        """
+        name = f"own-{secrets.token_hex(3)}"
+        sheet = await asyncio.to_thread(check, text, name)
+        if len(self._own) >= MOST_OWN:
+            raise ApiError(409, "limit", f"{MOST_OWN} sheets are open, the limit", hint="delete one first")
+        await self._database.run(lambda session: session.add(SheetRow(id=name, text=text, created=now())))
+        self._own[name] = sheet
+        return sheet
+
+    async def delete(self, sheet_id: str) -> None:
+        """Delete a sheet that somebody wrote."""
+        if sheet_id not in self._own:
+            raise not_found("sheet of your own", sheet_id, "those of the library stay")
+        del self._own[sheet_id]
+        await self._database.run(lambda session: session.execute(delete(SheetRow).where(SheetRow.id == sheet_id)))

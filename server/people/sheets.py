@@ -1,0 +1,295 @@
+"""Lab sheets: who works at which, on which bench, how far each has come; kept in the database."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from core.errors import InputError
+from scenarios.sheets.begin import begin
+from scenarios.sheets.look import known_limits
+from scenarios.sheets.progress import Progress
+from scenarios.sheets.sheet import Blind, Hold, Sheet
+from server.bench.benches import Benches
+from server.bench.engine import Engine
+from server.bench.session import Session
+from server.bench.watch import KeptWatch
+from server.errors import ApiError, not_found
+from server.people.blinds import Blinds
+from server.people.classes import Classes
+from server.people.people import People
+from server.people.person import Person
+from server.people.sheet_shelf import Shelf
+from server.people.sheet_view import SheetView, view_of
+from server.people.sheet_watch import Done, SheetWatch
+from server.people.sheet_work import Work, Works
+from server.store.database import Database
+from server.store.models import now
+
+log = logging.getLogger(__name__)
+
+EVERY_S = 1.0
+"""Between two looks for benches that have come back and are not watched."""
+
+
+class Sheets:
+    """The lab sheets of this server, and who works at them.
+
+    Parameters
+    ----------
+    database : Database
+        Where all of it is kept.
+    shelf : Shelf
+        The sheets there are.
+    classes : Classes
+        Draws what varies with the student, and knows the benches of students.
+    people : People
+        The students there are.
+    benches : Benches
+        Where benches are made.
+    engine : Engine
+        Whose thread may look at a bench.
+    close_bench : callable
+        Closes a bench and its streams.
+    blinds : Blinds
+        Knows what was answered to hidden faults.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        shelf: Shelf,
+        classes: Classes,
+        people: People,
+        benches: Benches,
+        engine: Engine,
+        close_bench: Callable[[Session], Awaitable[None]],
+        blinds: Blinds,
+    ) -> None:
+        self._classes, self._people = classes, people
+        self._benches, self._engine = benches, engine
+        self._close_bench, self._blinds = close_bench, blinds
+        self.shelf = shelf
+        self._works = Works(database)
+        self._turn = asyncio.Lock()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._welcoming = asyncio.Lock()
+        classes.benches.on_revived, classes.benches.welcome = self._go_on, self._welcome
+        self.on_kept: Callable[[Work], None] = lambda _: None
+        """Told of all that is kept of somebody's work."""
+
+    async def recover(self) -> None:
+        """Take back what was kept."""
+        self._loop = asyncio.get_running_loop()
+        await self.shelf.refresh()
+        await self._works.recover()
+
+    async def run(self) -> None:
+        """Watch benches that have come back, and forget what was done in classes that are over, again and again."""
+        while True:
+            await asyncio.sleep(EVERY_S)
+            try:
+                there = {person.id for person in self._people.students()}
+                await self._forget([w for w in self._works.all() if w.class_id and w.person_id not in there])
+                for work in self._works.all():
+                    await self._follow(work)
+            except Exception:
+                log.exception("a bench could not be watched for a sheet; it is tried again")
+
+    def all(self) -> list[Sheet]:
+        """List the sheets that can be done here."""
+        return self.shelf.all()
+
+    def get(self, sheet_id: str) -> Sheet:
+        """Return a sheet, or refuse with 404."""
+        found = self._known(sheet_id)
+        if found is None:
+            raise not_found("sheet", sheet_id)
+        return found
+
+    def _known(self, sheet_id: str) -> Sheet | None:
+        return next((sheet for sheet in self.all() if sheet.id == sheet_id), None)
+
+    async def delete(self, sheet_id: str) -> None:
+        """Delete a sheet that somebody wrote, and what was done at it."""
+        await self.shelf.delete(sheet_id)
+        await self._forget([work for work in self._works.all() if work.sheet_id == sheet_id])
+
+    def works(self, person_id: str = "", class_id: str = "") -> list[Work]:
+        """List who works at what, latest first: of one person, or of a class."""
+        return self._works.all(person_id, class_id)
+
+    def current(self, person: Person) -> tuple[Work, Sheet] | None:
+        """Return what somebody began last."""
+        known = {sheet.id: sheet for sheet in self.all()}
+        return next(((work, known[work.sheet_id]) for work in self.works(person.id) if work.sheet_id in known), None)
+
+    async def view(self, person: Person, sheet_id: str) -> SheetView:
+        """Show a sheet to somebody."""
+        sheet, work = self.get(sheet_id), self._works.get(person.id, sheet_id)
+        if work is None:
+            return view_of(sheet, None, None, None)
+        await self._follow(work)
+        bench = self._benches.find(work.bench_id)
+        watch = bench.watch if bench is not None and bench.hiding.blind is None else None
+        held = watch.now if isinstance(watch, SheetWatch) and watch.step is work.progress.open_step(sheet) else None
+        return view_of(sheet, work.progress, bench.id if bench is not None else None, held)
+
+    async def begin(self, person: Person, sheet_id: str) -> Work:
+        """Give somebody the bench of a sheet; what was done at it stays.
+
+        Raises
+        ------
+        InputError
+            If the bench cannot be made.
+        """
+        sheet = self.get(sheet_id)
+        purpose = {word: await self._classes.draw(person, sheet.id, word) for word in _purposes(sheet)}
+        beginning = await asyncio.to_thread(begin, sheet, purpose.__getitem__)
+        scale = sheet.head.bench.time_scale
+        wanted: dict[str, Any] = {
+            "source": sheet.head.bench.scenario,
+            "values": beginning.values,
+            "seed": None,
+            "paused": False,
+            "time_scale": scale,
+            "own_scale": scale is None,
+            "quiet_lead": False,
+        }
+        async with self._turn:
+            before = self._works.get(person.id, sheet_id)
+            progress = before.progress if before is not None else Progress(facts=beginning.facts)
+            work = Work(person.id, person.class_id, sheet_id, "", now(), progress)
+
+            async def keep(session: Session) -> None:
+                work.bench_id = session.id
+                await self._keep(work)
+
+            if person.role == "student":
+                await self._classes.benches.replace(person, wanted, before_shown=keep)
+            else:
+                await keep(await self._benches.create(**wanted))
+                if before is not None and (old := self._benches.find(before.bench_id)) is not None:
+                    await self._close_bench(old)
+        await self._follow(work)
+        return work
+
+    async def _welcome(self, person: Person) -> None:
+        """Begin the sheet of the class with somebody who has just joined."""
+        async with self._welcoming:  # a page asks several times at once
+            sheet = self._known((await self._classes.row(person.class_id)).sheet or "")
+            if sheet is not None and not self._people.bench_of(person):
+                try:
+                    await self.begin(person, sheet.id)
+                except (InputError, ApiError):
+                    log.exception("the sheet %s could not be begun with somebody who joined", sheet.id)
+
+    async def change(self, person: Person, sheet_id: str, what: Callable[[Progress, Sheet, int], None]) -> None:
+        """Do something at a sheet, and keep it.
+
+        Raises
+        ------
+        ApiError
+            If it has not been begun, or cannot be done now.
+        """
+        sheet, work = self.get(sheet_id), self._works.get(person.id, sheet_id)
+        if work is None:
+            raise ApiError(409, "conflict", "the sheet has not been begun", "sheet", "begin it first")
+        bench = self._benches.find(work.bench_id)
+        async with self._turn:
+            what(work.progress, sheet, bench.status.tick if bench is not None else 0)
+            await self._keep(work)
+        await self._follow(work)
+
+    async def start_over(self, person: Person, sheet_id: str) -> None:
+        """Forget what somebody did at a sheet."""
+        await self._forget([work for work in self.works(person.id) if work.sheet_id == sheet_id])
+
+    async def _follow(self, work: Work) -> None:
+        """Let the bench of a sheet be watched for the step that is open."""
+        sheet = self._known(work.sheet_id)
+        if sheet is None:
+            return
+        step = work.progress.open_step(sheet)
+        if isinstance(step, Blind):
+            return await self._follow_blind(work, step)
+        bench = self._benches.find(work.bench_id)
+        if bench is None:
+            return
+        watch = bench.watch if isinstance(bench.watch, SheetWatch) else None
+        if not isinstance(step, Hold) or bench.hiding.blind is not None:  # how far a step is would tell what is hidden
+            bench.watch = None
+        elif watch is None or watch.step is not step:
+
+            def put(step: Hold = step) -> None:
+                now = bench.watch
+                if not isinstance(now, SheetWatch) or now.step is not step:
+                    bench.watch = self._watch(work, step, bench)
+
+            await self._engine.call(put)
+
+    def _watch(self, work: Work, step: Hold, bench: Session) -> SheetWatch:
+        """Return who looks at a bench for a step, from now on."""
+
+        def done(found: Done) -> None:
+            assert self._loop is not None
+            self._loop.call_soon_threadsafe(self._held, work, step, found)
+
+        limits = known_limits(step, work.progress.facts)
+        return SheetWatch(step, limits, bench.board.tick, bench.dt_ms, done)
+
+    def _go_on(self, bench: Session, kept: KeptWatch | None) -> None:
+        """Watch a bench that goes on from its checkpoint, before it does, as it was watched."""
+        for work in self._works.all():
+            sheet = self._known(work.sheet_id) if work.bench_id == bench.id else None
+            step = work.progress.open_step(sheet) if sheet is not None else None
+            if isinstance(step, Hold) and bench.hiding.blind is None:
+                bench.watch = watch = self._watch(work, step, bench)
+                if kept is not None:
+                    watch.go_on(kept)
+
+    def _held(self, work: Work, step: Hold, found: Done) -> None:
+        """Close a step whose conditions have held; on the event loop."""
+        work.progress.held(step, found.values, found.trace, found.tick)
+        task = asyncio.get_running_loop().create_task(self._held_kept(work))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _held_kept(self, work: Work) -> None:
+        async with self._turn:
+            if self._works.get(work.person_id, work.sheet_id) is work:
+                await self._keep(work)
+        await self._follow(work)
+
+    async def _follow_blind(self, work: Work, step: Blind) -> None:
+        """Close a step of blind diagnosis once its answer has been committed."""
+        answers = self._blinds.of_person(work.person_id)
+        state = work.progress.of(step)
+        if state.blind_before is None:
+            state.blind_before = len(answers)
+            await self._keep(work)
+        elif len(answers) > state.blind_before:
+            answer = answers[state.blind_before]
+            state.share, state.done = min(max(answer.points / 100.0, 0.0), 1.0), True
+            state.values = {"score": answer.points, "right": "yes" if answer.said == answer.truth else "no"}
+            await self._keep(work)
+
+    async def _keep(self, work: Work) -> None:
+        """Write what somebody did."""
+        await self._works.keep(work)
+        self.on_kept(work)
+
+    async def _forget(self, works: list[Work]) -> None:
+        """Forget what was done at some sheets."""
+        for work in works:
+            if (bench := self._benches.find(work.bench_id)) is not None:
+                bench.watch = None
+        await self._works.forget(works)
+
+
+def _purposes(sheet: Sheet) -> list[str]:
+    """List what is drawn for a sheet."""
+    return ["device", "noise", *(f"number {name}" for name in sheet.head.draws)]

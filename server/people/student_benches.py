@@ -1,0 +1,155 @@
+"""The benches of students: each has one, made when it is asked for, replaced, and brought back after a crash."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from sqlalchemy import select
+
+from core.board.board import Board
+from server.bench.benches import Benches
+from server.bench.blind import Blind
+from server.bench.checkpoints import Checkpoints
+from server.bench.session import Session
+from server.bench.watch import KeptWatch
+from server.errors import not_found
+from server.people.people import People
+from server.people.person import Person
+from server.store.database import Database
+from server.store.models import ClassRow
+
+log = logging.getLogger(__name__)
+
+
+async def _nothing(_: Person | Session) -> None:
+    """Leave it at that."""
+
+
+class StudentBenches:
+    """The benches of all students.
+
+    Parameters
+    ----------
+    database : Database
+        Where it stands what the benches of a class begin with.
+    people : People
+        Knows which bench is whose.
+    benches : Benches
+        Where they are made.
+    close_bench : callable
+        Closes a bench and its streams.
+    checkpoints : Checkpoints
+        From which they come back after a crash.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        people: People,
+        benches: Benches,
+        close_bench: Callable[[Session], Awaitable[None]],
+        checkpoints: Checkpoints,
+    ) -> None:
+        self._database, self._people, self._benches = database, people, benches
+        self._close_bench, self._checkpoints = close_bench, checkpoints
+        self._turn = asyncio.Lock()
+        self.welcome: Callable[[Person], Awaitable[None]] = _nothing
+        """Asked before somebody gets a bench for the first time; it may give one."""
+        self.on_revived: Callable[[Session, KeptWatch | None], None] = lambda *_: None
+        """Told of a bench that goes on from its checkpoint, before it does, and who looked at it."""
+
+    def find(self, person: Person) -> Session | None:
+        """Return the live bench of a student, if there is one."""
+        return self._benches.find(self._people.bench_of(person))
+
+    async def get(self, person: Person) -> Session:
+        """Return the bench of a student; one that is not there comes back, or is made as the class begins.
+
+        Raises
+        ------
+        ApiError
+            If the class has ended.
+        """
+        if not self._people.bench_of(person):
+            await self.welcome(person)
+        async with self._turn:
+            if found := self.find(person):
+                return found
+            if revived := await self._revived(self._people.bench_of(person)):
+                return revived
+            query = select(ClassRow.scenario).where(ClassRow.id == person.class_id)
+            wanted = await self._database.run(lambda session: session.scalar(query))
+            if wanted is None:
+                raise not_found("class", person.class_id, "it may have ended")
+            return await self._make(person, wanted)
+
+    async def replace(
+        self,
+        person: Person,
+        wanted: dict[str, Any],
+        hide: Callable[[Board], Blind] | None = None,
+        before_shown: Callable[[Session], Awaitable[None]] = _nothing,
+    ) -> Session:
+        """Give a student another bench in place of the one that is there, with a hidden fault if one is chosen.
+
+        Closing the bench of before leads the pages of the student to the new one. ``before_shown`` is awaited ahead of
+        that, for what these pages then ask for.
+
+        Raises
+        ------
+        InputError
+            If it cannot be made; the student keeps the bench there is.
+        """
+        async with self._turn:
+            return await self._make(person, wanted, hide, before_shown)
+
+    async def remove(self, person: Person) -> None:
+        """Close the bench of a student."""
+        async with self._turn:
+            if (bench := self.find(person)) is not None:
+                await self._close_bench(bench)
+
+    async def recover(self, students: list[Person]) -> None:
+        """Bring all benches back, as they were shortly before the server ended; forget those that are nobody's."""
+        for person in students:
+            try:
+                if self._people.bench_of(person):
+                    await self.get(person)
+            except Exception:
+                log.exception("the bench of %s could not be brought back", person.id)
+        await self._checkpoints.forget_others()
+
+    async def bring_back(self, bench_id: str) -> bool:
+        """Bring a bench back that students see beside their own; return whether it is there."""
+        async with self._turn:
+            return self._benches.find(bench_id) is not None or await self._revived(bench_id) is not None
+
+    async def _revived(self, bench_id: str) -> Session | None:
+        """Return a bench that goes on from its checkpoint, if it has one that this version can read."""
+        kept = await self._checkpoints.load(bench_id) if bench_id else None
+        if kept is None:
+            return None
+        try:
+            return await self._benches.revive(kept, self.on_revived)
+        except Exception:
+            log.exception("bench %s cannot go on from what was kept", bench_id)
+            return None
+
+    async def _make(
+        self,
+        person: Person,
+        wanted: dict[str, Any],
+        hide: Callable[[Board], Blind] | None = None,
+        before_shown: Callable[[Session], Awaitable[None]] = _nothing,
+    ) -> Session:
+        """Make the bench of a student, and close the one before."""
+        before = self.find(person)
+        made = await self._benches.create(**wanted, class_id=person.class_id, hide=hide)
+        await self._people.give_bench(person, made.id)
+        await before_shown(made)
+        if before is not None:
+            await self._close_bench(before)
+        return made

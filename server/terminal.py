@@ -1,0 +1,55 @@
+"""What commands share: lines and documents printed, files read, bad input in one line."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, ParamSpec, TypeVar
+
+import typer
+
+from core.errors import InputError
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
+
+
+def say(text: str = "") -> None:
+    """Print a line."""
+    sys.stdout.write(text + "\n")
+
+
+def say_json(document: Any) -> None:
+    """Print a JSON document."""
+    say(json.dumps(document, indent=2, allow_nan=False))
+
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def plainly(command: Callable[P, T]) -> Callable[P, T]:
+    """Turn bad input into one line and exit code 2."""
+
+    @wraps(command)
+    def guarded(*args: P.args, **kwargs: P.kwargs) -> T:
+        try:
+            return command(*args, **kwargs)
+        except InputError as error:
+            hint = f" ({error.hint})" if error.hint else ""
+            sys.stderr.write(f"combbench: {error}{hint}\n")
+            raise typer.Exit(2) from None
+
+    return guarded
+
+
+def read_text(path: Path, field: str) -> str:
+    """Return what is in a file."""
+    try:
+        return path.read_text("utf-8")
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}", field) from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path} is not UTF-8 text", field) from None

@@ -1,0 +1,125 @@
+import { type ChildProcess, spawn } from "node:child_process";
+import { once } from "node:events";
+import { join } from "node:path";
+import type { Page } from "@playwright/test";
+import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
+import { freePort, LabServer } from "./lab-server";
+
+const ROOT = join(import.meta.dirname, "..", "..");
+
+// The course is at 127.0.0.1 and the bench at localhost: two sites, of which the second gets no cookie in a frame. What
+// pages of the second keep is kept apart for each first, as browsers do; that is off in tests unless a list is given.
+const FLAGS = ["--test-third-party-cookie-phaseout", "--disable-features=HttpsUpgrades,Translate"];
+
+test.use({
+  drawn: true,
+  launchOptions: async ({ launchOptions }, use) => {
+    await use({ ...launchOptions, args: [...(launchOptions.args ?? []), ...FLAGS] });
+  },
+});
+
+let lab: LabServer;
+let platform: ChildProcess;
+let course = "";
+let bench = "";
+
+test.beforeAll(async () => {
+  const port = await freePort();
+  course = `http://127.0.0.1:${port}`;
+  const known = {
+    issuer: course,
+    client_id: "combbench",
+    auth_login_url: `${course}/auth`,
+    auth_token_url: `${course}/token`,
+    key_set_url: `${course}/keys`,
+    deployment_ids: ["1"],
+    frames: [course],
+  };
+  lab = await LabServer.create({
+    COMBBENCH_LTI: JSON.stringify([known]),
+    COMBBENCH_FRAME_RATE_HZ: "8",
+    NO_PROXY: "127.0.0.1",
+  });
+  bench = `http://localhost:${lab.port}`;
+  platform = spawn(
+    join(ROOT, ".venv", "bin", "python"),
+    ["-m", "tests.server.lti.platform", String(port), bench, "first-look"],
+    { cwd: ROOT, stdio: ["pipe", "pipe", "inherit"] },
+  );
+  if (!platform.stdout || !platform.stdin) throw new Error("the platform has no pipes");
+  await once(platform.stdout, "data");
+});
+
+test.afterAll(async () => {
+  platform?.stdin?.end();
+  await lab?.destroy();
+});
+
+/** What the server refused, for a test that expects nothing of it. */
+function refusals(page: Page): string[] {
+  const refused: string[] = [];
+  page.on("response", (answer) => answer.status() >= 400 && refused.push(`${answer.status()} ${answer.url()}`));
+  return refused;
+}
+
+test("a launch in a frame: bench, stream and 3D view work without a cookie", async ({ page }) => {
+  test.setTimeout(180_000);
+  const refused = refusals(page);
+  await page.goto(`${course}/course`);
+  const frame = page.frameLocator("iframe[title='Exercise']");
+  await expect(frame.getByTestId("bench-state")).toHaveText("running");
+  await expect(frame.getByText("Ada Lovelace")).toBeVisible();
+  await expect(frame.locator("section[aria-label='Lab sheet']")).toBeVisible();
+  const inside = page.frames().find((one) => one.url().startsWith(bench));
+  if (!inside) throw new Error("there is no frame of the bench");
+  expect(inside.url()).not.toContain("launch=");
+
+  // this browser really keeps no cookie of the bench
+  const kept = await inside.evaluate(() => {
+    // biome-ignore lint/suspicious/noDocumentCookie: the other interface is not there in all browsers
+    document.cookie = "probe=1; SameSite=None; Secure";
+    return document.cookie;
+  });
+  expect(kept).toBe("");
+  expect(await page.context().cookies()).toEqual([]);
+
+  await frame.getByTestId("bench-state").click();
+  await page.keyboard.press("1"); // the lecture layout has the device in view
+  const canvas = frame.frameLocator("iframe[title='The device in 3D']").locator("canvas").first();
+  await expect(canvas).toBeVisible({ timeout: 60_000 });
+  await expect(frame.getByText("The 3D view is loading")).toBeHidden({ timeout: 60_000 });
+  await expect(frame.getByText("The 3D view waits")).toBeHidden();
+
+  await frame.getByRole("button", { name: "Pause" }).click();
+  await expect(frame.getByTestId("bench-state")).toHaveText("paused");
+  await frame.getByRole("button", { name: "Run", exact: true }).click(); // the next test comes back to this bench
+  await expect(frame.getByTestId("bench-state")).toHaveText("running");
+  // a figure of the gallery is a picture that the browser loads by itself
+  expect(refused.filter((line) => !line.includes("/gallery/"))).toEqual([]);
+
+  // a frame alone that is loaded again has nothing to show for itself
+  await inside.evaluate(() => window.location.reload());
+  await expect(frame.getByText("Open the exercise again from your course.")).toBeVisible();
+
+  // a page of another origin may not show it
+  const said = page.waitForEvent("console", (message) => message.text().includes("frame-ancestors"));
+  await page.goto(`${course.replace("127.0.0.1", "localhost")}/course`);
+  expect((await said).text()).toContain(course);
+});
+
+test("a launch in a tab of its own gets the usual cookie, and comes back after a reload", async ({ page }) => {
+  await page.goto(`${course}/course?link=1`);
+  await page.getByRole("link", { name: "Open here" }).click();
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+  expect(page.url()).toMatch(new RegExp(`^${bench}/\\?layout=lab&bench=`));
+  const cookies = await page.context().cookies();
+  expect(cookies.map(({ httpOnly, sameSite }) => ({ httpOnly, sameSite }))).toEqual([
+    { httpOnly: true, sameSite: "Strict" },
+  ]);
+  const before = await pictureOf(page, SCOPE_CANVAS);
+  await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(before);
+  await page.reload();
+  await expect(page.getByText("Ada Lovelace")).toBeVisible();
+  await page.goto(`${bench}/lti#launch=used&state=state-used`);
+  await expect(page.getByText("Open the exercise again from your course.")).toBeVisible();
+});

@@ -1,0 +1,63 @@
+import { client, data } from "./client";
+import type { Class, Command, Document, DrivingTurn, NewBench, NewClass, Tile } from "./types";
+
+const ofClass = (class_id: string) => ({ params: { path: { class_id } } });
+const ofBench = (bench_id: string) => ({ params: { path: { bench_id } } });
+
+/** The REST calls around classes, and around links to watch a bench. */
+export const classes = {
+  all: async () => (await data(client.GET("/api/v1/classes"))).classes,
+  open: (body: NewClass) => data(client.POST("/api/v1/classes", { body })),
+  end: (id: string) => data(client.DELETE("/api/v1/classes/{class_id}", ofClass(id))),
+  newCode: (id: string, minutes: number) =>
+    data(client.POST("/api/v1/classes/{class_id}/code", { ...ofClass(id), body: { minutes } })),
+  closeJoining: (id: string) => data(client.DELETE("/api/v1/classes/{class_id}/code", ofClass(id))),
+  members: async (id: string) =>
+    (await data(client.GET("/api/v1/classes/{class_id}/members", ofClass(id)))).members as Tile[],
+  sendAway: (class_id: string, member_id: string) =>
+    data(
+      client.DELETE("/api/v1/classes/{class_id}/members/{member_id}", { params: { path: { class_id, member_id } } }),
+    ),
+  command: (id: string, command: Command, members: string[] | null) =>
+    data(client.POST("/api/v1/classes/{class_id}/commands", { ...ofClass(id), body: { command, members } })),
+  begin: (id: string, body: NewBench) =>
+    data(client.POST("/api/v1/classes/{class_id}/scenario", { ...ofClass(id), body })),
+  startTogether: (id: string, members: string[] | null) =>
+    data(client.POST("/api/v1/classes/{class_id}/start", { ...ofClass(id), body: { members } })),
+  show: (id: string, bench: string) =>
+    data(client.PUT("/api/v1/classes/{class_id}/shown", { ...ofClass(id), body: { bench } })),
+  endShowing: (id: string) => data(client.DELETE("/api/v1/classes/{class_id}/shown", ofClass(id))),
+  giveLayout: (id: string, name: string, layout: Document | null) =>
+    data(client.PUT("/api/v1/classes/{class_id}/layout", { ...ofClass(id), body: { name, layout } })),
+  lowerHand: (class_id: string, member_id: string) =>
+    data(
+      client.DELETE("/api/v1/classes/{class_id}/members/{member_id}/hand", {
+        params: { path: { class_id, member_id } },
+      }),
+    ),
+  /** Ask for a bench, hand it over, take it back; `to` is whom it concerns. */
+  drive: (bench: string, what: DrivingTurn, to = "") =>
+    data(client.POST("/api/v1/benches/{bench_id}/driving", { ...ofBench(bench), body: { do: what, to } })),
+  benchAudit: async (bench: string) =>
+    (await data(client.GET("/api/v1/benches/{bench_id}/audit", ofBench(bench)))).entries,
+  audit: async (id: string) => (await data(client.GET("/api/v1/classes/{class_id}/audit", ofClass(id)))).entries,
+  watchers: async (bench: string) =>
+    (await data(client.GET("/api/v1/benches/{bench_id}/watchers", ofBench(bench)))).watchers,
+  letWatch: (bench: string, hours: number) =>
+    data(client.POST("/api/v1/benches/{bench_id}/watchers", { ...ofBench(bench), body: { hours } })),
+  endWatching: (bench_id: string, watcher_id: string) =>
+    data(
+      client.DELETE("/api/v1/benches/{bench_id}/watchers/{watcher_id}", { params: { path: { bench_id, watcher_id } } }),
+    ),
+};
+
+/** Where students join, in full; nothing while nobody can. */
+export function joinAddress({ path, addresses }: Pick<Class, "path"> & { addresses?: string[] }): string | undefined {
+  if (addresses?.[0]) return addresses[0];
+  return path ? new URL(`.${path}`, document.baseURI).href : undefined;
+}
+
+const LOCAL = /^(localhost|127(\.\d+){3}|\[::1\])$/;
+
+/** Whether an address is for this machine alone. */
+export const isLocal = (address: string): boolean => LOCAL.test(new URL(address).hostname);

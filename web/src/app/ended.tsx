@@ -1,0 +1,47 @@
+import { Button } from "@mantine/core";
+import { ApiError } from "../api/client";
+import { isInFrame } from "../api/session";
+import type { Me } from "../api/types";
+import { EmptyState } from "../ui/empty-state";
+
+/** What stands in place of the page of somebody whose session has ended. */
+export function Ended({ role }: { role: Me["role"] }) {
+  return (
+    <main className="page">
+      {isInFrame() ? (
+        <EmptyState title="Your session has ended">
+          You opened the exercise in another place, the class is over, or the teacher has sent you away. Open the
+          exercise again from your course.
+        </EmptyState>
+      ) : role === "student" ? (
+        <EmptyState
+          title="Your session has ended"
+          action={
+            <Button component="a" href="./join">
+              Join a class
+            </Button>
+          }
+        >
+          The class is over, or the teacher has sent you away. Your bench is closed.
+        </EmptyState>
+      ) : (
+        <EmptyState title="The link to watch has ended">Ask for a new one if you want to go on.</EmptyState>
+      )}
+    </main>
+  );
+}
+
+/** What stands in place of the page when a learning platform's launch was refused. */
+export function NotLaunched({ error }: { error: unknown }) {
+  const { message, hint } = error instanceof ApiError ? error.body : { message: String(error), hint: "" };
+  return (
+    <main className="page">
+      <EmptyState title="The bench did not open">
+        {sentence(message)} {sentence(hint || "Open the exercise again from your course")}
+      </EmptyState>
+    </main>
+  );
+}
+
+const sentence = (text: string): string =>
+  `${text.slice(0, 1).toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? "" : "."}`;

@@ -1,0 +1,101 @@
+import { Menu, UnstyledButton } from "@mantine/core";
+import { IconSteeringWheel, IconUsers } from "@tabler/icons-react";
+import { useMay, useMe } from "../../api/me";
+import type { Company } from "../../api/types";
+import { changeDriver, drivingWords, nameOf, useCompany } from "../../bench/driving";
+import { formatCount } from "../../ui/format";
+import styles from "./header.module.css";
+
+/** Who drives and who looks on, once that is more than one; and what can be done about it. */
+export function CompanyMenu() {
+  const company = useCompany();
+  const me = useMe((s) => s.me?.id);
+  const drives = useMay("drive");
+  if (!company) return null;
+  const words = drivingWords(company, me);
+  const isDriver = company.driver?.id === me;
+  return (
+    <Menu width={280} position="bottom-end" shadow="md">
+      <Menu.Target>
+        <UnstyledButton className={styles.company} data-driver={company.is_leased && isDriver} title="Who is here">
+          {company.is_leased ? <IconSteeringWheel size={17} /> : <IconUsers size={17} />}
+          <span>{words}</span>
+        </UnstyledButton>
+      </Menu.Target>
+      <Menu.Dropdown>
+        <Menu.Label>Who is here</Menu.Label>
+        <Here company={company} />
+        {drives && company.is_leased && (
+          <>
+            <Menu.Divider />
+            {isDriver ? <Driver company={company} /> : <Others company={company} />}
+          </>
+        )}
+      </Menu.Dropdown>
+    </Menu>
+  );
+}
+
+function Here({ company }: { company: Company }) {
+  const { driver, drivers, watching, more_watching, links } = company;
+  const names = [...watching, ...(more_watching > 0 ? [`${more_watching} more`] : [])];
+  return (
+    <>
+      {drivers.map((one) => (
+        <Menu.Label key={one.id} className={styles.here}>
+          <b>{nameOf(one)}</b>
+          {one.id === driver?.id && " drives"}
+        </Menu.Label>
+      ))}
+      {names.length > 0 && (
+        <Menu.Label className={styles.here}>
+          <b>{names.join(", ")}</b> {names.length === 1 ? "looks on" : "look on"}
+        </Menu.Label>
+      )}
+      {links > 0 && (
+        <Menu.Label className={styles.here}>
+          <b>{formatCount(links, "page")}</b> by links to watch
+        </Menu.Label>
+      )}
+    </>
+  );
+}
+
+/** What whoever drives can do. */
+function Driver({ company }: { company: Company }) {
+  const me = useMe((s) => s.me);
+  const others = company.drivers.filter(({ id }) => id !== me?.id);
+  return (
+    <>
+      {others.map((one) => (
+        <Menu.Item key={one.id} onClick={() => changeDriver("hand_over", one)}>
+          Hand over to {one.id === "teacher" ? "the teacher" : one.name}
+        </Menu.Item>
+      ))}
+      <Menu.Item onClick={() => changeDriver("leave")}>
+        Drive no longer
+        <small className={styles.menuNote}>The next person who does something drives</small>
+      </Menu.Item>
+    </>
+  );
+}
+
+/** What others can do. */
+function Others({ company }: { company: Company }) {
+  const me = useMe((s) => s.me);
+  const teaches = useMay("teach");
+  const { driver, asking, lent_by } = company;
+  if (!driver) return <Menu.Item onClick={() => changeDriver("ask")}>Drive this bench</Menu.Item>;
+  const asked = asking.some(({ id }) => id === me?.id);
+  return (
+    <>
+      <Menu.Item disabled={asked} onClick={() => changeDriver("ask")}>
+        {asked ? "You have asked to drive" : "Ask to drive"}
+        <small className={styles.menuNote}>{nameOf(driver)} is told, and hands over or goes on</small>
+      </Menu.Item>
+      {(teaches || lent_by === me?.id) && (
+        <Menu.Item onClick={() => changeDriver("take")}>{teaches ? "Take the bench" : "Take the bench back"}</Menu.Item>
+      )}
+    </>
+  );
+}

@@ -1,0 +1,36 @@
+import { Button } from "@mantine/core";
+import { IconHandStop } from "@tabler/icons-react";
+import { raiseHand, useMe } from "../../api/me";
+import { announce } from "../../bench/announce";
+import { showError } from "../../bench/send";
+import styles from "./header.module.css";
+
+/** Who is at the page, if not the teacher: a student by name with a hand to raise, or somebody who watches. */
+export function Visitor() {
+  const me = useMe((s) => s.me);
+  if (!me || me.role === "teacher") return null;
+  if (me.role === "watcher") return <p className={styles.visitor}>You watch this bench</p>;
+  const turn = () =>
+    raiseHand(!me.hand).then(
+      ({ hand }) => announce(hand ? "Your hand is up; the teacher sees it." : "Your hand is down."),
+      showError,
+    );
+  return (
+    <div className={styles.visitor}>
+      <p title={`${me.name}, ${me.class_name}`}>
+        <b>{me.name}</b>
+        <small>{me.class_name}</small>
+      </p>
+      <Button
+        size="compact-sm"
+        variant={me.hand ? "filled" : "default"}
+        aria-pressed={me.hand}
+        leftSection={<IconHandStop size={16} />}
+        title={me.hand ? "Take your hand down" : "The teacher sees it"}
+        onClick={turn}
+      >
+        {me.hand ? "Hand up" : "Raise hand"}
+      </Button>
+    </div>
+  );
+}

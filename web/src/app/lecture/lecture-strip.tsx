@@ -1,0 +1,149 @@
+import { ActionIcon, Button, Menu } from "@mantine/core";
+import {
+  IconChartBar,
+  IconChevronLeft,
+  IconChevronRight,
+  IconExternalLink,
+  IconList,
+  IconNotes,
+  IconNotesOff,
+  IconX,
+} from "@tabler/icons-react";
+import { useEffect, useRef, useState } from "react";
+import { useDock } from "../../bench/dock";
+import { cueBefore, goTo, nextCue, resumeLecture, useLecture } from "../../bench/lecture";
+import { setPage, useView } from "../../bench/view-store";
+import { askCue } from "../../bench/vote";
+import { useBench } from "../../stream/bench-store";
+import { leave } from "./leave";
+import styles from "./lecture.module.css";
+import { LectureClock, Notes } from "./notes";
+import { openPresenter, usePresenter } from "./presenter";
+import { showCue } from "./show-cue";
+
+/** The cues of a lecture along the bottom of the page, with what the speaker says; an audience sees the title alone. */
+export function LectureStrip() {
+  const lecture = useLecture((s) => s.lecture);
+  const at = useLecture((s) => s.at);
+  const busy = useLecture((s) => s.busy);
+  const present = useView((s) => s.present);
+  const page = useView((s) => s.page);
+  const diagnoses = useBench((s) => s.bench && Object.keys(s.bench.diagnosers).length > 0);
+  const dock = useDock((s) => s.dock);
+  const place = useRef<HTMLElement>(null);
+  const [notes, setNotes] = useState(true);
+  usePresenter();
+  useEffect(() => void resumeLecture(), []);
+  useEffect(() => {
+    if (lecture && at >= 0 && diagnoses !== undefined && dock && page === "bench")
+      showCue(lecture.script, at, diagnoses);
+  }, [lecture, at, diagnoses, dock, page]);
+  // a button that has the keyboard would take the space bar for itself
+  const shown = lecture?.script[at] !== undefined;
+  useEffect(() => {
+    if (shown) place.current?.focus();
+  }, [shown]);
+  const cue = lecture?.script[at];
+  if (!lecture || !cue) return null;
+  const count = `${at + 1} of ${lecture.script.length}`;
+  if (present)
+    return (
+      <section className={styles.audience} aria-label="Lecture">
+        <strong>{cue.title}</strong>
+        <span>{count}</span>
+      </section>
+    );
+  return (
+    <section ref={place} className={styles.strip} aria-label="Lecture" aria-busy={busy} tabIndex={-1}>
+      <div className={styles.bar}>
+        <ActionIcon
+          size={34}
+          variant="default"
+          aria-label="Cue before (Page Up, ←)"
+          title="Cue before (Page Up, ←)"
+          disabled={at === 0}
+          onClick={cueBefore}
+        >
+          <IconChevronLeft size={19} />
+        </ActionIcon>
+        <Button
+          size="compact-md"
+          rightSection={<IconChevronRight size={17} />}
+          disabled={at === lecture.script.length - 1}
+          title="Next cue (Space, Page Down, →)"
+          onClick={nextCue}
+        >
+          Next
+        </Button>
+        <Menu width={380} position="top-start" shadow="md">
+          <Menu.Target>
+            <ActionIcon size={34} variant="subtle" aria-label="All cues" title="All cues">
+              <IconList size={19} />
+            </ActionIcon>
+          </Menu.Target>
+          <Menu.Dropdown>
+            <Menu.Label>{lecture.title}</Menu.Label>
+            {lecture.script.map(({ title }, i) => (
+              <Menu.Item key={title} aria-current={i === at} fw={i === at ? 650 : undefined} onClick={() => goTo(i)}>
+                {i + 1} {title}
+              </Menu.Item>
+            ))}
+          </Menu.Dropdown>
+        </Menu>
+        <p className={styles.where}>
+          <span>{count}</span>
+          <strong>{cue.title}</strong>
+        </p>
+        {cue.vote && (
+          <Button
+            size="compact-md"
+            variant="light"
+            leftSection={<IconChartBar size={17} />}
+            title="Open the vote of this cue (A)"
+            onClick={() => void askCue()}
+          >
+            Ask by a vote
+          </Button>
+        )}
+        <LectureClock />
+        <span className={styles.tools}>
+          <ActionIcon
+            size={34}
+            variant="subtle"
+            aria-label={notes ? "Hide the notes" : "Show the notes"}
+            title={notes ? "Hide the notes" : "Show the notes"}
+            aria-expanded={notes}
+            onClick={() => setNotes(!notes)}
+          >
+            {notes ? <IconNotesOff size={19} /> : <IconNotes size={19} />}
+          </ActionIcon>
+          <ActionIcon
+            size={34}
+            variant="subtle"
+            aria-label="Notes in a window of their own"
+            title="Notes in a window of their own, for a second screen"
+            onClick={() => {
+              openPresenter();
+              setNotes(false);
+            }}
+          >
+            <IconExternalLink size={19} />
+          </ActionIcon>
+          <Button size="compact-md" variant="subtle" leftSection={<IconX size={16} />} onClick={() => void leave()}>
+            Leave
+          </Button>
+        </span>
+      </div>
+      {page !== "bench" && (
+        <Button size="compact-sm" variant="light" onClick={() => setPage("bench")}>
+          Back to the bench
+        </Button>
+      )}
+      {notes && <Notes cue={cue} next={lecture.script[at + 1]?.title} />}
+      <p className={styles.keys}>
+        Space, → or a clicker: next cue; ← back. {cue.vote && "A: ask by a vote. "}The button in the header runs and
+        pauses. P hides the notes and all buttons from the audience.
+      </p>
+    </section>
+  );
+}

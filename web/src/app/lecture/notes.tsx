@@ -1,0 +1,75 @@
+import { useEffect, useState } from "react";
+import type { Cue } from "../../api/types";
+import { plannedTo, useLecture } from "../../bench/lecture";
+import { formatIn } from "../../ui/format";
+import styles from "./lecture.module.css";
+
+const TICK_MS = 5000;
+
+/** What the speaker says, asks and can promise at a cue. */
+export function Notes({ cue, next }: { cue: Cue; next: string | undefined }) {
+  return (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: notes longer than their place are scrolled by keys
+    <section className={styles.notes} aria-label="Notes of the speaker" tabIndex={0}>
+      <div className={styles.columns}>
+        {cue.say.split("\n").map((line) => (
+          <p key={line}>{line}</p>
+        ))}
+        {cue.ask && (
+          <p>
+            <b>Ask: </b>
+            {cue.ask}
+          </p>
+        )}
+        {cue.see && (
+          <p>
+            <b>To be seen: </b>
+            {cue.see}
+          </p>
+        )}
+        {cue.vote && (
+          <p>
+            <b>Vote, by A: </b>
+            {cue.vote.text}
+          </p>
+        )}
+        {next && (
+          <p className={styles.next}>
+            <b>Next: </b>
+            {next}
+          </p>
+        )}
+      </div>
+    </section>
+  );
+}
+
+/** Minutes used, and how many are planned up to the end of this cue. */
+export function LectureClock() {
+  const planned = useLecture(({ lecture, at }) => (lecture ? plannedTo(lecture.script, at) : 0));
+  const whole = useLecture(({ lecture }) => lecture?.minutes ?? 0);
+  const began = useLecture((s) => s.began);
+  const used = useMinutesSince(began);
+  return <ClockFace used={used} planned={planned} whole={whole} />;
+}
+
+export function ClockFace({ used, planned, whole }: { used: number; planned: number; whole: number }) {
+  return (
+    <p className={styles.clock} data-late={used > planned}>
+      {formatIn(used, "min", 1)} used
+      <span>
+        , {formatIn(planned, "min", 1)} planned to the end of this cue, {formatIn(whole, "min", 1)} in all
+      </span>
+    </p>
+  );
+}
+
+export function useMinutesSince(began: number): number {
+  const [now, setNow] = useState(Date.now);
+  useEffect(() => {
+    setNow(Date.now());
+    const timer = setInterval(() => setNow(Date.now()), TICK_MS);
+    return () => clearInterval(timer);
+  }, []);
+  return began ? Math.max(0, now - began) / 60_000 : 0;
+}

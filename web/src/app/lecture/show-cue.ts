@@ -1,0 +1,22 @@
+import type { Cue } from "../../api/types";
+import { dockNow, showPanel } from "../../bench/dock";
+import { layoutAt } from "../../bench/lecture";
+import { scopeConfig } from "../../stream/scope-config";
+import { layOutForScript } from "../layouts";
+
+/** Lay the panels out as a cue wants them, whatever was moved meanwhile; without lanes where nobody diagnoses. */
+export function showCue(script: readonly Cue[], at: number, diagnoses: boolean): void {
+  const { panels, signals, window_ms } = script[at];
+  layOutForScript(layoutAt(script, at));
+  const scope = dockNow()?.panels.find((panel) => panel.view.contentComponent === "scope");
+  if (scope && signals.length > 0) {
+    scope.api.updateParameters({ scope: scopeConfig(signals, window_ms ? { windowMs: window_ms } : {}) });
+    scope.api.setTitle("Scope");
+  }
+  scope?.api.setActive();
+  if (!diagnoses)
+    dockNow()
+      ?.panels.find((panel) => panel.view.contentComponent === "lanes")
+      ?.api.close();
+  for (const panel of panels) showPanel(panel, "card");
+}

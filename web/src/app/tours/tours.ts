@@ -1,0 +1,246 @@
+import { api } from "../../api/api";
+import type { Command } from "../../api/types";
+import { addPanel, dockNow, showPanel } from "../../bench/dock";
+import { send } from "../../bench/send";
+import { type LayoutName, setPage } from "../../bench/view-store";
+import { askLatest } from "../../bench/why";
+import { useBench } from "../../stream/bench-store";
+import { currentEvents } from "../../stream/event-log";
+
+/** One bubble of a tour: what it points at, and what is done on the page before it appears. */
+export interface TourStep {
+  title: string;
+  text: string;
+  at(): Element | undefined;
+  does?(): unknown;
+  /** What is waited for after that, on the bench of the tour. */
+  until?(): boolean;
+}
+
+export interface Tour {
+  id: string;
+  title: string;
+  layout: LayoutName;
+  steps: TourStep[];
+}
+
+const find = (selector: string) => () => document.querySelector(selector) ?? undefined;
+/** The group of panels that shows a panel of a kind. */
+const panel = (kind: string) => () =>
+  dockNow()?.panels.find((one) => one.view.contentComponent === kind)?.group.element;
+const show = (kind: string) => () => {
+  if (dockNow()?.panels.some((one) => one.view.contentComponent === kind)) showPanel(kind);
+  else addPanel(kind, "faults");
+};
+const command = (one: Command) => () => send(one);
+const found = (name: string) => () =>
+  currentEvents(useBench.getState().events).some(({ kind, new: value }) => kind === "recognised" && value === name);
+const drives = (name: string) => () => useBench.getState().bench?.controller === name;
+const injectMass = command({ fault: "added_mass", severity: 0.05 } as Command);
+
+let run: string | undefined;
+
+/** What a tour has left on the server is gone with it. */
+export async function forgetRun(): Promise<void> {
+  if (run) await api.removeRuns([run]);
+  run = undefined;
+}
+
+export const TOURS: Tour[] = [
+  {
+    id: "first",
+    title: "First look round",
+    layout: "lab",
+    steps: [
+      {
+        title: "A bench that runs",
+        text: "This is a bench of the tour's own; yours waits. A voltage shakes a plate on thin beams, 2000 times a second.",
+        at: find("header h1 ~ button"),
+      },
+      {
+        title: "Run, step, pace",
+        text: "Run and pause, step one tick or one period, and set how much device time passes in a second.",
+        at: find("[role=timer]"),
+      },
+      {
+        title: "The motion",
+        text: "The plate, what the sensor says, and the model. Drag to look at the past; LIVE comes back to now.",
+        at: panel("scope"),
+      },
+      {
+        title: "A fault",
+        text: "The plate has just become 5 % heavier, as if dust had fallen on it. Each fault here is one press.",
+        at: panel("faults"),
+        does: injectMass,
+      },
+      {
+        title: "The verdict",
+        text: "Six filters watch. The lane of mass +5 % has taken over, and the delay is printed at the switch.",
+        at: panel("lanes"),
+        until: found("m+5"),
+      },
+      {
+        title: "Where to go on",
+        text: "The gallery has every experiment of the text. The key ? opens the keys, and the other tours.",
+        at: find("nav[aria-label=Pages]"),
+      },
+    ],
+  },
+  {
+    id: "faults",
+    title: "Faults",
+    layout: "lab",
+    steps: [
+      {
+        title: "The list of faults",
+        text: "What acts is on top. Open a row to choose how strong, when, and as a step, a ramp or now and then.",
+        at: panel("faults"),
+      },
+      {
+        title: "Damping +30 %",
+        text: "The air has become thicker. The red band says since when; the swing is a little smaller.",
+        at: panel("scope"),
+        does: command({ fault: "damping", severity: 0.3 } as Command),
+      },
+      {
+        title: "Found",
+        text: "The bank says damping +30 %. The band below shows what is true, so you see when the two agree.",
+        at: panel("lanes"),
+        until: found("b+30"),
+      },
+      {
+        title: "Where it acts",
+        text: "In the drawing of the loop a fault is red only where it acts. Click a block for its equations.",
+        at: panel("schematic"),
+      },
+      {
+        title: "Heal all",
+        text: "All faults are gone again. Events lists who did what, and at which tick.",
+        at: panel("events"),
+        does: async () => {
+          await send({ heal: "all" } as Command);
+          show("events")();
+        },
+      },
+    ],
+  },
+  {
+    id: "controllers",
+    title: "Controllers",
+    layout: "lab",
+    steps: [
+      {
+        title: "A device that has changed",
+        text: "The spring has become 50 % stiffer. Without a controller the plate moves less than the model says.",
+        at: panel("scope"),
+        does: command({ fault: "stiffness", severity: 0.5 } as Command),
+      },
+      {
+        title: "Who drives",
+        text: "All controllers run all the time; one of them drives. Here you choose which.",
+        at: find("[aria-label=Controller]"),
+      },
+      {
+        title: "MRAC drives",
+        text: "Adaptive control has taken over without a jump. It learns the gains that bring the plate back to the model.",
+        at: panel("scope"),
+        does: command({ switch: "mrac" } as Command),
+        until: drives("mrac"),
+      },
+      {
+        title: "What it learns",
+        text: "Each gain beside its ideal value. When the errors are gone the gains stop moving.",
+        at: panel("adaptation"),
+        does: show("adaptation"),
+      },
+      {
+        title: "Back to the open loop",
+        text: "A switch is one press, or the key C, and can be taken back by Ctrl Z.",
+        at: find("[aria-label=Controller]"),
+        does: command({ switch: "open_loop" } as Command),
+        until: drives("open_loop"),
+      },
+    ],
+  },
+  {
+    id: "diagnosis",
+    title: "Diagnosis",
+    layout: "lab",
+    steps: [
+      {
+        title: "Six hypotheses",
+        text: "Each lane is the probability of one: healthy, a mass, a spring, a damper. They add up to one.",
+        at: panel("lanes"),
+      },
+      {
+        title: "Mass +5 %",
+        text: "The hatched band is the verdict, the solid one the truth, and the blue mark the delay.",
+        at: panel("lanes"),
+        does: injectMass,
+        until: found("m+5"),
+      },
+      {
+        title: "Why",
+        text: "Click a lane, or press W: residual, likelihood, prior and posterior of each filter, in the equation.",
+        at: panel("why"),
+        does: askLatest,
+      },
+      {
+        title: "The score",
+        text: "How often the bank was right, how late, and what it mixed up with what.",
+        at: panel("scores"),
+        does: show("scores"),
+      },
+      {
+        title: "Find one yourself",
+        text: "Blind diagnosis hides a fault. You commit an answer, then the page reveals the truth.",
+        at: panel("blind"),
+        does: show("blind"),
+      },
+    ],
+  },
+  {
+    id: "runs",
+    title: "Runs and claims",
+    layout: "lab",
+    steps: [
+      {
+        title: "From live to headless",
+        text: "What happens on a bench is a scenario. This button saves it; run again it gives the same bits.",
+        at: () =>
+          document.querySelector("[aria-label^='Save what happened']") ??
+          document.querySelector("[aria-label=More]") ??
+          undefined,
+      },
+      {
+        title: "Runs and campaigns",
+        text: "A run computes one scenario with some seeds, a campaign many variants of it.",
+        at: find("main"),
+        does: () => setPage("runs"),
+      },
+      {
+        title: "A run of its own",
+        text: "The tour has just started the step of 10 V. It is in the list, with its state.",
+        at: find("main"),
+        does: async () => {
+          const there = await api.runs({});
+          const { id } = await api.startRun({ scenario: "ch1-step" });
+          run = there.some((one) => one.id === id) ? undefined : id; // what somebody has run already stays
+        },
+      },
+      {
+        title: "Claim and measurement",
+        text: "The gallery shows each experiment of the text: what is claimed, what was measured, and whether it agrees.",
+        at: find("main"),
+        does: () => setPage("gallery"),
+      },
+      {
+        title: "Back to the bench",
+        text: "The run of the tour is removed, and your bench goes on as it was.",
+        at: panel("scope"),
+        does: () => setPage("bench"),
+        until: () => dockNow() !== undefined,
+      },
+    ],
+  },
+];

@@ -1,0 +1,91 @@
+import { Button, Slider } from "@mantine/core";
+import { useEffect, useState } from "react";
+import { ApiError } from "../api/client";
+import { askMe, castVote, useMe } from "../api/me";
+import type { OpenVote } from "../api/types";
+import { announce } from "../bench/announce";
+import { hypothesisWords } from "../bench/hypothesis-words";
+import { showError } from "../bench/send";
+import { formatCount, formatIn } from "../ui/format";
+import styles from "./vote-card.module.css";
+
+/** How soon a student's page hears of a vote. */
+const EVERY_MS = 4000;
+
+/** What the class of a student is asked: one answer at a tap, and a moment, until the vote is closed. */
+export function VoteCard() {
+  const student = useMe((s) => s.me?.role === "student");
+  const vote = useMe((s) => s.me?.vote);
+  useEffect(() => {
+    if (!student) return;
+    const look = () => {
+      if (document.visibilityState === "visible")
+        askMe().catch((error: unknown) => {
+          if (!(error instanceof ApiError)) return; // the server does not answer; the stream says so
+        });
+    };
+    const timer = setInterval(look, EVERY_MS);
+    return () => clearInterval(timer);
+  }, [student]);
+  if (!student || !vote || (vote.state === "closed" && !vote.mine)) return null;
+  return <Card key={vote.id} vote={vote} />;
+}
+
+function Card({ vote }: { vote: OpenVote }) {
+  const { question, state, mine, results, right } = vote;
+  const { when, answers } = question;
+  const [at, setAt] = useState(mine?.at_ms ?? (when ? (when.from_ms + when.until_ms) / 2 : null));
+  const nameOf = (answer: string) => (question.diagnoser ? hypothesisWords(answer) : answer);
+  const open = state === "open";
+  useEffect(() => {
+    if (open) announce(`The teacher asks: ${question.text}`);
+  }, [open, question.text]);
+  const cast = (answer: number, moment: number | null) =>
+    castVote(vote.id, answer, moment).then(() => announce(`Your answer: ${nameOf(answers[answer])}`), showError);
+  return (
+    <section className={styles.card} aria-label="Vote">
+      <h2>{question.text}</h2>
+      <div className={styles.answers}>
+        {answers.map((answer, i) => (
+          <Button
+            key={answer}
+            size="sm"
+            variant={mine?.answer === i ? "filled" : "default"}
+            aria-pressed={mine?.answer === i}
+            disabled={!open}
+            onClick={() => cast(i, at)}
+          >
+            {nameOf(answer)}
+            {results && `, ${formatCount(results[i].count, "vote")}`}
+          </Button>
+        ))}
+      </div>
+      {when && open && at !== null && (
+        <div className={styles.when}>
+          <span>When? {formatIn(at, "ms", 1)}</span>
+          <Slider
+            thumbLabel="When"
+            label={null}
+            min={when.from_ms}
+            max={when.until_ms}
+            step={(when.until_ms - when.from_ms) / 100}
+            value={at}
+            onChange={setAt}
+            onChangeEnd={(value) => mine && cast(mine.answer, value)}
+          />
+        </div>
+      )}
+      <p role="status">
+        {results
+          ? right
+            ? `The right answer: ${nameOf(right)}.`
+            : "This is what was said."
+          : !open
+            ? "The vote is closed; the answer comes soon."
+            : mine
+              ? "Your answer is in. You can change it until the vote is closed."
+              : "One tap is your answer; nobody sees it."}
+      </p>
+    </section>
+  );
+}

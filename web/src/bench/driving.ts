@@ -1,0 +1,37 @@
+import { classes } from "../api/classes";
+import { useMe } from "../api/me";
+import type { Company, DrivingTurn } from "../api/types";
+import { useBench } from "../stream/bench-store";
+import { announce } from "./announce";
+import { showError } from "./send";
+
+type Somebody = Company["drivers"][number];
+
+/** Who is at the bench on the page; nothing while it is one person. */
+export const useCompany = (): Company | undefined => useBench((s) => s.bench?.company ?? undefined);
+
+/** The name of somebody, as others are told. */
+export const nameOf = ({ id, name }: Somebody): string => (id === "teacher" ? "The teacher" : name);
+
+/** Who drives, in words; or how many look on where nobody else may drive. */
+export function drivingWords(company: Company, me: string | undefined): string {
+  const { is_leased, driver, watching, more_watching, links } = company;
+  if (!is_leased) {
+    const onlookers = watching.length + more_watching + links;
+    return onlookers === 1 ? "1 looks on" : `${onlookers} look on`;
+  }
+  if (!driver) return "Nobody drives";
+  return driver.id === me ? "You drive" : `${nameOf(driver)} drives`;
+}
+
+/** Ask for the bench on the page, hand it over or take it back. */
+export async function changeDriver(what: DrivingTurn, to?: Somebody): Promise<void> {
+  const id = useBench.getState().bench?.id;
+  if (!id) return;
+  try {
+    const { company } = await classes.drive(id, what, to?.id);
+    if (company) announce(`${drivingWords(company, useMe.getState().me?.id)}.`);
+  } catch (error) {
+    showError(error);
+  }
+}

@@ -1,0 +1,40 @@
+import { create } from "zustand";
+import { classes } from "../api/classes";
+import { queryClient } from "../api/queries";
+import type { Vote } from "../api/types";
+import { votes } from "../api/votes";
+import { useBench } from "../stream/bench-store";
+import { announce } from "./announce";
+import { showPanel } from "./dock";
+import { cueNow } from "./lecture";
+import { showError } from "./send";
+
+/** The vote that the teacher's page is at. */
+export const useVote = create<{ vote: Vote | undefined }>(() => ({ vote: undefined }));
+
+export const showVote = (vote: Vote | undefined): void => useVote.setState({ vote });
+
+/**
+ * Open the vote of the cue, once; the panel says how it goes, and asks again if that is wanted. Where several classes are
+ * there, it asks who votes.
+ */
+export async function askCue(): Promise<void> {
+  const vote = cueNow()?.vote;
+  if (!vote) return;
+  showPanel("vote", "view3d");
+  try {
+    const [groups, open] = await Promise.all([classes.all(), votes.all()]);
+    const class_id = groups[0]?.id ?? null;
+    const { text, diagnoser = "", when = null, right } = vote;
+    const isAsked = open.some(
+      (one) => one.class_id === class_id && (one.state === "open" || one.question.text === text),
+    );
+    if (groups.length > 1 || isAsked) return;
+    const answers = diagnoser ? (useBench.getState().bench?.diagnosers[diagnoser]?.names ?? []) : (vote.answers ?? []);
+    await votes.open({ class_id, text, answers, diagnoser, when, right });
+    await queryClient.invalidateQueries({ queryKey: ["votes"] });
+    announce(`The vote is open: ${text}`);
+  } catch (error) {
+    showError(error);
+  }
+}

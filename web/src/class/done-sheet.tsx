@@ -1,0 +1,57 @@
+import { classes } from "../api/classes";
+import { useAnswer } from "../api/queries";
+import { EmptyState } from "../ui/empty-state";
+import { formatTick } from "../ui/format";
+import { Sheet } from "../ui/sheet";
+import { Stale } from "../ui/stale";
+import styles from "./class.module.css";
+
+const EVERY_MS = 3000;
+
+interface DoneSheetProps {
+  opened: boolean;
+  group: string;
+  /** Names of the students by their benches of now. */
+  owners: ReadonlyMap<string, string>;
+  onClose(): void;
+}
+
+/** Who did what in a class, and when; newest first. */
+export function DoneSheet({ opened, onClose, ...rest }: DoneSheetProps) {
+  return (
+    <Sheet opened={opened} title="What was done" size={480} onClose={onClose}>
+      {opened && <Done {...rest} />}
+    </Sheet>
+  );
+}
+
+function Done({ group, owners }: Pick<DoneSheetProps, "group" | "owners">) {
+  const { value, error, since, again } = useAnswer(
+    ["audit", group],
+    () => classes.audit(group),
+    () => EVERY_MS,
+  );
+  return (
+    <>
+      <Stale error={error} since={since} onRetry={again} />
+      {value?.length === 0 && (
+        <EmptyState title="Nothing yet">Who joins and what they do on their benches will stand here.</EmptyState>
+      )}
+      <ol className={styles.done} aria-label="What was done, newest first">
+        {value?.map(({ at, actor, text, tick, bench_id }) => {
+          const owner = owners.get(bench_id ?? "");
+          return (
+            <li key={`${at} ${actor} ${text}`}>
+              <time dateTime={at}>{new Date(at).toLocaleTimeString()}</time>
+              <p>
+                <b>{actor}</b>
+                {owner && owner !== actor && ` on the bench of ${owner}`}: {text}
+                {tick !== null && <small> {formatTick(tick)}</small>}
+              </p>
+            </li>
+          );
+        })}
+      </ol>
+    </>
+  );
+}

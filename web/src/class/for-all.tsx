@@ -1,0 +1,150 @@
+import { Button } from "@mantine/core";
+import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
+import { useState } from "react";
+import { classes } from "../api/classes";
+import type { Command, Outcomes } from "../api/types";
+import { showError } from "../bench/send";
+import { formatCount } from "../ui/format";
+import styles from "./class.module.css";
+import { FaultForAll } from "./fault-for-all";
+import { HideForAll } from "./hide-for-all";
+import { outcomeLine } from "./members";
+import { ScenarioSelect, useLibrary } from "./scenario-select";
+import { SheetForAll } from "./sheet-for-all";
+
+interface ForAllProps {
+  group: string;
+  /** How many students there are. */
+  count: number;
+  /** Ids of those chosen; nobody chosen means all. */
+  chosen: readonly string[];
+  /** Ids of those whose bench has tripped. */
+  tripped: readonly string[];
+  onChooseNone(): void;
+  onDone(): void;
+}
+
+/** What is done on all benches at once, or on those of the students chosen; what came of it stands below in a line. */
+export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: ForAllProps) {
+  const library = useLibrary();
+  const [scenario, setScenario] = useState("first-look");
+  const [busy, setBusy] = useState("");
+  const [said, setSaid] = useState("");
+
+  const carryOut = async (what: string, asked: () => Promise<Outcomes>) => {
+    setBusy(what);
+    try {
+      setSaid(outcomeLine(what, await asked()));
+      onDone();
+    } catch (error) {
+      showError(error);
+    } finally {
+      setBusy("");
+    }
+  };
+  const command = (what: string, order: Command) =>
+    carryOut(what, () => classes.command(group, order, chosen.length > 0 ? [...chosen] : null));
+  const stopped = chosen.length > 0 ? tripped.filter((id) => chosen.includes(id)) : [...tripped];
+  const begin = () => {
+    const title = library.find(({ id }) => id === scenario)?.title ?? scenario;
+    if (window.confirm(`Begin ${title} on all ${count} benches? What is on them now is gone.`))
+      void carryOut(title, () => classes.begin(group, { scenario, paused: false, quiet_lead: true }));
+  };
+
+  return (
+    <section className={styles.all} aria-label="For all benches">
+      <div className={styles.row}>
+        <b className={styles.whom}>{chosen.length > 0 ? `For the ${chosen.length} chosen` : "For all benches"}</b>
+        {chosen.length > 0 && (
+          <Button size="xs" variant="subtle" onClick={onChooseNone}>
+            Choose none
+          </Button>
+        )}
+        <Button
+          size="xs"
+          variant="default"
+          leftSection={<IconPlayerPauseFilled size={15} />}
+          loading={busy === "Freeze"}
+          disabled={count === 0}
+          onClick={() => command("Freeze", { kind: "pause" })}
+        >
+          Freeze
+        </Button>
+        <Button
+          size="xs"
+          variant="default"
+          leftSection={<IconPlayerPlayFilled size={15} />}
+          loading={busy === "Release"}
+          disabled={count === 0}
+          onClick={() => command("Release", { kind: "start" })}
+        >
+          Release
+        </Button>
+        <Button
+          size="xs"
+          variant="default"
+          loading={busy === "Start all together"}
+          disabled={count === 0}
+          title="Every bench goes back to tick 0 and stands; then all start at once. One that stands there keeps what was set."
+          onClick={() =>
+            window.confirm(
+              "Start all together? Every bench that is not at tick 0 is reset first: what is on it now is gone.",
+            ) &&
+            carryOut("Start all together", () => classes.startTogether(group, chosen.length > 0 ? [...chosen] : null))
+          }
+        >
+          Start all together
+        </Button>
+        {stopped.length > 0 && (
+          <Button
+            size="xs"
+            color="alarm"
+            loading={busy === "Reset trips"}
+            title="Benches that have tripped stand again where they were; Release lets them run."
+            onClick={() =>
+              carryOut("Reset trips", () => classes.command(group, { reset_trip: true }, stopped))
+            }
+          >
+            Reset {formatCount(stopped.length, "trip")}
+          </Button>
+        )}
+      </div>
+      <div className={styles.groups}>
+        <FaultForAll count={count} busy={busy} command={command} />
+        <fieldset className={styles.group} aria-label="A scenario for all">
+          <span className={styles.what}>Scenario</span>
+          <ScenarioSelect
+            className={styles.choice}
+            size="xs"
+            aria-label="Scenario"
+            value={scenario}
+            onChange={setScenario}
+          />
+          <Button
+            size="xs"
+            variant="default"
+            disabled={count === 0 || chosen.length > 0}
+            title={chosen.length > 0 ? "A scenario begins on all benches; choose none first" : undefined}
+            onClick={begin}
+          >
+            Begin on all
+          </Button>
+        </fieldset>
+        <HideForAll
+          group={group}
+          count={count}
+          chosen={chosen}
+          carryOut={(what, asked) => void carryOut(what, asked)}
+        />
+        <SheetForAll
+          group={group}
+          count={count}
+          chosen={chosen}
+          busy={busy !== ""}
+          onBegin={(title, asked) => void carryOut(title, asked)}
+        />
+      </div>
+      <output className={styles.said}>{said}</output>
+    </section>
+  );
+}

@@ -1,0 +1,59 @@
+import { Button, Checkbox, NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import { blind } from "../api/blind";
+import type { Outcomes } from "../api/types";
+import styles from "./class.module.css";
+import { useLibrary } from "./scenario-select";
+
+const USUAL = "ch5-seven-step";
+
+interface HideForAllProps {
+  group: string;
+  count: number;
+  /** Ids of those chosen; nobody chosen means all. */
+  chosen: readonly string[];
+  carryOut(what: string, asked: () => Promise<Outcomes>): void;
+}
+
+/** A fault hidden from each student, on a device of one's own; and what was hidden shown to all. */
+export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) {
+  const library = useLibrary().filter(({ can_hide }) => can_hide);
+  const [scenario, setScenario] = useState(USUAL);
+  const [shows, setShows] = useState(false);
+  const hide = () => {
+    const whom = chosen.length > 0 ? `the ${chosen.length} chosen` : `all ${count}`;
+    if (window.confirm(`Give ${whom} a new bench with a hidden fault? What is on their benches now is gone.`))
+      carryOut("Blind faults", () => blind.hideForAll(group, scenario, shows, chosen.length > 0 ? [...chosen] : null));
+  };
+  return (
+    <fieldset className={styles.group} aria-label="Blind faults for all">
+      <span className={styles.what}>Hidden fault</span>
+      <NativeSelect
+        className={styles.choice}
+        size="xs"
+        aria-label="Bench of the hidden fault"
+        value={scenario}
+        data={library.map(({ id, title }) => ({ value: id, label: title }))}
+        onChange={(e) => setScenario(e.currentTarget.value)}
+      />
+      <Checkbox
+        size="xs"
+        label="Show the bank"
+        title="Students see what the diagnosers say, but not whether it is true"
+        checked={shows}
+        onChange={(e) => setShows(e.currentTarget.checked)}
+      />
+      <Button size="xs" variant="default" disabled={count === 0} onClick={hide}>
+        Blind faults
+      </Button>
+      <Button
+        size="xs"
+        variant="default"
+        disabled={count === 0}
+        onClick={() => carryOut("Reveal all", () => blind.revealAll(group))}
+      >
+        Reveal all
+      </Button>
+    </fieldset>
+  );
+}

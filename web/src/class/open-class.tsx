@@ -1,0 +1,91 @@
+import { Button, NumberInput, TextInput } from "@mantine/core";
+import { type FormEvent, useState } from "react";
+import { classes } from "../api/classes";
+import type { Class } from "../api/types";
+import { showError } from "../bench/send";
+import styles from "./class.module.css";
+import { ScenarioSelect } from "./scenario-select";
+
+const LONGEST_H = 24 * 14;
+/** What is said of a field stands below it. */
+const BELOW: ("label" | "input" | "description" | "error")[] = ["label", "input", "description", "error"];
+
+interface OpenClassProps {
+  onOpened(group: Class): void;
+  onCancel?(): void;
+}
+
+/** What a class is, and what it takes to open one. */
+export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
+  const [name, setName] = useState("");
+  const [scenario, setScenario] = useState("first-look");
+  const [hours, setHours] = useState<number | string>(8);
+  const [minutes, setMinutes] = useState<number | string>(120);
+  const [busy, setBusy] = useState(false);
+  const wrong = {
+    hours: Number(hours) > 0 && Number(hours) <= LONGEST_H ? undefined : `More than 0, at most ${LONGEST_H}`,
+    minutes: Number(minutes) > 0 && Number(minutes) <= 60 * LONGEST_H ? undefined : "More than 0",
+  };
+  const open = async (event: FormEvent) => {
+    event.preventDefault();
+    setBusy(true);
+    try {
+      const bench = { scenario, paused: false, quiet_lead: true };
+      onOpened(await classes.open({ name: name.trim(), bench, hours: Number(hours), minutes: Number(minutes) }));
+    } catch (error) {
+      showError(error);
+    } finally {
+      setBusy(false);
+    }
+  };
+  return (
+    <section className={styles.form} aria-label="Open a class">
+      <h1>Class</h1>
+      <p>
+        Students join a class with a code from the wall, without an account. Each has a bench of their own, and you see
+        all of them here.
+      </p>
+      <form onSubmit={open}>
+        <TextInput
+          label="Name of the class"
+          placeholder="Control laboratory, Tuesday"
+          required
+          maxLength={100}
+          value={name}
+          onChange={(e) => setName(e.currentTarget.value)}
+        />
+        <ScenarioSelect label="Benches begin with" value={scenario} onChange={setScenario} />
+        <NumberInput
+          label="The class lasts"
+          description="Then benches, names and the log are gone."
+          inputWrapperOrder={BELOW}
+          suffix=" h"
+          min={0.1}
+          value={hours}
+          error={wrong.hours}
+          onChange={setHours}
+        />
+        <NumberInput
+          label="The code lets students in for"
+          description="You can make a new one at any time."
+          inputWrapperOrder={BELOW}
+          suffix=" min"
+          min={1}
+          value={minutes}
+          error={wrong.minutes}
+          onChange={setMinutes}
+        />
+        <div className={styles.buttons}>
+          <Button type="submit" loading={busy} disabled={!name.trim() || Boolean(wrong.hours || wrong.minutes)}>
+            Open the class
+          </Button>
+          {onCancel && (
+            <Button variant="default" onClick={onCancel}>
+              Back
+            </Button>
+          )}
+        </div>
+      </form>
+    </section>
+  );
+}

@@ -1,0 +1,49 @@
+import { Modal } from "@mantine/core";
+import { useEffect } from "react";
+import { QrCode } from "../ui/qr-code";
+import styles from "./wall.module.css";
+
+interface WallProps {
+  opened: boolean;
+  name: string;
+  code: string;
+  address: string;
+  onClose(): void;
+}
+
+/** The code, the address and nothing else, on the whole screen where the browser lets it; Escape leaves. */
+export function Wall({ opened, name, code, address, onClose }: WallProps) {
+  useEffect(() => {
+    if (!opened) return;
+    document.documentElement.requestFullscreen?.().catch(() => undefined);
+    // Escape leaves the whole screen before the page hears of the key
+    const changed = () => !document.fullscreenElement && onClose();
+    document.addEventListener("fullscreenchange", changed);
+    return () => {
+      document.removeEventListener("fullscreenchange", changed);
+      if (document.fullscreenElement) void document.exitFullscreen();
+    };
+  }, [opened, onClose]);
+  return (
+    <Modal
+      fullScreen
+      opened={opened}
+      onClose={onClose}
+      title={name}
+      closeButtonProps={{ "aria-label": "Leave the wall" }}
+      classNames={{ content: styles.wall, body: styles.body, title: styles.title }}
+      transitionProps={{ duration: 0 }}
+    >
+      <p className={styles.code}>{code}</p>
+      <div className={styles.foot}>
+        <QrCode address={address} />
+        <p>
+          Scan, or open <b>{brief(address)}</b> and type the code
+        </p>
+      </div>
+    </Modal>
+  );
+}
+
+/** What somebody types: the address without the code, which the page asks for. */
+export const brief = (address: string): string => address.replace(/^https?:\/\//, "").replace(/\?.*$/, "");

@@ -1,0 +1,75 @@
+import { Button, Radio, Slider } from "@mantine/core";
+import { type ReactNode, useMemo, useState } from "react";
+import { blind } from "../../api/blind";
+import type { Question } from "../../api/types";
+import { hypothesisWords } from "../../bench/hypothesis-words";
+import { showError } from "../../bench/send";
+import { useBench } from "../../stream/bench-store";
+import { formatPercent, formatSi } from "../../ui/format";
+import styles from "./blind.module.css";
+
+interface AnswerProps {
+  question: Question;
+  /** How points are counted. */
+  rule: ReactNode;
+  onEnded(): void;
+}
+
+/** The question: what the device is now, and how sure that is. */
+export function Answer({ question, rule, onEnded }: AnswerProps) {
+  const { answers, factors, by_tick } = question;
+  const bench = useBench((s) => s.bench?.id) ?? "";
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const hasCome = useBench((s) => (s.bench?.tick ?? 0) >= by_tick);
+  const [said, setSaid] = useState<string | undefined>(undefined);
+  const [confidence, setConfidence] = useState(70);
+  const [busy, setBusy] = useState(false);
+  const known = useMemo(() => ({ answers: { kind: "", names: answers, factors } }), [answers, factors]);
+  const end = (ended: Promise<unknown>) => {
+    setBusy(true);
+    void ended.then(onEnded, showError).finally(() => setBusy(false));
+  };
+  return (
+    <>
+      <p className={styles.advice}>
+        {hasCome
+          ? "If there is a fault, it has come."
+          : `If there is a fault, it comes before ${formatSi(by_tick * dtMs, "ms", 3)}.`}{" "}
+        Look at the measurement and the voltage. You may change the reference and the controller.
+      </p>
+      <Radio.Group label="What is hidden here?" value={said ?? ""} onChange={setSaid}>
+        <div className={styles.answers}>
+          {answers.map((name) => (
+            <Radio key={name} value={name} label={hypothesisWords(name, known)} />
+          ))}
+        </div>
+      </Radio.Group>
+      <label className={styles.confidence} htmlFor="confidence">
+        How sure are you? <strong>{formatPercent(confidence / 100, 0)}</strong>
+      </label>
+      <Slider
+        id="confidence"
+        thumbLabel="How sure are you, percent"
+        min={Math.ceil(100 / answers.length)}
+        max={100}
+        label={null}
+        value={confidence}
+        onChange={setConfidence}
+      />
+      <div className={styles.bar}>
+        <Button
+          size="sm"
+          loading={busy}
+          disabled={said === undefined}
+          onClick={() => said && end(blind.answer(bench, said, confidence / 100))}
+        >
+          Commit the answer
+        </Button>
+        <Button size="sm" variant="subtle" disabled={busy} onClick={() => end(blind.giveUp(bench))}>
+          Give up
+        </Button>
+      </div>
+      {rule}
+    </>
+  );
+}

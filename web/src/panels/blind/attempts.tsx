@@ -1,0 +1,81 @@
+import { Button } from "@mantine/core";
+import { answersOf } from "../../api/blind";
+import type { HiddenAnswer } from "../../api/types";
+import { hypothesisWords } from "../../bench/hypothesis-words";
+import { useBench } from "../../stream/bench-store";
+import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
+import { jump } from "../../ui/hover";
+import styles from "./blind.module.css";
+
+const points = (value: number) => formatCount(Math.round(value), "point");
+
+/** What came of the last question: truth, points, what the diagnosers said, and the way to the moment. */
+export function Outcome({ answer }: { answer: HiddenAnswer }) {
+  const { said, truth, confidence, came_tick, took_ms, verdicts = {}, points: won = 0 } = answer;
+  const head = useBench((s) => s.bench?.tick) ?? 0;
+  const known = answersOf(answer);
+  const words = (name: string) => hypothesisWords(name, known);
+  const right = said === truth;
+  const when =
+    came_tick === null
+      ? "No fault was to come"
+      : took_ms === null || took_ms === undefined
+        ? "The fault had not come"
+        : `The fault had been there for ${formatSi(took_ms, "ms", 3)}`;
+  const told = Object.entries(verdicts).map(([id, verdict]) => `${id.replaceAll("_", " ")} said ${words(verdict)}`);
+  return (
+    <div className={styles.outcome} role="status">
+      <p className={styles.verdict} data-right={right}>
+        {said === null || said === undefined
+          ? `No answer: it is ${words(truth)}.`
+          : `${right ? "Right" : "Wrong"}: it is ${words(truth)}. ${points(won)}`}
+      </p>
+      <p className={styles.advice}>
+        {said && confidence !== null && confidence !== undefined
+          ? `You said ${words(said)} with ${formatPercent(confidence, 0)}. `
+          : ""}
+        {when}; {told.join(", ")}.
+      </p>
+      {came_tick !== null && came_tick <= head && (
+        <Button size="compact-sm" variant="default" onClick={() => jump.to({ tick: came_tick })}>
+          Show the moment it came
+        </Button>
+      )}
+    </div>
+  );
+}
+
+/** All answers so far. */
+export function Attempts({ answers }: { answers: readonly HiddenAnswer[] }) {
+  const mean = answers.reduce((sum, one) => sum + (one.points ?? 0), 0) / answers.length;
+  return (
+    <table className={styles.table}>
+      <caption>
+        {formatCount(answers.length, "answer")}, {points(mean)} on average
+      </caption>
+      <thead>
+        <tr>
+          <th scope="col">Said</th>
+          <th scope="col">Truth</th>
+          <th scope="col">Sure</th>
+          <th scope="col">Points</th>
+        </tr>
+      </thead>
+      <tbody>
+        {answers.map((one) => {
+          const known = answersOf(one);
+          return (
+            <tr key={one.id} data-right={one.said === one.truth}>
+              <td>{one.said ? hypothesisWords(one.said, known) : "nothing"}</td>
+              <td>{hypothesisWords(one.truth, known)}</td>
+              <td>
+                {one.confidence === null || one.confidence === undefined ? "–" : formatPercent(one.confidence, 0)}
+              </td>
+              <td>{formatNumber(one.points ?? 0, 0)}</td>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}

@@ -1,0 +1,25 @@
+import { queryClient } from "../../api/queries";
+import { sheets } from "../../api/sheets";
+import { showAtEdge } from "../../bench/dock";
+import { openOwn } from "../../bench/open-bench";
+import { setPage, useView } from "../../bench/view-store";
+
+/** A sheet is read at this width. */
+const SHEET_PX = 400;
+
+/** Begin a sheet, or go on with it: its bench is made, and the sheet stands beside it. */
+export async function beginSheet(id: string): Promise<void> {
+  const view = await sheets.begin(id);
+  queryClient.setQueryData(["sheet", id], view);
+  if (view.bench) openOwn(view.bench);
+  setPage("bench");
+  useView.setState({ dialog: "none" });
+  await queryClient.invalidateQueries({ queryKey: ["sheets"] });
+  showSheet();
+}
+
+/** Bring the sheet to the front, in a column of its own. */
+export function showSheet(): void {
+  useView.setState({ sheet: true });
+  showAtEdge("sheet", SHEET_PX);
+}

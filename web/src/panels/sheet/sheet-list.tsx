@@ -1,0 +1,97 @@
+import { Button, FileButton } from "@mantine/core";
+import { useState } from "react";
+import { ApiError } from "../../api/client";
+import { useMay } from "../../api/me";
+import { sheets } from "../../api/sheets";
+import type { SheetCard } from "../../api/types";
+import { showError } from "../../bench/send";
+import { sheetWords } from "../../bench/sheet-words";
+import { formatCount, formatShort } from "../../ui/format";
+import { beginSheet } from "./begin";
+import styles from "./sheet.module.css";
+
+/** The sheets there are; one is begun here, and a teacher opens one of one's own. */
+export function SheetList({ cards, onChanged }: { cards: SheetCard[]; onChanged(): void }) {
+  const teaches = useMay("teach");
+  const drives = useMay("drive");
+  const [busy, setBusy] = useState("");
+  const begin = async (id: string) => {
+    setBusy(id);
+    try {
+      await beginSheet(id);
+      onChanged();
+    } catch (error) {
+      showError(error);
+    } finally {
+      setBusy("");
+    }
+  };
+  const remove = async ({ id, title }: SheetCard) => {
+    if (!window.confirm(`Delete ${title}? What was answered in it is gone too.`)) return;
+    await sheets.remove(id).then(onChanged, showError);
+  };
+  return (
+    <section className={styles.sheet} aria-label="Lab sheets">
+      {!teaches && <p className={styles.quiet}>A sheet begins with a bench of its own, in place of yours.</p>}
+      <ul className={styles.cards}>
+        {cards.map((card) => (
+          <li key={card.id}>
+            <div>
+              <h3>{card.title}</h3>
+              <p>{card.summary}</p>
+              <small>
+                {card.minutes} minutes · {formatCount(card.steps, "step")} · {formatShort(card.points, "")} points
+                {card.work && ` · ${sheetWords(card.work)}`}
+              </small>
+            </div>
+            {drives && (
+              <Button
+                size="xs"
+                variant="light"
+                loading={busy === card.id}
+                aria-label={`${card.work ? "Go on with" : "Begin"} ${card.title}`}
+                onClick={() => void begin(card.id)}
+              >
+                {card.work ? "Go on" : "Begin"}
+              </Button>
+            )}
+            {card.own && teaches && (
+              <Button size="xs" variant="subtle" aria-label={`Delete ${card.title}`} onClick={() => void remove(card)}>
+                Delete
+              </Button>
+            )}
+          </li>
+        ))}
+      </ul>
+      {teaches && <OpenOwn onOpened={onChanged} />}
+    </section>
+  );
+}
+
+/** A sheet from disk; what is wrong with it is said with its line and field. */
+function OpenOwn({ onOpened }: { onOpened(): void }) {
+  const [error, setError] = useState("");
+  const open = async (file: File | null) => {
+    if (!file) return;
+    setError("");
+    try {
+      await sheets.open(await file.text());
+      onOpened();
+    } catch (refused) {
+      const body = refused instanceof ApiError ? refused.body : undefined;
+      setError(`${file.name}: ${body ? [body.message, body.hint].filter(Boolean).join(". ") : String(refused)}`);
+    }
+  };
+  return (
+    <div className={styles.own}>
+      <FileButton accept=".md,text/markdown" onChange={open} inputProps={{ "aria-label": "Sheet file" }}>
+        {(props) => (
+          <Button {...props} size="xs" variant="default">
+            Open a sheet of your own…
+          </Button>
+        )}
+      </FileButton>
+      {error && <p role="alert">{error}</p>}
+    </div>
+  );
+}
