@@ -101,9 +101,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
             color="alarm"
             loading={busy === "Reset trips"}
             title="Benches that have tripped stand again where they were; Release lets them run."
-            onClick={() =>
-              carryOut("Reset trips", () => classes.command(group, { reset_trip: true }, stopped))
-            }
+            onClick={() => carryOut("Reset trips", () => classes.command(group, { reset_trip: true }, stopped))}
           >
             Reset {formatCount(stopped.length, "trip")}
           </Button>
