@@ -151,7 +151,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--students", type=int, default=30)
     parser.add_argument("--watchers", type=int, default=60, help="of the teacher's bench")
-    parser.add_argument("--seconds", type=float, default=180.0, help="histories of students are full after five minutes")
+    parser.add_argument(
+        "--seconds", type=float, default=180.0, help="histories of students are full after five minutes"
+    )
     parser.add_argument("--commands", type=float, default=0.5, help="per second and student")
     parser.add_argument("--browsers", type=int, default=0, help="Chromium that join as well, and draw")
     told = parser.parse_args()

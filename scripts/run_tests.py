@@ -22,7 +22,10 @@ NPM = ["scripts/npm", "--silent", "--prefix", "web"]
 COUNT = re.compile(r"(\d+) (passed|failed|errors?|skipped|xfailed|flaky)")
 COLOUR = re.compile(r"\x1b\[[\d;]*m")
 CLOSING = re.compile(r"^(=+ .*\bin [\d.]+s.*=+|\s*Tests\s+.*\(\d+\)|\s+\d+ (passed|failed|flaky|skipped)\b.*)$")
-REASON = re.compile(r"^(FAILED |ERROR |\s+\d+\) \S+\.ts:|\s+(Error|Locator): |\s+[-+] {2,}\S)")
+REASON = re.compile(
+    r"^(FAILED |ERROR |server said: |\s+\d+\) \S+\.ts:|\s+(Error|Locator|Expected|Received)[\w ]*: "
+    r"|\s+> *\d+ \||\s+[-+] {2,}\S)"
+)
 MOST_REASONS = 40
 """Lines that say why something failed, shown once more at the end."""
 

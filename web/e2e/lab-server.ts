@@ -15,6 +15,7 @@ export class LabServer {
   private readonly settings: Record<string, string>;
   private readonly data = mkdtempSync(join(tmpdir(), "combbench-e2e-"));
   private process: ChildProcess | undefined;
+  private said = "";
 
   private constructor(port: number, settings: Record<string, string>) {
     this.port = port;
@@ -38,19 +39,19 @@ export class LabServer {
     const env = { ...process.env, PYTHONDONTWRITEBYTECODE: "", COMBBENCH_FIGURES: "false", ...this.settings };
     const child = spawn(COMBBENCH, ["serve", "--port", String(this.port), "--data", this.data], { env });
     this.process = child;
-    let said = "";
+    this.said = "";
     this.url = await new Promise((resolve, reject) => {
-      const timer = setTimeout(() => reject(new Error(`the server did not start:\n${said}`)), START_MS);
+      const timer = setTimeout(() => reject(new Error(`the server did not start:\n${this.said}`)), START_MS);
       const listen = (chunk: Buffer) => {
-        said += chunk.toString();
-        const address = /https?:\/\/\S+token=\S+/.exec(said)?.[0];
+        this.said += chunk.toString();
+        const address = /https?:\/\/\S+token=\S+/.exec(this.said)?.[0];
         if (!address) return;
         clearTimeout(timer);
         resolve(address);
       };
       child.stdout.on("data", listen);
       child.stderr.on("data", listen);
-      child.on("exit", (code) => reject(new Error(`the server ended with ${code}:\n${said}`)));
+      child.on("exit", (code) => reject(new Error(`the server ended with ${code}:\n${this.said}`)));
     });
   }
 
@@ -65,6 +66,14 @@ export class LabServer {
     const text = await answer.text();
     if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${text}`);
     return (text ? JSON.parse(text) : undefined) as T;
+  }
+
+  /** What it warned of so far, the last lines. */
+  get warnings(): string[] {
+    return this.said
+      .split("\n")
+      .filter((line) => /"level": "(WARNING|ERROR)"/.test(line))
+      .slice(-5);
   }
 
   /** End it as an operator would. */
