@@ -188,6 +188,8 @@ class Block:
     family: ClassVar[str]
     name: ClassVar[str]
     title: ClassVar[str]
+    text: ClassVar[str] = ""
+    """Of a unit of one's own, what it was read from."""
     group: ClassVar[str] = ""
     place: ClassVar[int] = 1000
     """Where lists for people have the block: under which heading, and in which order, the usual first."""

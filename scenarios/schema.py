@@ -16,12 +16,16 @@ from core.board.parse import parse
 from core.board.spec import Spec, fields
 from core.errors import InputError, from_validation, short, unknown_field
 from core.nesting import read_toml
+from core.own.admission import check_admitted
+from core.own.apart import compile_by
 from core.table import Table
 from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
+from scenarios.own import compile_apart
 from scenarios.studies import parse_study
 
 MAX_SAMPLES = 200_000_000
+compile_by(compile_apart)
 UNREAD = "verdict is not read: it follows from published_value, published_range and fitted"
 
 
@@ -72,6 +76,7 @@ class Scenario:
             raise InputError("a scenario must be a table", "scenario")
         self.document = document = _with_open_ends(document)
         head = {key: value for key, value in document.items() if key in HEAD}
+        check_admitted(document)
         self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
         self._head, known = head, like._head if like is not None else {}
         is_alike = head.keys() == known.keys() and all(says_the_same(value, known[key]) for key, value in head.items())

@@ -147,6 +147,7 @@ def create_app(settings: Settings) -> FastAPI:
         open_paths=frozenset({"/metrics"}) if settings.metrics_open else frozenset(),
         prefix=public.prefix,
         frames=frames,
+        units=settings.units,
     )
     app.add_middleware(errors.CatchAll)
     app.add_middleware(SecurityHeaders, prefix=public.prefix, frames=frames)

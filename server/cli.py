@@ -1,4 +1,4 @@
-"""The command line: ``combbench serve | run | gallery | lectures | sheets | sweep | catalog | bench | doctor``."""
+"""The command line, ``combbench``; commands for what is taught and for units have files of their own."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from core.format import format_short, format_si, unit_text
 from core.registry import BlockCard, catalog
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
+from scenarios.own import with_units
 from scenarios.report.text import gallery_text, run_text
 from scenarios.report.traces import TraceFile
 from scenarios.run import run as run_scenario
@@ -27,6 +28,7 @@ from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
 from server.lessons import lectures, sheets
 from server.terminal import JsonOption, plainly, read_text, say, say_json
+from server.units import UnitOption, check
 
 UsageError: Any = typer.BadParameter.__base__
 """Every usage error of options and arguments; Typer exports only one kind of them."""
@@ -50,16 +52,19 @@ class OneLine(TyperGroup):
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 app.command()(lectures)
 app.command()(sheets)
+app.command()(check)
 
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 """Errors of a write to an open file."""
 
 
-def load(name: str) -> Scenario:
-    """Return a scenario of the library, or from a file."""
+def load(name: str, units: list[Path] | None) -> Scenario:
+    """Return a scenario of the library, or from a file, with units from files."""
     path = Path(name)
-    return Scenario.load(read_text(path, "scenario")) if path.suffix == ".toml" or path.is_file() else get(name)
+    is_file = path.suffix == ".toml" or path.is_file()
+    found = Scenario.load(read_text(path, "scenario")) if is_file else get(name)
+    return Scenario.load(with_units(found.document, units)) if units else found
 
 
 @app.command()
@@ -69,6 +74,7 @@ def run(
     assign: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
     ] = None,
+    units: UnitOption = None,
     seed: Annotated[int | None, typer.Option(help="Instead of the scenario's own, 0 or more.")] = None,
     seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
     as_json: JsonOption = False,
@@ -86,7 +92,7 @@ def run(
     from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
     from scenarios.report.keeping import keep
 
-    chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
+    chosen = with_values(load(scenario, units), dict(parse_assignment(text) for text in assign or []))
     if seed is not None and seeds is not None:
         raise InputError("give --seed or --seeds, not both", "--seeds")
     if seeds is not None and out is not None:
@@ -146,6 +152,7 @@ def sweep(
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = False,
+    units: UnitOption = None,
 ) -> None:
     """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
     from scenarios.campaign.campaign import Stopped
@@ -158,10 +165,11 @@ def sweep(
     if workers is not None and not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"must be from 1 to {MOST_WORKERS}, got {workers}", "--workers")
     collect_seldom()
-    campaign = read_sweep(file)
+    campaign = read_sweep(file, units or ())
     folder = out or Path("sweeps") / campaign.head.id
     address = load_settings().database_url
-    again = f"; go on with: combbench sweep {file} --out {folder} --resume"
+    given = "".join(f" --unit {one}" for one in units or ())
+    again = f"; go on with: combbench sweep {file} --out {folder} --resume{given}"
     try:
         with ExitStack() as stack:
             bars: list[Any] = []  # no progress bar before the first run: a refusal is one line

@@ -7,7 +7,7 @@ import tomllib
 from dataclasses import dataclass
 from ipaddress import ip_address
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, SecretStr, ValidationError, field_validator, model_validator
 from pydantic_settings import (
@@ -53,6 +53,10 @@ class Settings(BaseSettings):
         False, description="Serve a class on this network without TLS; the token is accepted from this machine alone."
     )
     lti: list[Platform] = Field([], description="Learning platforms that may launch the bench by LTI 1.3.")
+    units: Literal["off", "teacher", "everyone"] = Field(
+        "teacher",
+        description="Whose scenarios may carry units of their own: nobody's, those of the teacher, or everyone's.",
+    )
     metrics_open: bool = Field(False, description="Serve /metrics without a token.")
     open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
 

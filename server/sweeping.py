@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from itertools import zip_longest
@@ -21,6 +21,8 @@ from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.parts import Parts, write_runs
 from scenarios.campaign.survey import Survey, listed
 from scenarios.campaign.sweep import Sweep
+from scenarios.library import get
+from scenarios.own import with_units
 from scenarios.report.campaign import surveyed_report
 from scenarios.report.html import as_toml
 from scenarios.report.traces import write_text
@@ -55,8 +57,8 @@ class Ended:
     folder: Path
 
 
-def read_sweep(path: Path) -> Sweep:
-    """Read a campaign file; a scenario named by a path is looked for beside it.
+def read_sweep(path: Path, units: Iterable[Path] = ()) -> Sweep:
+    """Read a campaign file; a scenario named by a path is looked for beside it, and gets units from files.
 
     Raises
     ------
@@ -67,6 +69,9 @@ def read_sweep(path: Path) -> Sweep:
     source = document.get("scenario")
     if isinstance(source, str) and source.endswith(".toml"):
         document["scenario"] = _toml(path.parent / source, "scenario")
+    if units:
+        base = document.get("scenario")
+        document["scenario"] = with_units(get(base).document if isinstance(base, str) else base or {}, units)
     sweep = Sweep(document)
     check(sweep)
     return sweep

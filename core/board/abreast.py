@@ -34,6 +34,7 @@ from core.kernel import kernel
 from core.lanes import code
 from core.lanes.numbers import WIDTH
 from core.lanes.rows import folding, keeping, sorting
+from core.own.apart import compiled_apart
 from core.ports import RESERVED, TICK, TIME_MS
 
 ALIGNMENT = 8
@@ -258,7 +259,7 @@ class Abreast:
             raise Uneven("other choices")
         self._io = first.io
         self._table = first.table[rows]
-        self._table[:, program.ADDRESS] = [code.address(first.instances[row].block) for row in rows]
+        self._table[:, program.ADDRESS] = [code.address(compiled_apart(first.instances[row].block)) for row in rows]
 
 
 def _apart(wiring: Wiring) -> Wiring:

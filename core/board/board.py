@@ -217,7 +217,7 @@ class Board:
     def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
         changes.check(self, command)
         self.pending.add(Pending(command, actor, tick, condition, self.tick))
-        return self.note(actor, "scheduled", f"waiting: {words.describe(command)}", command=command)
+        return self.note(actor, "scheduled", f"waiting: {words.describe(command, self.spec.library)}", command=command)
 
     def apply_due(self) -> None:
         """Carry out what waits for this very tick, as the next advance would."""
@@ -225,12 +225,17 @@ class Board:
             try:
                 self._do(entry.command, entry.actor)
             except InputError as error:
-                self.note("board", "refused", f"{words.describe(entry.command)}: {error}", command=entry.command)
+                self.note(
+                    "board",
+                    "refused",
+                    f"{words.describe(entry.command, self.spec.library)}: {error}",
+                    command=entry.command,
+                )
 
     def _do(self, command: Command, actor: str) -> LogEntry:
         old, new = changes.carry_out(self, command)
         self.done.append((self.tick, command))
-        text = words.describe(command)
+        text = words.describe(command, self.spec.library)
         return self.note(actor, command.kind, text, command=command.at(None), old=old, new=new)
 
     # -- log

@@ -8,7 +8,6 @@ from typing import Any, Protocol
 import numpy as np
 from pydantic import ValidationError
 
-from core import registry
 from core.block import BlockParams
 from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch, Trip
 from core.board.difference import change
@@ -21,6 +20,7 @@ from core.errors import InputError, from_validation, unknown
 from core.faults.fault import FaultParams
 from core.format import format_short
 from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, REASONS
+from core.registry import is_live
 
 LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "guard")
 
@@ -52,7 +52,7 @@ def check(board: Board, command: Command) -> None:
     if isinstance(command, Inject):
         _fault_params(board.spec, command, 0)
     elif isinstance(command, Heal):
-        _names(command)
+        _names(board.spec, command)
     elif isinstance(command, Set):
         _changed(board.spec, command.set)
     elif isinstance(command, Switch):
@@ -92,7 +92,7 @@ def inject(board: Board, command: Inject) -> tuple[Any, Any]:
 
 def heal(board: Board, command: Heal) -> tuple[Any, Any]:
     """Take faults away at this tick."""
-    names = _names(command)
+    names = _names(board.spec, command)
     if command.heal == "all":
         names = [name for name in names if name in board.spec.faults]
     absent = [name for name in names if name not in board.spec.faults]
@@ -131,7 +131,7 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
 
 def switched(spec: Spec, command: Switch) -> dict[str, Any]:
     """Return the path of the slot that a controller stands in, and its name."""
-    block = registry.block("control", command.switch, "switch")
+    block = spec.library.block("control", command.switch, "switch")
     if reason := misfit(block, spec.plant.block):
         raise InputError(f"{block.name} {reason}", "switch", f"there are: {', '.join(spec.controllers)}")
     last = list(spec.driving)[-1]
@@ -191,8 +191,8 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
     return old, None
 
 
-def _names(command: Heal) -> list[str]:
-    known = list(registry.blocks("faults"))
+def _names(spec: Spec, command: Heal) -> list[str]:
+    known = list(spec.library.blocks("faults"))
     if command.heal == "all":
         return known
     for name in command.heal:
@@ -202,7 +202,7 @@ def _names(command: Heal) -> list[str]:
 
 
 def _fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
-    block = registry.block("faults", command.fault, "fault")
+    block = spec.library.block("faults", command.fault, "fault")
     reason = misfit(block, spec.plant.block)
     if reason:
         raise InputError(f"{block.name} {reason}", "fault")
@@ -240,6 +240,8 @@ def _check_live(spec: Spec, new: Spec) -> None:
     for field in ("sample_rate_khz", "seed"):
         if getattr(new.frame, field) != getattr(spec.frame, field):
             raise _not_live(field)
+    if new.library is not spec.library:
+        raise _not_live("units")
     for key in LIVE_SECTIONS:
         _check_section(key, getattr(spec, key), getattr(new, key))
     if new.device != spec.device:
@@ -271,7 +273,7 @@ def _check_section(path: str, old: Section, new: Section) -> None:
             raise _not_live(f"{path}.kind")
         return
     for name, info in type(new.params).model_fields.items():
-        if getattr(old.params, name) != getattr(new.params, name) and not registry.is_live(info):
+        if getattr(old.params, name) != getattr(new.params, name) and not is_live(info):
             raise _not_live(f"{path}.{name}")
 
 

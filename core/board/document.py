@@ -10,12 +10,12 @@ from typing import Any
 
 from core import registry
 from core.block import Block
+from core.board.library import library_of
 from core.device.catalogue import device
 from core.errors import InputError, short
 from core.nesting import DEEPEST, TOO_DEEP, depth
 
 Document = dict[str, Any]
-IDENTIFIER = re.compile(r"^[a-z][a-z0-9_]{0,31}$")
 POSITION = re.compile(r"[0-9]{1,9}")
 
 PARKED = {"controller": ("controllers", "control"), "sensor": ("sensors", "sense")}
@@ -65,6 +65,7 @@ SECTIONS = (
     "diagnosers",
     "readouts",
     "twins",
+    "units",
 )
 
 
@@ -126,7 +127,7 @@ def completed(document: Document) -> Document:
             if not isinstance(table, dict):
                 raise InputError(f"must be a table, got {short(table)}", f"{key}.{name}")
     for one, (_, family) in PARKED.items():
-        registry.block(family, doc[one].get("kind", usual[one]["kind"]), f"{one}.kind")
+        library_of(doc).block(family, doc[one].get("kind", usual[one]["kind"]), f"{one}.kind")
     _park(doc, usual)
     gaps = [key for key in plant.generators if "kind" not in doc[key]]
     if not usual.get("slots", {}).keys() <= doc.get("slots", {}).keys():
@@ -193,7 +194,7 @@ def _write(doc: Document, path: str, value: Any) -> None:
     if exchanged is not None:
         # a new kind keeps what it shares with the old one
         section, family, key, shared = exchanged
-        fields = {key, *shared, *registry.block(family, value, path).Params.model_fields}
+        fields = {key, *shared, *library_of(doc).block(family, value, path).Params.model_fields}
         doc[section] = {name: entry for name, entry in table.items() if name in fields}
 
 

@@ -16,7 +16,8 @@ from core.block import FloatArray
 from core.board.board import Board, Checkpoint
 from core.board.changes import switched
 from core.board.commands import Command, ResetTrip, Set, Switch
-from core.board.document import IDENTIFIER, Document, with_values
+from core.board.document import Document, with_values
+from core.board.library import IDENTIFIER
 from core.board.log import LogEntry
 from core.board.parse import parse
 from core.board.rows import Rows

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core import registry
 from core.block import Block, Oscillator
 from core.board.document import CHOSEN, ONE_DISPLACEMENT, Document, generators
 from core.board.instances import faults_of, feeds_forward
+from core.board.library import library_of
 from core.board.spec import Section, Spec
 from core.device.transfer_function import slowest_pole
 from core.errors import InputError, unknown
@@ -51,7 +51,7 @@ def driving(doc: Document, plant: type[Block]) -> dict[str, str]:
     asked[last] = (doc["controller"]["kind"], "controller.kind")
     chosen = {}
     for slot, (kind, path) in asked.items():
-        block = registry.block("control", kind, path)
+        block = library_of(doc).block("control", kind, path)
         if block.slot != slot and not misfit(block, plant):
             raise InputError(f"{block.name} stands in slot {block.slot}", path, f"choose one of slot {slot}")
         chosen[slot] = block.name
@@ -69,8 +69,8 @@ def suited(spec: Spec) -> Spec:
     *others, last = spec.driving
     fields = {
         "plant.model": plant,
-        **{f"slots.{slot}": registry.block("control", spec.driving[slot]) for slot in others},
-        "controller.kind": registry.block("control", spec.driving[last]),
+        **{f"slots.{slot}": spec.library.block("control", spec.driving[slot]) for slot in others},
+        "controller.kind": spec.library.block("control", spec.driving[last]),
         "sensor.kind": spec.sensors[spec.measuring].block,
     }
     if spec.is_analogue:
@@ -81,10 +81,10 @@ def suited(spec: Spec) -> Spec:
         reason = (misfit(block, plant) if block is not plant else "") or block.unsuited(*pair)
         if reason:
             raise InputError(f"{block.name}: {reason}", path)
-    present = faults_of(spec.axes)
+    present = faults_of(spec.library, spec.axes)
     for name in spec.faults:
         if name not in present:
-            raise InputError(f"{name} {misfit(registry.block('faults', name), plant)}", f"faults.{name}")
+            raise InputError(f"{name} {misfit(spec.library.block('faults', name), plant)}", f"faults.{name}")
     controllers, sensors = _for(pair, plant, spec.controllers), _for(pair, plant, spec.sensors)
     if controllers is spec.controllers and sensors is spec.sensors:
         return spec
@@ -97,7 +97,7 @@ def _refuse_held(spec: Spec) -> None:
         if not feeds_forward(spec.controllers[name].block, spec.axes):
             able = " or ".join(
                 name
-                for name, block in registry.blocks("control").items()
+                for name, block in spec.library.blocks("control").items()
                 if feeds_forward(block, spec.axes) and not misfit(block, spec.plant.block)
             )
             text = f"analogue is for {able} only: what {name} asks for is held over a sample"

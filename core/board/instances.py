@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cache
 from typing import Any, NamedTuple, cast
 
-from core import registry
 from core.block import Block, BlockParams, Context, FloatArray
+from core.board.library import Library
 from core.board.spec import Section, Spec
 from core.diagnose.hypothesis import ModelList
 from core.errors import InputError
@@ -42,17 +42,17 @@ class Instance(NamedTuple):
 
 
 @cache
-def faults_of(axes: tuple[str, ...]) -> dict[str, type[Block]]:
+def faults_of(library: Library, axes: tuple[str, ...]) -> dict[str, type[Block]]:
     """Return the faults that a plant with these axes may have, by name."""
-    return {name: block for name, block in registry.blocks("faults").items() if block.fits(axes)}
+    return {name: block for name, block in library.blocks("faults").items() if block.fits(axes)}
 
 
 @cache
-def _absent_faults(axes: tuple[str, ...]) -> dict[str, Instance]:
+def _absent_faults(library: Library, axes: tuple[str, ...]) -> dict[str, Instance]:
     """Return the faults that a plant with these axes may have, as they are while they are not there."""
     return {
         name: Instance(f"faults.{name}", f"faults.{name}", block, usual_params(block))
-        for name, block in faults_of(axes).items()
+        for name, block in faults_of(library, axes).items()
     }
 
 
@@ -65,7 +65,7 @@ def instances(spec: Spec) -> list[Instance]:
     """
     order = [_usual("plant", spec.plant), _usual("environment", spec.environment)]
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
-    for name, absent in _absent_faults(spec.axes).items():
+    for name, absent in _absent_faults(spec.library, spec.axes).items():
         order.append(absent._replace(params=spec.faults[name]) if name in spec.faults else absent)
     order += _measured(spec)
     order += [_waiting(spec, name, section) for name, section in spec.identifiers.items()]

@@ -8,11 +8,9 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from core import registry
 from core.block import Block, BlockParams
 from core.board.document import (
     CHOSEN,
-    IDENTIFIER,
     SILENT,
     Document,
     as_written,
@@ -25,6 +23,7 @@ from core.board.document import (
 )
 from core.board.fitting import driving, refuse_what_does_not_fit, suited
 from core.board.instances import instances
+from core.board.library import IDENTIFIER, Library, library_of
 from core.board.spec import OF_CONTEXT, Frame, Section, Spec, fields
 from core.device.catalogue import device as build_device
 from core.device.device import Device
@@ -95,6 +94,9 @@ def _sharing(doc: Document, other: Document) -> Document:
 
 def _parse(doc: Document, before: Spec | None) -> Spec:
     """Check a document in normal form; sections whose tables are those of another bench are taken from there."""
+    library = library_of(doc)
+    if before is not None and before.library is not library:
+        before = None  # a name may mean another block
     known = before.document if before is not None else {}
 
     def same(*keys: str) -> bool:
@@ -114,7 +116,7 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     else:
         device = build_device(doc["device"])
         known_parts = (before.plant, before.drive) if before is not None and same("plant", "drive") else None
-        plant, drive = known_parts or _driven(doc, device)
+        plant, drive = known_parts or _driven(library, doc, device)
         device = _fitted(device, plant)
         if before is not None and same("device") and before.device == device:
             device = before.device
@@ -132,25 +134,25 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
             return kept
         tables, old = doc.get(key, {}), known.get(key, {})
         for name in tables:
-            registry.block(family, name, key)
+            library.block(family, name, key)
         return {
             name: kept[name]
             if name in kept and tables.get(name) is old.get(name)
-            else _section(family, name, tables.get(name, {}), f"{key}.{name}")
-            for name, block in registry.blocks(family).items()
+            else _section(library, family, name, tables.get(name, {}), f"{key}.{name}")
+            for name, block in library.blocks(family).items()
             if block.fits(axes) or name in tables or name in in_use
         }
 
     def generator(key: str, family: str) -> Section:
         if before is not None and same(key) and key in before.generators:
             return before.generators[key]
-        return _chosen(family, doc[key], key)
+        return _chosen(library, family, doc[key], key)
 
     def chosen(key: str, family: str) -> dict[str, Section]:
         kept: dict[str, Section] = getattr(before, key, {})
         tables, old = doc.get(key, {}), known.get(key, {})
         return {
-            name: kept[name] if table is old.get(name) else _named(family, key, name, table)
+            name: kept[name] if table is old.get(name) else _named(library, family, key, name, table)
             for name, table in tables.items()
         }
 
@@ -161,11 +163,11 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         device=device,
         environment=alone("environment", Environment),
         plant=plant,
-        reference=before.reference if before is not None and same("reference") else _reference(doc),
+        reference=before.reference if before is not None and same("reference") else _reference(library, doc),
         model=alone("model", Model),
         drive=drive,
         guard=alone("guard", AxisGuard if axes else Guard),
-        measuring=_measuring(doc["sensor"]["kind"]),
+        measuring=_measuring(library, doc["sensor"]["kind"]),
         sensors=all_of("sensors", "sense"),
         driving=driving(doc, plant.block),
         generators={key: generator(key, family) for key, family in plant.block.generators.items()},
@@ -179,7 +181,7 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     return suited(spec)
 
 
-def _driven(doc: Document, device: Device) -> tuple[Section, Section]:
+def _driven(library: Library, doc: Document, device: Device) -> tuple[Section, Section]:
     """Return plant and drive: how the drive works may be said at the plant."""
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
@@ -190,7 +192,7 @@ def _driven(doc: Document, device: Device) -> tuple[Section, Section]:
             raise InputError(text, "drive.kind", "leave one of them out")
     if "model" not in plant:
         doc["plant"] = {**doc["plant"], "model": device.usual_plant}
-    section = _section("plant", plant.pop("model", device.usual_plant), plant, "plant", "model")
+    section = _section(library, "plant", plant.pop("model", device.usual_plant), plant, "plant", "model")
     stage = AxisDrive if section.block.axes else Drive
     return section, Section(stage, _params(stage, drive, "drive"))
 
@@ -202,9 +204,9 @@ def _fitted(device: Device, plant: Section) -> Device:
     return device if gap is None else device.model_copy(update={"finger_gap_um": gap})
 
 
-def _reference(doc: Document) -> Section:
+def _reference(library: Library, doc: Document) -> Section:
     """Return the reference, or one that does nothing where a bench has none."""
-    return _chosen("reference", doc.get("reference", SILENT), "reference")
+    return _chosen(library, "reference", doc.get("reference", SILENT), "reference")
 
 
 def _refuse_twice(named: list[tuple[str, str]]) -> None:
@@ -233,14 +235,14 @@ def _frame(values: Document) -> Frame:
         raise from_validation(error, {"": fields()}) from None
 
 
-def _chosen(family: str, table: Document, field: str) -> Section:
+def _chosen(library: Library, family: str, table: Document, field: str) -> Section:
     rest = dict(table)
     kind = rest.pop("kind", None)
-    return _section(family, kind, rest, field)
+    return _section(library, family, kind, rest, field)
 
 
-def _section(family: str, kind: object, table: Document, field: str, key: str = "kind") -> Section:
-    block = registry.block(family, kind, f"{field}.{key}")
+def _section(library: Library, family: str, kind: object, table: Document, field: str, key: str = "kind") -> Section:
+    block = library.block(family, kind, f"{field}.{key}")
     rest = dict(table)
     every = rest.pop("every", 1)
     if not isinstance(every, int) or isinstance(every, bool) or not 1 <= every <= 10000:
@@ -248,17 +250,17 @@ def _section(family: str, kind: object, table: Document, field: str, key: str = 
     return Section(block, _params(block, rest, field), every)
 
 
-def _measuring(kind: object) -> str:
-    block = registry.block("sense", kind, "sensor.kind")
+def _measuring(library: Library, kind: object) -> str:
+    block = library.block("sense", kind, "sensor.kind")
     if all(port.name != "displacement" for port in block.outputs):
         raise InputError(f"{block.name} puts out no displacement; choose a unit that recovers one", "sensor.kind")
     return block.name
 
 
-def _named(family: str, key: str, name: str, table: Document) -> Section:
+def _named(library: Library, family: str, key: str, name: str, table: Document) -> Section:
     if not IDENTIFIER.match(name):
         raise InputError("must be a short name of small letters, digits and _", f"{key}.{name}")
-    return _chosen(family, table, f"{key}.{name}")
+    return _chosen(library, family, table, f"{key}.{name}")
 
 
 def _params(block: type[Block], values: Document, field: str) -> BlockParams:

@@ -18,6 +18,7 @@ from numba.extending import intrinsic
 from core.block import Block, FloatArray, IntArray
 from core.board.fold import Words, fold, fold_uncompiled
 from core.kernel import compiled_step, inlined, kernel
+from core.own.apart import compiled_apart
 from core.ports import RESERVED, TICK, TIME_MS
 
 ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY = 0, 1, 2, 3, 4
@@ -35,7 +36,7 @@ def address(block: type[Block]) -> int:
     """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
     found = _addresses.get(block)
     if found is None:
-        found = compiled_step(block.step, block.Packed, block.State, block.Ports).address
+        found = compiled_step(compiled_apart(block).step, block.Packed, block.State, block.Ports).address
         _addresses[block] = found
     return found
 

@@ -13,6 +13,7 @@ from pydantic import Field
 
 from core.block import Block, BlockParams, Context, Oscillator
 from core.board.document import Document, sections
+from core.board.library import Library, library_of
 from core.device.device import Device
 from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
@@ -82,6 +83,11 @@ class Spec:
     diagnosers: dict[str, Section]
     readouts: dict[str, Section]
     faults: dict[str, BlockParams] = field(default_factory=dict)
+
+    @cached_property
+    def library(self) -> Library:
+        """The blocks it may have."""
+        return library_of(self.document)
 
     @property
     def dt_ms(self) -> float:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from core import registry
 from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch
+from core.board.library import Library
 from core.errors import short
 from core.format import format_short
 
 
-def describe(command: Command) -> str:
-    """Say in words what a command does."""
+def describe(command: Command, library: Library) -> str:
+    """Say in words what a command does on a bench with these blocks."""
     if isinstance(command, Inject):
         shape = "" if command.profile.kind == "step" else f", {command.profile.kind}"
         chosen = "".join(f", {name} {short(value)}" for name, value in command.parameters.items())
-        return f"inject {command.fault} {_severity(command)}{shape}{chosen}"
+        return f"inject {command.fault} {_severity(command, library)}{shape}{chosen}"
     if isinstance(command, Heal):
         return "heal all" if command.heal == "all" else f"heal {', '.join(command.heal)}"
     if isinstance(command, Set):
@@ -25,8 +25,8 @@ def describe(command: Command) -> str:
     return "reset after the trip"
 
 
-def _severity(command: Inject) -> str:
+def _severity(command: Inject, library: Library) -> str:
     """Return a severity with its sign and unit; a share has none."""
-    block = registry.blocks("faults").get(command.fault)
+    block = library.blocks("faults").get(command.fault)
     unit = block.outputs[0].unit if block is not None else "1"
     return f"{'' if command.severity < 0.0 else '+'}{format_short(command.severity, unit, 6)}"

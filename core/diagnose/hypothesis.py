@@ -65,6 +65,11 @@ class ModelList(BlockParams):
 
     hypotheses: Sequence[NamedModel]
 
+    @property
+    def count(self) -> int:
+        """How many models there are."""
+        return len(self.hypotheses)
+
     @model_validator(mode="after")
     def _distinct(self) -> Self:
         twice = [name for name, count in Counter(item.name for item in self.hypotheses).items() if count > 1]

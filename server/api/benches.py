@@ -7,6 +7,7 @@ from typing import Annotated, Any, Self
 from fastapi import APIRouter, Body, Query, Response
 from pydantic import BaseModel, Field, model_validator
 
+from core.own.admission import kept
 from scenarios.schema import Scenario
 from server.api.bodies import Body as StrictBody
 from server.api.bodies import StrictRoute
@@ -187,7 +188,8 @@ async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
         lambda: (document_of(session), session.board.tick, session.board.digest())
     )
     name = f'attachment; filename="{document["id"]}.toml"'
-    text = f"# {tick} ticks, digest {digest}\n{Scenario.load(document).toml()}"
+    with kept():
+        text = f"# {tick} ticks, digest {digest}\n{Scenario.load(document).toml()}"
     return Response(text, media_type="text/plain", headers={"Content-Disposition": name})
 
 

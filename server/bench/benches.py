@@ -15,6 +15,7 @@ from core.board.board import Board
 from core.board.history import History
 from core.errors import InputError
 from core.format import format_count
+from core.own.admission import kept_with
 from scenarios.schema import Scenario
 from server.bench.blind import Blind
 from server.bench.checkpoints import Kept
@@ -288,7 +289,8 @@ class Benches:
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}
-                scenario, board = await asyncio.to_thread(prepare, session.scenario.document, values, None)
+                with kept_with(command.values):
+                    scenario, board = await asyncio.to_thread(prepare, session.scenario.document, values, None)
                 event = await self._engine.call(session.reset, scenario, board, actor, command.before_tick)
             else:
                 event = await self._engine.call(session.execute, command, actor)

@@ -23,6 +23,7 @@ from core.board.board import Board
 from core.board.document import Document
 from core.board.stored import Stored, revived, stored
 from core.errors import InputError
+from core.own.admission import kept
 from scenarios.schema import Scenario
 from server.bench.blind import Blind
 from server.bench.engine import Engine
@@ -74,7 +75,8 @@ class Kept:
         """
         if self.head.version != THIS_VERSION:
             raise InputError(f"was kept by version {self.head.version}")
-        return Scenario.load(self.head.scenario), revived(self.stored)
+        with kept():
+            return Scenario.load(self.head.scenario), revived(self.stored)
 
     def put_into(self, session: Session) -> None:
         """Make a new bench the one that was kept."""

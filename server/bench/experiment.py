@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from core.board.board import Board
 from core.errors import InputError
+from core.own.admission import kept
 from scenarios.key import code_version
 from scenarios.run import build
 from scenarios.schema import Scenario
@@ -80,8 +81,9 @@ def rebuilt(experiment: Experiment, most_ticks: int) -> tuple[Scenario, Board]:
         text = f"it has run for {experiment.tick} ticks; at most {most_ticks} are repeated (max_run_ticks)"
         raise ApiError(409, "too_long", text, hint="open its scenario instead, from tick 0")
     try:
-        scenario = Scenario.load(experiment.scenario)
-        return scenario, build(Scenario.load({**experiment.scenario, "events": experiment.events}))
+        with kept():
+            scenario = Scenario.load(experiment.scenario)
+            return scenario, build(Scenario.load({**experiment.scenario, "events": experiment.events}))
     except InputError as error:
         text = f"this version cannot repeat it: {error}"
         raise ApiError(409, "conflict", text, hint=f"it was made with {experiment.version}") from None

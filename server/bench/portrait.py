@@ -73,7 +73,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         ],
         pending=[
             Pending(
-                text=describe(entry.command),
+                text=describe(entry.command, board.spec.library),
                 actor=entry.actor,
                 tick=entry.tick,
                 when=entry.command.when,

@@ -10,6 +10,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 
 from core.errors import InputError
+from core.own.admission import kept
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, Loop, RunsBench, Seek, Start
@@ -33,8 +34,9 @@ def played(recording: RecordingDetail, path: Path) -> tuple[Scenario, Tape, floa
         If this version cannot read its scenario.
     """
     try:
-        scenario = Scenario.load(recording.scenario or {})
-        tape = Tape(build(scenario), path)
+        with kept():
+            scenario = Scenario.load(recording.scenario or {})
+            tape = Tape(build(scenario), path)
     except InputError as error:
         text = f"this version cannot play it: {error}"
         raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from core.own.admission import kept
 from scenarios.campaign.campaign import Campaign
 from scenarios.campaign.single import single
 from scenarios.key import content_hash, run_key
@@ -68,8 +69,10 @@ class Jobs(Requested[Run]):
         """Return a run as a campaign; it is carried out on this machine."""
         folder = self._requests.folders[self.kind] / row.id
         await asyncio.to_thread(shutil.rmtree, folder, ignore_errors=True)
+        with kept():
+            one = await asyncio.to_thread(lambda: single(Scenario.load(row.document), row.seeds or []))
         return Campaign(
-            await asyncio.to_thread(lambda: single(Scenario.load(row.document), row.seeds or [])),
+            one,
             self._queue.results,
             processes=self._queue.processes,
             trace=Keep(str(folder), self._settings.max_run_mb * 1_000_000, row.everything),

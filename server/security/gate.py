@@ -14,6 +14,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
+from core.own.admission import admit
 from server.bench.blind import HINT, REFUSAL
 from server.errors import SHARD, ApiError, ErrorBody, reply
 from server.people.access import SOCKET, Need, need_of, serves_blind
@@ -61,6 +62,8 @@ class Gate:
         The prefix a proxy takes off every path.
     frames : Frames, optional
         The doors of learning platforms, if there are any.
+    units : str
+        Whose scenarios may carry units of their own: nobody's (``off``), or those of the teacher.
     """
 
     def __init__(
@@ -74,10 +77,11 @@ class Gate:
         open_paths: frozenset[str] = frozenset(),
         prefix: str = "",
         frames: Frames | None = None,
+        units: str = "teacher",
     ) -> None:
         self._app, self._identity, self._people, self._driving = app, identity, people, driving
         self._origin, self._is_blind = origin, is_blind
-        self._open, self._prefix, self._frames = open_paths, prefix, frames
+        self._open, self._prefix, self._frames, self._units = open_paths, prefix, frames, units
         self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE)
         self._sockets: Counter[str] = Counter()
 
@@ -88,6 +92,7 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         person = scope["person"] = self._person(connection)
+        admit(self._units_refused(person))
         is_post_of_others = scope["type"] == "http" and self._frames is not None and scope["path"] in self._frames.posts
         refusal = self._origin.refusal(connection, self._has_bearer(connection), is_post_of_others)
         if refusal:
@@ -126,6 +131,12 @@ class Gate:
         if self._identity.knows(connection):
             return TEACHER
         return self._people.by_secret(self._identity.session_of(connection))
+
+    def _units_refused(self, person: Person | None) -> str:
+        """Return why this person may not bring units of their own; nothing where they may."""
+        if self._units == "off":
+            return "this server takes no units of one's own"
+        return "" if person is not None and person.is_teacher else "only the teacher may bring units of their own"
 
     def _is_open(self, scope: Scope) -> bool:
         """Whether a path needs no session; in a frame browsers send none with the files of the page."""

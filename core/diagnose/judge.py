@@ -1,0 +1,40 @@
+r"""Base of diagnosers that weigh hypotheses in a way of their own.
+
+It knows the hypotheses and puts out a probability for each; everything between is the diagnoser's.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from core.block import Block, BlockParams, Oscillator
+from core.diagnose.hypothesis import BankParams, lacking
+from core.ports import output, tap
+from core.record import Choice, Record, Vector
+from core.voltage import ObservedPorts
+
+
+class Judge(Block):
+    """A diagnoser that chooses between hypotheses; its step runs once for each measurement.
+
+    It may leave `residual` and `nis` at 0.
+    """
+
+    Params: ClassVar[type[BlockParams]] = BankParams
+
+    class Packed(Record):
+        """How many hypotheses there are."""
+
+        count: Choice
+
+    class Ports(ObservedPorts):
+        """What was measured and applied; the probability of every hypothesis."""
+
+        probability: Vector = output("1", "probability of the hypothesis", each="hypotheses")
+        residual: Vector = tap("um", "what the hypothesis does not say", each="hypotheses")
+        nis: Vector = tap("1", "square of the residual over what it should be", each="hypotheses")
+
+    @classmethod
+    def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
+        """Refuse plants without mass or spring."""
+        return lacking(device)

@@ -1,0 +1,38 @@
+"""Compiling units of one's own: elsewhere first, so that a step that is slow to compile keeps nobody waiting."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+from core.block import Block
+
+Compiler = Callable[[str, str], None]
+"""Compiles a unit, by name and text, and puts its code where kernels are kept."""
+
+_compilers: list[Compiler] = []
+
+
+def compile_by(compiler: Compiler | None) -> None:
+    """Name who compiles units; without anyone, each process does so itself."""
+    _compilers[:] = [] if compiler is None else [compiler]
+    _compiled.cache_clear()
+
+
+def compiled_apart(block: type[Block]) -> type[Block]:
+    """Return a block whose code is kept already if it is a unit of one's own.
+
+    Raises
+    ------
+    InputError
+        When it takes too long, or too much memory.
+    """
+    if block.text:
+        _compiled(block.name, block.text)
+    return block
+
+
+@cache
+def _compiled(name: str, text: str) -> None:
+    for compiler in _compilers:
+        compiler(name, text)

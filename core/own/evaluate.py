@@ -1,0 +1,252 @@
+"""Works out what a unit declares and packs: numbers, texts, records, in a bounded number of operations.
+
+It walks the syntax tree. Every kind of node, every attribute and every function is one of a list; nothing leads from a
+value to anything else.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from core.block import Block, BlockParams, Context, Oscillator
+from core.errors import InputError
+from core.own.offered import MATHEMATICS
+from core.own.text import refuse
+from core.own.values import BINARY, COMPARED, MADE, Above, Mathematics, Own, as_float, as_read, is_number, public, whole
+from core.record import RECORD, SCALAR, Record, Records
+
+MOST_OPERATIONS = 200_000
+MOST_ITEMS = 10_000
+
+
+class Evaluator:
+    """Evaluates expressions and runs methods.
+
+    Parameters
+    ----------
+    names : dict
+        What names mean outside functions.
+    """
+
+    def __init__(self, names: dict[str, Any]) -> None:
+        self.names = names
+        self._left = MOST_OPERATIONS
+
+    def constant(self, node: ast.expr) -> Any:
+        """Return the value of an expression of a declaration."""
+        self._left = MOST_OPERATIONS
+        return self.value(node, {})
+
+    def call(self, function: ast.FunctionDef, arguments: Sequence[Any], block: type[Block]) -> Any:
+        """Run a method of the unit and return what it returns."""
+        self._left = MOST_OPERATIONS
+        local = {argument.arg: value for argument, value in zip(function.args.args, arguments, strict=True)}
+        _, result = self._run(function.body, {**local, "super": lambda: Above(block)})
+        return result
+
+    def _run(self, body: Sequence[ast.stmt], local: dict[str, Any]) -> tuple[bool, Any]:
+        """Run statements; say whether they returned, and what."""
+        for node in body:
+            self._count(node)
+            if isinstance(node, ast.Return):
+                return True, self.value(node.value, local) if node.value is not None else None
+            if isinstance(node, ast.If):
+                ended, result = self._run(node.body if self.value(node.test, local) else node.orelse, local)
+                if ended:
+                    return True, result
+            elif isinstance(node, ast.For) and not node.orelse:
+                for item in self._items(self.value(node.iter, local), node):
+                    self._store(node.target, item, local)
+                    ended, result = self._run(node.body, local)
+                    if ended:
+                        return True, result
+            elif isinstance(node, ast.Assign):
+                value = self.value(node.value, local)
+                for target in node.targets:
+                    self._store(target, value, local)
+            elif isinstance(node, ast.AnnAssign) and node.value is not None:
+                self._store(node.target, self.value(node.value, local), local)
+            elif isinstance(node, ast.AugAssign):
+                before = self.value(as_read(node.target), local)
+                self._store(node.target, self._binary(node, node.op, before, self.value(node.value, local)), local)
+            elif isinstance(node, ast.Expr):
+                self.value(node.value, local)
+            elif not isinstance(node, ast.Pass):
+                refuse(node, f"a statement {type(node).__name__} cannot stand here")
+        return False, None
+
+    def value(self, node: ast.expr, local: dict[str, Any]) -> Any:
+        """Return the value of an expression."""
+        self._count(node)
+        method = getattr(self, f"_{type(node).__name__.lower()}", None)
+        if method is None:
+            refuse(node, f"an expression {type(node).__name__} cannot stand here")
+        try:
+            return method(node, local)
+        except InputError:
+            raise
+        except (ArithmeticError, ValueError, TypeError, IndexError, AttributeError) as error:
+            refuse(node, f"cannot be worked out: {error}")
+
+    def _count(self, node: ast.AST) -> None:
+        self._left -= 1
+        if self._left < 0:
+            refuse(node, f"takes more than {MOST_OPERATIONS} operations")
+
+    def _constant(self, node: ast.Constant, local: dict[str, Any]) -> Any:
+        if isinstance(node.value, bool | float | str) or node.value is None:
+            return node.value
+        return whole(node, node.value) if isinstance(node.value, int) else refuse(node, "is no number and no text")
+
+    def _name(self, node: ast.Name, local: dict[str, Any]) -> Any:
+        if node.id in local:
+            return local[node.id]
+        if node.id in self.names:
+            return self.names[node.id]
+        return refuse(node, f"{node.id} is not declared")
+
+    def _attribute(self, node: ast.Attribute, local: dict[str, Any]) -> Any:
+        owner, name = self.value(node.value, local), node.attr
+        if isinstance(owner, Mathematics) and name in MATHEMATICS:
+            return MATHEMATICS[name]
+        if isinstance(owner, Own) and name in ("Packed", "State"):
+            return getattr(owner.block, name)
+        if isinstance(owner, Above) and name in ("pack", "state"):
+            base = getattr(super(owner.block, owner.block), name)
+            return lambda params, context: base(params, context)
+        if isinstance(owner, type) and issubclass(owner, Record) and name in ("blank", "zeros"):
+            made = getattr(owner, name)
+            return lambda: made()
+        if isinstance(owner, Record) and name in {field.name for field in owner.layout.fields}:
+            return getattr(owner, name)
+        if isinstance(owner, BlockParams) and name in type(owner).model_fields:
+            return getattr(owner, name)
+        if isinstance(owner, Context | Oscillator) and name in public(owner):
+            fact = getattr(owner, name)
+            if fact is None or isinstance(fact, int | float | str | tuple | Oscillator | BlockParams):
+                return fact
+        return refuse(node, f"has no {name} that a unit may read")
+
+    def _subscript(self, node: ast.Subscript, local: dict[str, Any]) -> Any:
+        owner, index = self.value(node.value, local), self.value(node.slice, local)
+        self._check_index(node, owner, index)
+        return owner[index]
+
+    def _tuple(self, node: ast.Tuple, local: dict[str, Any]) -> Any:
+        return tuple(self.value(part, local) for part in node.elts)
+
+    def _list(self, node: ast.List, local: dict[str, Any]) -> Any:
+        return [self.value(part, local) for part in node.elts]
+
+    def _listcomp(self, node: ast.ListComp | ast.GeneratorExp, local: dict[str, Any]) -> Any:
+        if len(node.generators) != 1 or node.generators[0].is_async:
+            refuse(node, "has more than one for")
+        generator, found = node.generators[0], []
+        inner = dict(local)
+        for item in self._items(self.value(generator.iter, local), node):
+            self._store(generator.target, item, inner)
+            if all(self.value(test, inner) for test in generator.ifs):
+                found.append(self.value(node.elt, inner))
+        return found
+
+    _generatorexp = _listcomp
+
+    def _binop(self, node: ast.BinOp, local: dict[str, Any]) -> Any:
+        return self._binary(node, node.op, self.value(node.left, local), self.value(node.right, local))
+
+    def _binary(self, node: ast.AST, sign: ast.operator, left: Any, right: Any) -> Any:
+        if type(sign) not in BINARY or not (is_number(left) and is_number(right)):
+            refuse(node, "is no arithmetic of two numbers")
+        if isinstance(sign, ast.Pow) and abs(right) > MOST_ITEMS:
+            refuse(node, "has an exponent that is too large")
+        if isinstance(sign, ast.Pow) and isinstance(left, int):
+            left = float(left)
+        result = BINARY[type(sign)](left, right)
+        return whole(node, result) if isinstance(result, int) else result
+
+    def _unaryop(self, node: ast.UnaryOp, local: dict[str, Any]) -> Any:
+        value = self.value(node.operand, local)
+        if isinstance(node.op, ast.Not):
+            return not value
+        if isinstance(node.op, ast.Invert) or not is_number(value):
+            refuse(node, "is no sign of a number")
+        return -value if isinstance(node.op, ast.USub) else +value
+
+    def _boolop(self, node: ast.BoolOp, local: dict[str, Any]) -> Any:
+        value: Any = None
+        for part in node.values:
+            value = self.value(part, local)
+            if bool(value) is isinstance(node.op, ast.Or):
+                break
+        return value
+
+    def _compare(self, node: ast.Compare, local: dict[str, Any]) -> Any:
+        left = self.value(node.left, local)
+        for sign, part in zip(node.ops, node.comparators, strict=True):
+            right = self.value(part, local)
+            if type(sign) not in COMPARED:
+                refuse(node, f"a comparison {type(sign).__name__} cannot stand here")
+            if not COMPARED[type(sign)](left, right):
+                return False
+            left = right
+        return True
+
+    def _ifexp(self, node: ast.IfExp, local: dict[str, Any]) -> Any:
+        return self.value(node.body if self.value(node.test, local) else node.orelse, local)
+
+    def _call(self, node: ast.Call, local: dict[str, Any]) -> Any:
+        function = self.value(node.func, local)
+        if any(isinstance(argument, ast.Starred) for argument in node.args) or any(not k.arg for k in node.keywords):
+            refuse(node, "passes on a list of arguments")
+        arguments = [self.value(argument, local) for argument in node.args]
+        named = {str(keyword.arg): self.value(keyword.value, local) for keyword in node.keywords}
+        if not callable(function) or (isinstance(function, type) and function not in MADE):
+            refuse(node, "is called and is no function")
+        if function is range and len(range(*arguments)) > MOST_ITEMS:
+            refuse(node, f"counts more than {MOST_ITEMS}")
+        result = function(*arguments, **named)
+        if isinstance(result, int) and not isinstance(result, bool):
+            return whole(node, result)
+        return list(self._items(result, node)) if isinstance(result, zip | enumerate | range) else result
+
+    def _items(self, value: Any, node: ast.AST) -> Sequence[Any]:
+        if not isinstance(value, list | tuple | range | zip | enumerate):
+            refuse(node, "goes over something that is no list")
+        items = list(value)
+        return items if len(items) <= MOST_ITEMS else refuse(node, f"has more than {MOST_ITEMS} items")
+
+    def _store(self, target: ast.expr, value: Any, local: dict[str, Any]) -> None:
+        if isinstance(target, ast.Name):
+            local[target.id] = value
+        elif isinstance(target, ast.Tuple):
+            values = self._items(value, target)
+            if len(values) != len(target.elts):
+                refuse(target, f"takes {len(target.elts)} values and is given {len(values)}")
+            for part, one in zip(target.elts, values, strict=True):
+                self._store(part, one, local)
+        elif isinstance(target, ast.Attribute):
+            owner = self.value(target.value, local)
+            if not isinstance(owner, Record) or target.attr not in {field.name for field in owner.layout.fields}:
+                refuse(target, f"has no {target.attr} that a unit may write")
+            kind = next(field.kind for field in owner.layout.fields if field.name == target.attr)
+            if kind not in (SCALAR, RECORD) or isinstance(value, Record) != (kind == RECORD):
+                refuse(target, "is given something of another kind")
+            setattr(owner, target.attr, value if isinstance(value, Record) else as_float(target, value))
+        elif isinstance(target, ast.Subscript):
+            owner, index = self.value(target.value, local), self.value(target.slice, local)
+            if not isinstance(owner, np.ndarray):
+                refuse(target, "is no vector")
+            self._check_index(target, owner, index)
+            owner[index] = as_float(target, value)
+        else:
+            refuse(target, "cannot be assigned to")
+
+    def _check_index(self, node: ast.AST, owner: Any, index: Any) -> None:
+        if not isinstance(owner, list | tuple | np.ndarray | Records) or isinstance(index, bool):
+            refuse(node, "is no vector and no list")
+        if not isinstance(index, int) or not 0 <= index < len(owner):
+            refuse(node, f"has no item {index!r}; there are {len(owner)}, from 0")

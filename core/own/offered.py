@@ -1,0 +1,61 @@
+"""What a unit of one's own may import: names of the library, each by name.
+
+A unit never imports a module. A line ``from core.elementary import exp`` says which of the names below it means.
+Kernels among them take numbers, or records whose class they name; none reads an index from its data.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from functools import cache
+from typing import Any
+
+CONTROL = (
+    *("ControllerPorts", "FeedForwardPorts", "ReferencePorts", "EngagedPorts"),
+    *("Coefficients", "NormalisedPacked", "Lag", "FIRST_ORDER"),
+    *("normalised", "coefficients", "first_order", "fill_normalised", "model_filter", "lag"),
+    *("unsuited_order", "unsuited_second_order", "advance_lag", "matching", "saturated"),
+)
+DIAGNOSE = ("Hypothesis", "BankParams", "SEVEN_STEP", "assumed_noise", "lacking")
+
+OFFERED: dict[str, tuple[str, ...]] = {
+    "__future__": ("annotations",),
+    "typing": ("Any", "Literal"),
+    "core.block": ("Block", "BlockParams", "Context", "Equation", "Oscillator", "parameter"),
+    "core.record": ("Choice", "Record", "Records", "Vector", "several", "vector"),
+    "core.ports": ("BlockPorts", "output", "reads", "tap"),
+    "core.kernel": ("flush_tiny", "inlined", "kernel"),
+    "core.elementary": ("atan2", "cos", "exp", "expm1", "floor", "log", "sin", "sin_of_turns", "tanh"),
+    "core.noise": ("key", "normal", "uniform"),
+    "core.voltage": ("AppliedPorts", "MeasuredPorts", "ObservedPorts", "Tick"),
+    "core.control.controller": CONTROL,
+    "core.reference.waveform": ("ReferenceParams", "Waveform", "line"),
+    "core.faults.fault": (
+        *("Fault", "FaultParams", "PackedFault", "ScaleFault"),
+        *("INTERMITTENT", "RAMP", "STEP", "effect", "severity", "severity_now"),
+    ),
+    "core.sense.sensor": (
+        *("Sensor", "SensorParams", "ERROR_PORT", "LAST_PORT", "RECOVERED_PORT", "TRUE_PORT"),
+        "begin_at",
+    ),
+    "core.diagnose.hypothesis": DIAGNOSE,
+    "core.diagnose.judge": ("Judge",),
+    "core.diagnose.lanes": ("LANE",),
+    "core.device.oscillator": ("held", "transition"),
+    "core.device.ranges": ("Sized",),
+}
+
+MATHEMATICS = {"sqrt": math.sqrt, "copysign": math.copysign, "isfinite": math.isfinite, "pi": math.pi, "inf": math.inf}
+"""What ``math`` offers: what a processor computes exactly by itself, and two numbers."""
+
+BUILTINS: dict[str, Any] = {
+    **{"abs": abs, "min": min, "max": max, "float": float, "int": int, "bool": bool, "range": range, "str": str},
+    **{"len": len, "round": round, "sum": sum, "zip": zip, "enumerate": enumerate, "list": list, "tuple": tuple},
+}
+
+
+@cache
+def offered(module: str, name: str) -> Any:
+    """Return a name that is offered; the caller has looked it up in the table."""
+    return getattr(importlib.import_module(module), name)

@@ -1,0 +1,62 @@
+"""Signals that a unit of one's own may be wired to: those that a device in a laboratory would show, none of the truth.
+
+A sensor senses the plant and a fault changes it, so they alone see it; neither may drive or judge.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+
+from core.loop.effects import Effects
+from core.own.text import refuse
+from core.ports import INPUT, BlockPorts
+
+MOST_LABELS = 64
+LONGEST_TEXT = 300
+IDENTIFIER = re.compile(r"[a-z][a-z0-9_]{0,31}")
+DRIVEN = ("drive.voltage", "drive.middle", "drive.end")
+REFERENCE = ("reference.voltage", "reference.middle", "reference.end")
+MEASURED = ("sensor.displacement",)
+
+PUBLIC: dict[str, tuple[str, ...]] = {
+    "reference": (),
+    "control": (*REFERENCE, "model.displacement", "model.velocity", *MEASURED, *DRIVEN, "@engaged"),
+    "diagnose": (*MEASURED, *DRIVEN, *REFERENCE),
+    "sense": ("plant.displacement", "plant.velocity", *MEASURED),
+    "faults": (*(f"effects.{port.name}" for port in Effects.outputs), *DRIVEN),
+}
+"""Sources of the inputs of each family."""
+
+FIRST_OUTPUTS = {
+    "control": ("voltage",),
+    "sense": ("displacement",),
+    "diagnose": ("probability",),
+    "faults": ("severity",),
+}
+"""Outputs that a unit of a family must have, for others read them."""
+
+
+def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
+    """Refuse ports that a unit of this family may not have."""
+    for port in ports.declared:
+        if port.kind == INPUT and port.source.removesuffix("?") not in PUBLIC[family]:
+            refuse(
+                node, f"{port.name} reads {port.source}, which a unit of {family} may not; docs/own-units.md lists what"
+            )
+        if port.each not in ("", "hypotheses") or (port.each and family != "diagnose"):
+            refuse(node, f"{port.name} has a number for each {port.each}; a diagnoser may say hypotheses")
+        if port.vector and not port.labels and not port.each:
+            refuse(node, f"{port.name} is a vector without labels")
+        if bool(port.labels or port.each) != port.vector:
+            refuse(node, f"{port.name} has labels and is no Vector")
+        if len(port.labels) > MOST_LABELS or any(not IDENTIFIER.fullmatch(label) for label in port.labels):
+            refuse(node, f"{port.name} has labels that are no names of small letters, digits and _")
+        if max(map(len, (port.name, port.unit, port.meaning, port.warning))) > LONGEST_TEXT:
+            refuse(node, f"{port.name} has a text of more than {LONGEST_TEXT} characters")
+        if port.vector and port.kind == INPUT:
+            refuse(node, f"{port.name} is a vector that is read")
+    names = {port.name for port in ports.declared}
+    for name in FIRST_OUTPUTS.get(family, ()):
+        if name not in names:
+            refuse(node, f"has no output {name}, which others read")

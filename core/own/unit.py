@@ -1,0 +1,234 @@
+"""A unit of one's own: its text, checked, as a block like any other."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import linecache
+import math
+from collections.abc import Callable
+from dataclasses import astuple, dataclass
+from functools import lru_cache
+from types import FunctionType
+from typing import Any, cast
+
+import numpy as np
+
+from core.block import Block, BlockParams, Context, Equation, FloatArray
+from core.control.controller import EngagedPorts
+from core.diagnose.hypothesis import BankParams
+from core.diagnose.judge import Judge
+from core.errors import InputError
+from core.faults.fault import Fault
+from core.kernel import kernel
+from core.own.declare import Declaration
+from core.own.evaluate import Evaluator
+from core.own.kinds import NOTHING, NUMBER, Kind, Part, Signals
+from core.own.public import check_ports
+from core.own.steps import Steps
+from core.own.text import UnitError, read, refuse
+from core.own.values import Own
+from core.reference.waveform import Waveform
+from core.registry import blocks
+from core.sense.sensor import Sensor
+
+BASES: tuple[tuple[type[Block], str], ...] = (
+    (Waveform, "reference"),
+    (Fault, "faults"),
+    (Sensor, "sense"),
+    (Judge, "diagnose"),
+)
+"""What a unit is, by its base; one on ``Block`` with the ports of a controller is a controller."""
+
+ATTRIBUTES = {"title": str, "equations": tuple, "weaknesses": tuple, "group": str, "place": int, "changes": str}
+FAULT_ATTRIBUTES = {"shows": str, "suggested": float, "axes": type(None)}
+LONGEST_TEXT = 2000
+OF_BENCH = ("cls", "params", "context")
+METHODS = {
+    **dict.fromkeys(("pack", "state", "noise_um", "ambiguity_um"), OF_BENCH),
+    "unsuited": ("cls", "device", "model"),
+    **dict.fromkeys(("lines", "tone_hz"), ("cls", "params")),
+}
+RETURNED: dict[str, tuple[type[Any] | tuple[type[Any], ...], str]] = {
+    "unsuited": (str, "a text"),
+    "lines": (list, "a list of lines"),
+    **dict.fromkeys(("noise_um", "ambiguity_um", "tone_hz"), ((int, float), "a number")),
+}
+RUN = {"__builtins__": {"range": range, "float": float, "int": int, "abs": abs, "min": min, "max": max}}
+"""All that the code of a step can name beside what it uses of the library."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A checked unit.
+
+    Attributes
+    ----------
+    family, name, source : str
+        Where it belongs, what it is called, its text.
+    block : type of Block
+        The unit as the library would have it.
+    operations : int
+        Most operations of a sample.
+    """
+
+    family: str
+    name: str
+    source: str
+    block: type[Block]
+    operations: int
+
+    @property
+    def hash(self) -> str:
+        """What its text is known by."""
+        return hashlib.sha256(self.source.encode()).hexdigest()
+
+
+@lru_cache(maxsize=256)
+def unit(name: str, source: str) -> Unit:
+    """Check the text of a unit and return it.
+
+    Raises
+    ------
+    UnitError
+        Naming line and column.
+    """
+    tree = read(source)
+    mark = hashlib.sha256(source.encode()).hexdigest()[:12]
+    declared = Declaration(tree, f"core.own.{name}_{mark}")
+    node = cast(ast.ClassDef, declared.node)
+    family = _family(declared)
+    declared_ports = declared.inner.get("Ports", declared.base.Ports)
+    check_ports(node, family, declared_ports)
+    packed = declared.inner.get("Packed", declared.base.Packed)
+    state = declared.inner.get("State", declared.base.State)
+    steps = Steps(declared.names, Judge.Packed if issubclass(declared.base, Judge) else None)
+    space: dict[str, Any] = {
+        **_attributes(declared, family),
+        **declared.inner,
+        "text": source,
+        "__module__": f"own.{family}.{name}",
+        "__doc__": declared.values["__doc__"],
+    }
+    space |= _methods(declared)
+    kinds: list[Kind] = [Part(packed, False), Part(state, True), Signals(declared_ports)]
+    entry, result = "step", cast(Kind, NOTHING)
+    if family == "reference":
+        entry, kinds, result = "shape", [Part(packed, False), NUMBER], NUMBER
+    method = declared.methods.get(entry)
+    if method is not None:
+        returned = steps.function(method, kinds, entry)
+        if returned != result:
+            refuse(method, f"{entry} returns a number" if result == NUMBER else f"{entry} returns nothing")
+        function = _function(steps, entry, name, mark)
+        space[entry] = staticmethod(kernel(function) if family == "reference" else function)
+    elif getattr(declared.base, entry) is getattr(Block if family != "reference" else Waveform, entry):
+        refuse(node, f"has no {entry}")
+    try:
+        block = type(node.name, (declared.base,), space)
+        own = Unit(family, name, source, block, steps.last_cost)
+    except (TypeError, ValueError) as error:
+        raise UnitError(f"cannot be declared: {error}", node.lineno, 1) from None
+    return own
+
+
+def _family(declared: Declaration) -> str:
+    """Return what a unit is."""
+    for base, family in BASES:
+        if issubclass(declared.base, base):
+            return family
+    ports = declared.inner.get("Ports", declared.base.Ports)
+    if declared.base is Block and issubclass(ports, EngagedPorts):
+        return "control"
+    if declared.base is Block and any(port.source.startswith("plant.") for port in ports.declared):
+        return "sense"
+    node = cast(ast.ClassDef, declared.node)
+    bases = ", ".join(base.__name__ for base, _ in BASES)
+    return refuse(
+        node, f"is none of these: a Block with ControllerPorts, a Block that reads the plant, or on one of {bases}"
+    )
+
+
+def _attributes(declared: Declaration, family: str) -> dict[str, Any]:
+    """Return the attributes of the class, each of its kind."""
+    node = cast(ast.ClassDef, declared.node)
+    allowed = ATTRIBUTES | (FAULT_ATTRIBUTES if family == "faults" else {})
+    found = {name: value for name, value in declared.values.items() if name != "__doc__"}
+    for name, value in found.items():
+        if name not in allowed:
+            refuse(node, f"{name} is no attribute of a unit; allowed: {', '.join(allowed)}")
+        parts = value if isinstance(value, tuple) else (value,)
+        inner = Equation if name == "equations" else str
+        if not isinstance(value, allowed[name]) or (
+            isinstance(value, tuple) and not all(type(p) is inner for p in parts)
+        ):
+            refuse(node, f"{name} must be {allowed[name].__name__}")
+        for part in parts:
+            texts = astuple(part) if isinstance(part, Equation) else (part,) if isinstance(part, str) else ()
+            if any(not isinstance(text, str) or len(text) > LONGEST_TEXT for text in texts):
+                refuse(node, f"{name} has a text of more than {LONGEST_TEXT} characters")
+    shown = sorted({block.shows for block in blocks("faults").values()})
+    if family == "faults" and found.get("shows") not in shown:
+        refuse(node, f"shows must be one of {', '.join(shown)}")
+    if not found.get("title") or len(found["title"]) > 80:
+        refuse(node, "needs a title of at most 80 characters")
+    return found
+
+
+def _methods(declared: Declaration) -> dict[str, Any]:
+    """Return the methods that pack, begin and refuse, each worked out by walking its tree."""
+    entry = ("step", "shape")
+    made: dict[str, Any] = {}
+    for name, node in declared.methods.items():
+        if name in entry:
+            continue
+        if name not in METHODS:
+            refuse(node, f"{name} is no method of a unit; allowed: {', '.join((*METHODS, *entry))}")
+        if [argument.arg for argument in node.args.args] != list(METHODS[name]):
+            refuse(node, f"takes {', '.join(METHODS[name])}")
+        made[name] = classmethod(_worked_out(name, node, declared.names))
+    made["packed"] = classmethod(_packed)
+    return made
+
+
+def _worked_out(name: str, node: ast.FunctionDef, names: dict[str, Any]) -> Callable[..., Any]:
+    def method(cls: type[Block], *arguments: Any) -> Any:
+        result = Evaluator(names).call(node, (Own(cls), *arguments), cls)
+        packed = {"pack": (cls.Packed, "a Packed"), "state": (cls.State, "a State")}
+        kind, words = (packed | RETURNED)[name]
+        return result if isinstance(result, kind) else refuse(node, f"must return {words}")
+
+    return method
+
+
+def _packed(cls: type[Block], params: BlockParams, context: Context) -> FloatArray:
+    """Return the numbers the step reads, once each of them is one."""
+    try:
+        numbers: FloatArray = cls.__mro__[1].packed.__func__(cls, params, context)  # type: ignore[attr-defined]
+    except (TypeError, ValueError, ArithmeticError) as error:
+        raise error if isinstance(error, InputError) else InputError(str(error)) from None
+    if issubclass(cls, Judge):
+        cls.Packed(numbers).count = cast(BankParams, params).count  # loops go so far: it is not the unit's to say
+    if np.isnan(numbers).any():
+        raise InputError("pack leaves a number that is none")
+    return numbers
+
+
+def _function(steps: Steps, entry: str, name: str, mark: str) -> FunctionType:
+    """Return the checked functions as Python's own, to be compiled; nothing of them has run."""
+    tree = ast.fix_missing_locations(ast.Module(list(steps.written), []))
+    text = ast.unparse(tree)
+    file = f"<unit {name} {mark}>"
+    linecache.cache[file] = (
+        len(text),
+        None,
+        text.splitlines(keepends=True),
+        file,
+    )  # for whatever reads the source again
+    used = {**steps.used, "_sqrt": math.sqrt, "_copysign": math.copysign, "_isfinite": math.isfinite}
+    space: dict[str, Any] = {**RUN, **used, "__name__": "core.own"}
+    exec(compile(text, file, "exec"), space)  # defines functions, calls none
+    for written in steps.written[:-1]:
+        space[written.name] = kernel(space[written.name])
+    function: FunctionType = space[entry]
+    return function

@@ -1,0 +1,85 @@
+"""Values that declarations are made of: which there are, and what can be done with them."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from core.block import Block, Equation, Oscillator
+from core.own.text import refuse
+
+MOST_INTEGER = 2**53
+
+BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+    ast.Pow: operator.pow,
+}
+COMPARED: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+}
+MADE = (bool, enumerate, Equation, float, int, list, Oscillator, range, tuple, zip)
+"""Classes that may be called."""
+
+
+class Mathematics:
+    """The module ``math``, as far as it is offered."""
+
+
+class Own:
+    """The class of the unit, seen from its own methods: its ``Packed`` and its ``State``."""
+
+    def __init__(self, block: type[Block]) -> None:
+        self.block = block
+
+
+class Above:
+    """The classes a unit is based on: their ``pack`` and ``state``."""
+
+    def __init__(self, block: type[Block]) -> None:
+        self.block = block
+
+
+def public(owner: Any) -> set[str]:
+    """Return what can be read of facts of the bench: fields, and properties, none of them a function."""
+    named = {entry.name for entry in fields(owner)} if is_dataclass(owner) else set()
+    return named | {name for name in dir(type(owner)) if isinstance(getattr(type(owner), name), property)}
+
+
+def is_number(value: Any) -> bool:
+    """Say whether a value is a number, and no condition."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def whole(node: ast.AST, value: int) -> int:
+    """Return a whole number, or refuse it when a float64 could not hold it."""
+    return value if abs(value) <= MOST_INTEGER else refuse(node, "is a whole number beyond 2^53")
+
+
+def as_float(node: ast.AST, value: Any) -> float:
+    """Return a number to be packed."""
+    if not isinstance(value, int | float):
+        refuse(node, "is given something that is no number")
+    return math.nan if math.isnan(value) else float(value)
+
+
+def as_read(target: ast.expr) -> ast.expr:
+    """Return what is written to as what is read."""
+    if isinstance(target, ast.Name):
+        return ast.copy_location(ast.Name(target.id, ast.Load()), target)
+    return target

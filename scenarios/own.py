@@ -1,0 +1,85 @@
+"""Units of one's own, from files; each is compiled in a process of its own, with limits of time and memory.
+
+``python -m scenarios.own`` reads a name and a text from standard input, checks and compiles the unit, and ends.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from core.board import program
+from core.board.document import Document
+from core.errors import InputError, one_line
+from core.kernel_cache import get, key, put
+from core.lanes import code
+from core.own.apart import compile_by
+from core.own.unit import unit
+from scenarios.kernel_cache import folder
+
+MOST_S = 60
+"""Time of the processor to compile a unit."""
+MOST_WAIT_S = 180
+MOST_BYTES = 4 << 30
+"""Address space of the process that compiles."""
+
+
+def compile_apart(name: str, text: str) -> None:
+    """Compile a unit in a process of its own, unless it was compiled before.
+
+    Raises
+    ------
+    InputError
+        When that takes too long, too much memory, or fails.
+    """
+    mark = f"own-{name}-{key(unit(name, text).block.step)}"
+    if folder() is None or get(mark) is not None:
+        return
+    command = [sys.executable, "-m", "scenarios.own"]
+    told = json.dumps([name, text])
+    where = Path(__file__).resolve().parents[1]
+    try:
+        ended = subprocess.run(
+            command, input=told, text=True, capture_output=True, timeout=MOST_WAIT_S, check=False, cwd=where
+        )
+    except subprocess.TimeoutExpired:
+        raise InputError(f"is not compiled after {MOST_WAIT_S} s", f"units.{name}") from None
+    if ended.returncode:
+        said = one_line(ended.stderr.strip().rpartition("\n")[2])[:200]
+        why = said or f"it takes more than {MOST_S} s or {MOST_BYTES >> 30} GB"
+        raise InputError(f"cannot be compiled: {why}", f"units.{name}")
+    put(mark, b"")
+
+
+def with_units(document: Document, files: Iterable[Path], field: str = "--unit") -> Document:
+    """Return a document with units from files, each under the name of its file."""
+    units = dict(document.get("units", {}))
+    for file in files:
+        try:
+            units[file.stem] = {"source": file.read_text("utf-8")}
+        except OSError as error:
+            raise InputError(f"cannot read {file}: {error.strerror}", field) from None
+        except UnicodeDecodeError:
+            raise InputError(f"{file} is not UTF-8 text", field) from None
+    return {**document, "units": units} if units else document
+
+
+def main() -> None:
+    """Compile the unit on standard input."""
+    name, text = json.load(sys.stdin)
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CPU, (MOST_S, MOST_S))
+        resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+    compile_by(None)
+    block = unit(name, text).block
+    program.address(block)
+    code.kept(block)
+
+
+if __name__ == "__main__":
+    main()

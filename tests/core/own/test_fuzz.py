@@ -1,0 +1,147 @@
+"""Random steps: those that are admitted stay in their own slots, and are the same compiled and uncompiled.
+
+``OWN_FUZZ_S`` sets for how many seconds; the seeds go on from 0.
+"""
+
+from __future__ import annotations
+
+import ast
+import linecache
+import os
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.block import Block, Context, Oscillator
+from core.board import program
+from core.errors import InputError
+from core.own.unit import Unit, unit
+from core.plain import plain
+from tests.core.own.grammar import Writer
+from tests.core.own.texts import odd
+
+FEW = 60
+GUARD = 64
+CANARY = -7.25e77
+ALLOWED = {"exp", "sin", "floor", "flush_tiny", "abs", "min", "max", "float", "int", "range"}
+
+
+def admitted() -> Iterator[tuple[int, Unit | None]]:
+    """Yield seeds and the units they make, None for one that is refused."""
+    seconds = float(os.environ.get("OWN_FUZZ_S", "0"))
+    begin, seed = time.monotonic(), 0
+    while seed < FEW or time.monotonic() - begin < seconds:
+        try:
+            found = unit("odd", Writer(seed).text())
+        except InputError as error:
+            assert "line " in error.field
+            found = None
+        yield seed, found
+        seed += 1
+
+
+class Slots:
+    """The numbers of one step, between guards."""
+
+    def __init__(self, block: type[Block]) -> None:
+        device = Oscillator(1.0, 0.1, 4.0, -0.5)
+        params = block.Params()
+        context = Context(0.01, 1, 1, device, device)
+        self.parts = [block.packed(params, context), block.initial(params, context), np.zeros(40)]
+        self.places = np.arange(3, 3 + len(block.Ports.declared) * 4, 4)[: len(block.Ports.declared)]
+        self.places = 2 + np.cumsum([0, *(3 if port.vector else 1 for port in block.Ports.declared[:-1])])
+        whole = [np.concatenate([np.full(GUARD, CANARY), part, np.full(GUARD, CANARY)]) for part in self.parts]
+        self.whole = whole
+        self.p, self.s, self.w = (one[GUARD:-GUARD] for one in whole)
+        self.io = self.places.astype(np.int64)
+        self.block = block
+
+    def stimulate(self, tick: int) -> None:
+        """Set what the step reads."""
+        self.w[0], self.w[1] = tick, 0.01 * tick
+        inputs = len(self.block.inputs)
+        self.w[self.io[:inputs]] = [np.sin(0.7 * tick + k) * 10.0**k for k in range(inputs)]
+
+    def check_guards(self) -> None:
+        for one in self.whole:
+            assert (one[:GUARD] == CANARY).all() and (one[-GUARD:] == CANARY).all()
+
+
+class Doubles(ast.NodeTransformer):
+    """Makes every constant a double of numpy's, which divides by 0 as a processor does, where Python stops."""
+
+    def visit_Constant(self, node: ast.Constant) -> ast.expr:
+        if not isinstance(node.value, float):
+            return node
+        return ast.Call(ast.Name("double", ast.Load()), [node], [])
+
+
+def oracle(block: type[Block]) -> Any:
+    """Return the step as plain Python, with the functions it calls."""
+    code = block.step.__code__
+    tree = Doubles().visit(ast.parse("".join(linecache.getlines(code.co_filename))))
+    space = {name: plain(value) if callable(value) else value for name, value in block.step.__globals__.items()}
+    space["double"] = np.float64
+    exec(compile(ast.fix_missing_locations(tree), "oracle", "exec"), space)
+    return space["step"]
+
+
+def run_both(block: type[Block]) -> None:
+    one, other = Slots(block), Slots(block)
+    before, inputs = one.p.copy(), one.io[: len(block.inputs)]
+    step = oracle(block)
+    p, s, x = block.Packed(other.p), block.State(other.s), block.Ports(other.w, other.io)
+    nothing = np.zeros((1, 0))
+    table = np.zeros((1, program.COLUMNS), np.int64)
+    table[0, program.ADDRESS], table[0, program.EVERY] = program.address(block), 1
+    trips = np.zeros(1)
+    for tick in range(40):
+        for slots in (one, other):
+            slots.stimulate(tick)
+        seen = one.w[inputs].copy()
+        _call(table, one, tick, nothing, trips)
+        with np.errstate(all="ignore"):
+            step(p, s, x)
+        np.testing.assert_array_equal(one.s, other.s)
+        np.testing.assert_array_equal(one.w, other.w)
+        np.testing.assert_array_equal(one.w[inputs], seen)
+    one.check_guards()
+    other.check_guards()
+    np.testing.assert_array_equal(one.p, before)
+
+
+def _call(table: np.ndarray, slots: Slots, tick: int, nothing: np.ndarray, trips: np.ndarray) -> None:
+    """Call the compiled step once, by the loop of the board."""
+    from core.board import fold
+
+    w = slots.w
+    program.run(
+        *(1, tick, 0.01, table, slots.p, slots.s, w, slots.io, nothing, nothing),
+        *(fold.begin(0), len(w) - 1, np.zeros((0, 3))),
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1500)
+def test_random_steps_stay_in_their_own_slots() -> None:
+    total = ran = 0
+    for seed, one in admitted():
+        total += 1
+        if one is None:
+            continue
+        ran += 1
+        names = set(one.block.step.__code__.co_names)
+        fields = {field.name for kind in (one.block.Packed, one.block.State) for field in kind.layout.fields}
+        ports = {port.name for port in one.block.Ports.declared} | {"tick", "time_ms"}
+        own = {name for name in names if name.startswith(("_", "mix_"))}
+        assert own <= {"_item", "_put", "_floor", "_inf"} | {name for name in own if name.startswith("mix_")}
+        assert names <= ALLOWED | fields | ports | own, seed
+        run_both(one.block)
+    assert ran >= 0.3 * total, f"{ran} of {total} were admitted"
+
+
+def test_the_frame_runs_alike() -> None:
+    run_both(unit("odd", odd("step", "s.line[int(e)] = x.tick\nx.seen = s.line[int(x.tick)] + floor(e)")).block)

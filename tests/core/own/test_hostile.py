@@ -1,0 +1,62 @@
+"""Hostile texts: each is refused in one line, and nothing of it is executed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.own.unit import unit
+from scenarios.library import get
+from scenarios.run import build
+from scenarios.schema import Scenario
+from tests.core.own.hostile import corpus
+from tests.core.own.texts import odd
+
+CORPUS = corpus()
+LOOK = get("first-look").document
+
+
+def test_there_are_many() -> None:
+    assert len(set(CORPUS)) >= 300
+
+
+def test_the_frame_they_are_put_into_is_a_unit() -> None:
+    unit("odd", odd())
+
+
+@pytest.mark.parametrize("number", range(len(CORPUS)))
+def test_a_hostile_text_is_refused_in_one_line(
+    number: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    before = set(sys.modules)
+    with pytest.raises(InputError) as raised:
+        unit("odd", CORPUS[number])
+        build(Scenario.load({**LOOK, "units": {"odd": {"source": CORPUS[number]}}}))
+    assert "\n" not in str(raised.value) and len(str(raised.value)) < 500
+    assert not list(tmp_path.iterdir()) and capfd.readouterr() == ("", ""), "something of it was executed"
+    assert not {"socket", "subprocess", "ctypes"} & (set(sys.modules) - before)
+
+
+def test_a_storm_of_numbers_that_are_none_stays_in_its_own_slots() -> None:
+    storm = odd("step", "for i in range(5):\n    s.line[i] = 1e308 * 1e308 - 1e308 * 1e308\nx.seen = s.line[0]")
+    plain, stormy = (build(Scenario.load({**LOOK, "units": {"odd": {"source": text}}})) for text in (odd(), storm))
+    for board in (plain, stormy):
+        board.advance(1000)
+    assert np.isnan(stormy.value("odd.seen")) and stormy.trip is None
+    assert stormy.digest() == plain.digest()
+
+
+def test_a_step_that_is_slow_to_compile_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The process that compiles has a limit of time; the one that asks goes on."""
+    code = (
+        "import scenarios.own as own; own.MOST_S = 0; import sys; from tests.core.own.texts import PI;"
+        "sys.argv = ['own']; import io, json; sys.stdin = io.StringIO(json.dumps(['pi', PI])); own.main()"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=100)
+    assert ended.returncode != 0

@@ -1,0 +1,178 @@
+"""Units of one's own over the network: whose scenarios may carry them, live and as runs, the same bits everywhere."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from core.errors import InputError
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import run
+from scenarios.schema import Scenario
+from server.cli import app
+from server.serve import check_binding
+from server.settings import Settings
+from tests.core.own.texts import PI, odd
+from tests.server.people.group import join, open_class
+
+LOOK = get("first-look").document
+NAMED = {"units": {"pi": {"source": PI}}}
+
+
+def document(**more: Any) -> dict[str, Any]:
+    """Return the first look with a PI, five milliseconds long."""
+    return {**copy.deepcopy(LOOK), **NAMED, "duration_ms": 5.0, **more}
+
+
+def finished(live: Any, run_id: str) -> dict[str, Any]:
+    while True:
+        found: dict[str, Any] = live.http.get(f"/api/v1/runs/{run_id}").json()
+        if found["state"] in ("done", "failed"):
+            return found
+
+
+def test_a_file_gives_the_same_digest_by_command_line_and_rest_and_live(live: Any, tmp_path: Path) -> None:
+    (tmp_path / "pi.py").write_text(PI, "utf-8")
+    (tmp_path / "look.toml").write_text(Scenario.load(document(units={})).toml(), "utf-8")
+    told = [
+        "run",
+        str(tmp_path / "look.toml"),
+        "--unit",
+        str(tmp_path / "pi.py"),
+        "--set",
+        "controller.kind=pi",
+        "--json",
+    ]
+    by_hand = json.loads(CliRunner().invoke(app, told, catch_exceptions=False).stdout)
+    whole = document(controller={"kind": "pi"})
+    made = live.http.post("/api/v1/runs", json={"scenario": whole})
+    assert made.status_code in (200, 201, 202), made.text
+    assert (
+        finished(live, made.json()["id"])["summary"]["digest"] == by_hand["digest"] == run(Scenario.load(whole)).digest
+    )
+    bench = live.bench(whole)
+    live.until(bench["id"], lambda now: now["state"] == "paused" and now["tick"] >= 500)
+    assert live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()["digest"] == by_hand["digest"]
+
+
+def test_a_unit_is_live_in_shadow_and_takes_over(live: Any) -> None:
+    bench = live.bench(document(duration_ms=200.0))["id"]
+    names = {signal["name"] for signal in live.get(bench)["signals"]}
+    assert {"pi.voltage", "pi.error"} <= names
+    assert live.command(bench, switch="pi").status_code == 200
+    assert live.get(bench)["controller"] == "pi"
+    assert live.command(bench, set={"controllers.pi.proportional_v_um": -1.0}).status_code == 200
+    refused = live.command(bench, set={"units.pi.source": PI + "\n# other\n"})
+    assert refused.status_code in (409, 422) and refused.json()["error"]["code"] == "not_live"
+
+
+def test_a_wrong_unit_is_refused_with_its_place_and_nothing_is_made(live: Any) -> None:
+    before = live.http.get("/api/v1/benches").json()
+    answer = live.http.post(
+        "/api/v1/benches", json={"scenario": document(units={"pi": {"source": odd("step", "import os")}})}
+    )
+    assert answer.status_code == 422
+    error = answer.json()["error"]
+    assert error["field"].startswith("scenario.units.pi.source.line ") or error["field"].startswith(
+        "units.pi.source.line "
+    )
+    assert live.http.get("/api/v1/benches").json() == before
+
+
+@pytest.mark.parametrize("door", ["reset", "stream", "benches", "links"])
+def test_a_student_brings_no_unit_by_any_door(live: Any, door: str) -> None:
+    group = open_class(live)
+    try:
+        student = join(live, group, "Ada")
+        values = {"units.pi.source": PI}
+        if door == "stream":
+            with student.stream() as stream:
+                reply = stream.command("reset", values=values)
+                assert "error" in reply and "units" in json.dumps(reply), reply
+                return
+        asked = {
+            "reset": (f"/api/v1/benches/{student.bench}/commands", {"kind": "reset", "values": values}),
+            "benches": ("/api/v1/benches", {"scenario": document()}),
+            "links": ("/api/v1/links", {"scenario": document()}),
+        }
+        path, body = asked[door]
+        answer = student.ask("POST", path, json=body)
+        assert answer.status_code in (403, 422), answer.text
+        assert "pi.voltage" not in json.dumps(student.ask("GET", f"/api/v1/benches/{student.bench}").json())
+    finally:
+        live.http.delete(f"/api/v1/classes/{group['id']}")
+
+
+def test_the_teacher_begins_a_scenario_with_a_unit_on_all_benches(live: Any) -> None:
+    group = open_class(live)
+    try:
+        ada = join(live, group, "Ada")
+        answer = live.http.post(
+            f"/api/v1/classes/{group['id']}/scenario", json={"scenario": document(duration_ms=200.0)}
+        )
+        assert answer.status_code == 200, answer.text
+        (member,) = live.http.get(f"/api/v1/classes/{group['id']}/members").json()["members"]
+        assert "pi.voltage" in {signal["name"] for signal in live.get(member["bench"])["signals"]}
+        reset = ada.ask("POST", f"/api/v1/benches/{member['bench']}/commands", json={"kind": "reset"})
+        assert reset.status_code == 200, reset.text
+        path = f"/api/v1/benches/{member['bench']}/commands"
+        other = {"kind": "reset", "values": {"units.pi.source": PI + "\n# other\n"}}
+        assert ada.ask("POST", path, json=other).status_code in (403, 422)
+    finally:
+        live.http.delete(f"/api/v1/classes/{group['id']}")
+
+
+def test_a_server_may_take_none_at_all(serve: Any) -> None:
+    with serve(units="off") as live:
+        answer = live.http.post("/api/v1/benches", json={"scenario": document()})
+        assert answer.status_code in (403, 422) and "takes no units" in answer.json()["error"]["message"]
+        assert live.http.post("/api/v1/runs", json={"scenario": document()}).status_code in (403, 422)
+
+
+def test_nobody_may_be_let_bring_units_without_a_second_wall() -> None:
+    with pytest.raises(InputError) as raised:
+        check_binding(Settings(units="everyone"))
+    assert raised.value.field == "units"
+
+
+def test_check_says_what_is_wrong_and_what_it_costs(tmp_path: Path) -> None:
+    good, bad = tmp_path / "pi.py", tmp_path / "bad.py"
+    good.write_text(PI, "utf-8")
+    bad.write_text(PI.replace("e = x.model - x.measured", "e = x.model - x.truth"), "utf-8")
+    said = CliRunner().invoke(app, ["check", str(good)], catch_exceptions=False)
+    assert said.exit_code == 0 and "control/pi" in said.stdout and "a sample" in said.stdout
+    told = json.loads(CliRunner().invoke(app, ["check", str(good), "--json"], catch_exceptions=False).stdout)
+    assert told[0]["family"] == "control" and told[0]["ns_per_sample"] > 0.0
+    said = CliRunner().invoke(app, ["check", str(bad)], catch_exceptions=False)
+    line = 1 + bad.read_text("utf-8").split("\n").index("        e = x.model - x.truth")
+    assert said.exit_code == 2 and f"line {line}, column 23: has no truth" in said.stdout
+    assert CliRunner().invoke(app, ["run", "first-look", "--unit", str(bad)]).exit_code == 2
+    missing = CliRunner().invoke(app, ["run", "first-look", "--unit", str(tmp_path / "none.py")])
+    assert missing.exit_code == 2 and "--unit" in missing.stderr
+
+
+def test_a_campaign_with_a_unit_from_a_file(tmp_path: Path) -> None:
+    (tmp_path / "pi.py").write_text(PI, "utf-8")
+    (tmp_path / "sweep.toml").write_text(
+        'id = "gains"\nscenario = "ch3-mrac-mass-x10"\nseeds = "1:2"\n'
+        '[set]\n"controller.kind" = "pi"\n[grid]\n"controllers.pi.proportional_v_um" = [-0.5, -0.25]\n',
+        "utf-8",
+    )
+    told = ["sweep", str(tmp_path / "sweep.toml"), "--unit", str(tmp_path / "pi.py"), "--out", str(tmp_path / "out")]
+    ended = CliRunner().invoke(app, [*told, "--workers", "1"], catch_exceptions=False)
+    assert ended.exit_code == 0, ended.output
+    import pyarrow.parquet as pq
+
+    rows = pq.ParquetDataset(tmp_path / "out" / "runs").read().to_pylist()
+    assert len(rows) == 4
+    for row in rows:
+        base = {**copy.deepcopy(get("ch3-mrac-mass-x10").document), **NAMED}
+        gain = row["controllers.pi.proportional_v_um"]
+        one = with_values(Scenario.load(base), {"controller.kind": "pi", "controllers.pi.proportional_v_um": gain})
+        assert run(one, row["seed"]).digest == row["digest"]
