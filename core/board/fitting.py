@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from core import registry
 from core.block import Block, Oscillator
-from core.board.document import CHOSEN, ONE_DISPLACEMENT, Document, generators
+from core.board.document import CHOSEN, ONE_DISPLACEMENT, PARKED, Document, generators
 from core.board.instances import faults_of, feeds_forward
 from core.board.spec import Section, Spec
 from core.device.transfer_function import slowest_pole
@@ -36,6 +36,10 @@ def refuse_what_does_not_fit(doc: Document, plant: type[Block]) -> None:
         if key in doc:
             inputs = ", ".join(plant.generators) or "reference"
             raise InputError(f"{plant.name} has no {key}; it has {inputs}", key, "leave it out")
+    for key, family in PARKED.values():
+        for name in doc.get(key, {}):
+            if reason := misfit(registry.block(family, name, key), plant):
+                raise InputError(f"{name} {reason}", f"{key}.{name}", "leave it out")
 
 
 def driving(doc: Document, plant: type[Block]) -> dict[str, str]:
