@@ -95,7 +95,7 @@ async def replay_recording(
     recording, path = await service.recordings.finished(recording_id)
     session = await service.benches.replay(recording, path, body.speed, body.paused)
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return await service.opened(session, person)
+    return await service.views.opened(session, person)
 
 
 @router.post("/recordings/{recording_id}/compare")

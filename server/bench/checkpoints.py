@@ -20,7 +20,6 @@ import numpy as np
 from pydantic import BaseModel
 
 from core.board.board import Board
-from core.board.document import Document
 from core.board.stored import Stored, revived, stored
 from core.errors import InputError
 from scenarios.schema import Scenario
@@ -52,7 +51,6 @@ class Head(BaseModel):
     version: str
     blind: Blind | None = None
     hidden_since: int = 0
-    watch: Document | None = None
 
 
 @dataclass
@@ -163,7 +161,9 @@ class Checkpoints:
         if events:
             with self._path(head.id, EVENTS).open("a", encoding="utf-8") as file:
                 file.write("".join(f"{event.model_dump_json()}\n" for event in events))
-        text = json.dumps({**head.model_dump(), "board": kept.stored.document}, default=str).encode()
+        watch = kept.watch.document if kept.watch is not None else None
+        document = {**head.model_dump(), "board": kept.stored.document, WATCH: watch}
+        text = json.dumps(document, default=str).encode()
         part = self._path(head.id, BOARD + PART)
         with part.open("wb") as file:
             arrays: dict[str, Any] = {DOCUMENT: np.frombuffer(text, np.uint8), **kept.stored.arrays}
@@ -176,7 +176,7 @@ class Checkpoints:
         with self._path(bench_id, BOARD).open("rb") as file, np.load(file, allow_pickle=False) as parts:
             document = json.loads(parts[DOCUMENT].tobytes())
             arrays = {name: parts[name] for name in parts.files if name != DOCUMENT}
-        board, samples = document.pop("board"), arrays.pop(WATCH, None)
+        board, seen, samples = document.pop("board"), document.pop(WATCH, None), arrays.pop(WATCH, None)
         head, path = Head.model_validate(document), self._path(bench_id, EVENTS)
         lines = path.read_text("utf-8").splitlines() if path.exists() else []
         known: dict[int, Event] = {}
@@ -190,7 +190,7 @@ class Checkpoints:
         events = [known[seq] for seq in sorted(known)]
         path.write_text("".join(f"{event.model_dump_json()}\n" for event in events), "utf-8")
         self._written[bench_id] = (head.tick, head.last_event, head.running)
-        watch = KeptWatch(head.watch, samples) if head.watch is not None and samples is not None else None
+        watch = KeptWatch(seen, samples) if seen is not None and samples is not None else None
         return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
 
 
@@ -210,6 +210,5 @@ def _taken(session: Session) -> Kept:
         version=THIS_VERSION,
         blind=session.hiding.blind,
         hidden_since=session.hiding.since,
-        watch=watch.document if watch is not None else None,
     )
     return Kept(head, stored(session.board), [], watch)  # type: ignore[arg-type]

@@ -75,8 +75,8 @@ class Hiding:
     def clear(self) -> None:
         """Heal the device, and let nothing that was to come or was being kept tell more (a job of the engine)."""
         bench = self._bench
-        bench.fast_forward.end()
-        bench.fast_forward.leads = False
+        bench.running.fast_forward.end()
+        bench.running.fast_forward.leads = False
         bench.recordings.close("a fault was hidden")
         bench.board.pending.clear()
         bench.board.apply(Heal(heal="all"), ACTOR)

@@ -87,6 +87,10 @@ class Timeline:
         """Return the columns of signals; an unknown name is an `InputError` with suggestions."""
         return [self.board.signals.index(name) for name in names]
 
+    def has_signals_of(self, board: TickSource) -> bool:
+        """Whether a board has the signals of this one, and could take its place."""
+        return [signal.name for signal in board.signals] == list(self._index)
+
     def _advance_slice(self, ticks: int) -> Rows:
         """Run ticks, as many as a slice has, and keep their rows in the history."""
         began = self._clock()

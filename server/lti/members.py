@@ -16,7 +16,8 @@ from server.lti.tool import Tool
 from server.people.name import LONGEST_NAME, clean, in_one_line
 from server.people.person import Person
 from server.service import Service
-from server.store.models import ClassRow, LtiKeyRow, now
+from server.store.base import now
+from server.store.people import ClassRow, LtiKeyRow
 
 LASTS = timedelta(days=14)
 """How long a class lasts after the last launch; then names are forgotten, as they are of every class."""

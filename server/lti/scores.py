@@ -18,7 +18,7 @@ from server.lti.tool import Tool, Web
 from server.people.audit import Audit
 from server.people.person import Person
 from server.people.sheet_work import SheetBrief, Work
-from server.store.models import now
+from server.store.base import now
 
 log = logging.getLogger(__name__)
 

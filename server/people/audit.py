@@ -13,8 +13,9 @@ from sqlalchemy import delete, func, select
 
 from server.bench.events import Event
 from server.bench.session import Session
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import AuditRow, now
+from server.store.people import AuditRow
 
 log = logging.getLogger(__name__)
 

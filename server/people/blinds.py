@@ -19,8 +19,9 @@ from server.errors import ApiError
 from server.people.brier import points
 from server.people.draw import draw
 from server.people.person import Person
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import BlindAnswerRow, now
+from server.store.people import BlindAnswerRow
 
 OF_DRAW = 2**31
 """Numbers that are drawn are below this."""

@@ -24,8 +24,9 @@ from server.people.people import People
 from server.people.person import Person, hash_of, new_secret
 from server.people.student_benches import StudentBenches
 from server.people.votes import Votes
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import ClassRow, now
+from server.store.people import ClassRow
 
 log = logging.getLogger(__name__)
 
@@ -224,7 +225,7 @@ class Classes:
         self._codes.pop(class_id, None)
         for person in self._people.students(class_id):
             await self.remove(person)
-        await self._lesson.end(class_id)
+        self._lesson.end(class_id)
         await self._audit.forget(class_id)
         await self._blinds.forget(class_id)
         await self._votes.forget(class_id)

@@ -25,8 +25,8 @@ from server.people.sheet_shelf import Shelf
 from server.people.sheet_view import SheetView, view_of
 from server.people.sheet_watch import Done, SheetWatch
 from server.people.sheet_work import Work, Works
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import now
 
 log = logging.getLogger(__name__)
 

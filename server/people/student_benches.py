@@ -19,7 +19,7 @@ from server.errors import not_found
 from server.people.people import People
 from server.people.person import Person
 from server.store.database import Database
-from server.store.models import ClassRow
+from server.store.people import ClassRow
 
 log = logging.getLogger(__name__)
 
@@ -84,7 +84,7 @@ class StudentBenches:
             wanted = await self._database.run(lambda session: session.scalar(query))
             if wanted is None:
                 raise not_found("class", person.class_id, "it may have ended")
-            return await self._make(person, wanted)
+            return await self._make(person, wanted, None)
 
     async def replace(
         self,
@@ -104,7 +104,12 @@ class StudentBenches:
             If it cannot be made; the student keeps the bench there is.
         """
         async with self._turn:
-            return await self._make(person, wanted, hide, before_shown)
+            before = self.find(person)
+            made = await self._make(person, wanted, hide)
+            await before_shown(made)
+            if before is not None:
+                await self._close_bench(before)
+            return made
 
     async def remove(self, person: Person) -> None:
         """Close the bench of a student."""
@@ -138,18 +143,8 @@ class StudentBenches:
             log.exception("bench %s cannot go on from what was kept", bench_id)
             return None
 
-    async def _make(
-        self,
-        person: Person,
-        wanted: dict[str, Any],
-        hide: Callable[[Board], Blind] | None = None,
-        before_shown: Callable[[Session], Awaitable[None]] = _nothing,
-    ) -> Session:
-        """Make the bench of a student, and close the one before."""
-        before = self.find(person)
+    async def _make(self, person: Person, wanted: dict[str, Any], hide: Callable[[Board], Blind] | None) -> Session:
+        """Make a bench and give it to a student."""
         made = await self._benches.create(**wanted, class_id=person.class_id, hide=hide)
         await self._people.give_bench(person, made.id)
-        await before_shown(made)
-        if before is not None:
-            await self._close_bench(before)
         return made

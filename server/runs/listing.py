@@ -17,8 +17,9 @@ from sqlalchemy.orm import Session, defer
 from core.errors import InputError
 from scenarios.key import code_version
 from server.errors import ApiError, Elsewhere, not_found
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import RequestRow, now, of_process
+from server.store.models import RequestRow, of_process
 
 ACTIVE = ("queued", "running")
 MOST = 200
