@@ -238,7 +238,7 @@ class Service:
             self.audit.add(name, "driving", text, class_id, bench_id, bench.status.tick)
 
     def _go_without_driver(self, bench_id: str, why: str) -> None:
-        """Let a bench do what its scenario says when whoever drove it is gone."""
+        """Let a bench do what its scenario says when its driver is gone."""
         bench = self.benches.find(bench_id)
         if bench is not None:
             self.engine.submit(go_without_driver, bench, why)

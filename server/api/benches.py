@@ -124,7 +124,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
 
 @router.get("")
 async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
-    """List the live benches, without those of students, which are listed with their class; to them, their own."""
+    """List the live benches without those of students, which their class lists; a student sees the own bench."""
     if person.is_teacher:
         return BenchList(benches=service.views.all(person))
     found = service.benches.find(service.people.bench_of(person))

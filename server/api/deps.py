@@ -54,7 +54,7 @@ def get_caller(request: Request, person: PersonDep) -> str:
 
 
 def get_seen(session: SessionDep, service: ServiceDep, person: PersonDep) -> Seen:
-    """Return the bench in the path as whoever asks may see it."""
+    """Return the bench in the path as the caller may see it."""
     return service.views.seen(session, person)
 
 

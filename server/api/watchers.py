@@ -1,4 +1,4 @@
-"""Links to watch a bench: whoever opens one sees it live and can change nothing, until the link ends."""
+"""Links to watch a bench: people who open one see it live and can change nothing, until the link ends."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Checkpoints of live benches on disk: after a crash each goes on at its tick, bit for bit, with its log.
 
-A bench has two files. One is replaced as a whole and holds the board, the other grows by the events. A crash between
-two writes loses what came since the last: less than a second.
+A bench has two files. One holds the board and is replaced as a whole, the other grows by the events. A crash loses what
+came after the last write: less than a second.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ BOARD, EVENTS, PART, DOCUMENT, WATCH = ".npz", ".events", ".part", "document", "
 
 
 class Head(BaseModel):
-    """What a bench is beside its board and its events."""
+    """A bench without its board and its events."""
 
     id: str
     class_id: str

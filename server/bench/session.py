@@ -127,7 +127,7 @@ class Session(Timeline):
         self.refresh_status()
 
     def belong(self, class_id: str, most_ticks_per_s: float) -> None:
-        """Be the bench of a student: one of many, so it stays, is no faster than all can be, and keeps less."""
+        """Be the bench of a student, one of many: never let go, limited in pace, with less history."""
         self.class_id, self.keep, self.past_ticks = class_id, True, STUDENT_PAST_TICKS
         self.running.limit(most_ticks_per_s * self.dt_ms * 1e-3)
 
@@ -284,7 +284,7 @@ class Session(Timeline):
 
     @property
     def about(self) -> Document:
-        """What a file of its trace says of it."""
+        """The words about it in a file of its trace."""
         return {"scenario": self.scenario.document, "bench": self.id}
 
     def describe(self, around: dict[str, Any], view3d: str | None) -> Bench:

@@ -1,4 +1,4 @@
-"""Staging: a bench is put into the exact state of a cue of a lecture, whatever was done to it before."""
+"""Staging puts a bench into the exact state of a cue of a lecture. What people did to it before leaves no trace."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ PAST_TICKS = 20_000
 SLICE_S = 0.005
 """Longest slice, by what a tick takes; other benches and commands wait for it."""
 MOST_SLOWER = 4.0
-"""Times as long as before that a tick is taken to need: more is the wait of a thread, and the bench as fast as ever."""
+"""Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
 
 
 class Timeline:

@@ -41,7 +41,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Score:
-    """What is sent."""
+    """A score, as it is sent."""
 
     given: float
     most: float

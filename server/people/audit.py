@@ -1,4 +1,4 @@
-"""What people did, to which bench and when: it stays when the bench goes, and goes with the class."""
+"""The log of what people did, to which bench and when; it stays when the bench goes, and goes with the class."""
 
 from __future__ import annotations
 

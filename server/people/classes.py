@@ -65,11 +65,11 @@ class Classes:
     benches : StudentBenches
         Their benches.
     audit : Audit
-        Where it is kept what people did.
+        The log of what people did.
     lesson : Lesson
-        What they are shown.
+        Shows them benches.
     blinds : Blinds
-        Where it is kept what was hidden from them.
+        Their hidden faults and answers.
     votes : Votes
         Their votes, which go with them.
     most_students : int
@@ -220,7 +220,7 @@ class Classes:
         self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)
 
     async def end(self, class_id: str) -> None:
-        """End a class: sessions, benches, names and what was done are gone."""
+        """End a class: close sessions and benches, delete names and what people did."""
         await self.row(class_id)
         self._codes.pop(class_id, None)
         for person in self._people.students(class_id):

@@ -1,4 +1,4 @@
-"""A lesson: what the teacher puts before a whole class, a bench that all see and a layout of their panels."""
+"""A lesson: the teacher shows a bench to a whole class, and arranges their panels."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class GivenLayout(BaseModel):
 
 
 class Lesson:
-    """What classes are shown. It lasts until the teacher ends it, or the bench that is shown is gone.
+    """Shows benches to classes, until the teacher ends it or the bench is gone.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Lesson:
     people : People
         The students.
     audit : Audit
-        Where it is kept what the teacher did.
+        The log of what the teacher did.
     pages : Pages
         Those of the students, which are told.
     """

@@ -21,7 +21,7 @@ from server.store.database import Database
 from server.store.people import PersonRow
 
 MOST_EARLIER = 100
-"""Benches of before that are known to have been a student's."""
+"""Earlier benches of a student that are remembered."""
 
 
 class People:

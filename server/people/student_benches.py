@@ -1,4 +1,4 @@
-"""The benches of students: each has one, made when it is asked for, replaced, and brought back after a crash."""
+"""The benches of students: makes each at its first request, replaces it, and brings it back after a crash."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ log = logging.getLogger(__name__)
 
 
 async def _nothing(_: Person | Session) -> None:
-    """Leave it at that."""
+    """Do nothing more."""
 
 
 class StudentBenches:
@@ -34,7 +34,7 @@ class StudentBenches:
     Parameters
     ----------
     database : Database
-        Where it stands what the benches of a class begin with.
+        Has the scenario with which the benches of a class begin.
     people : People
         Knows which bench is whose.
     benches : Benches
@@ -57,9 +57,9 @@ class StudentBenches:
         self._close_bench, self._checkpoints = close_bench, checkpoints
         self._turn = asyncio.Lock()
         self.welcome: Callable[[Person], Awaitable[None]] = _nothing
-        """Asked before somebody gets a bench for the first time; it may give one."""
+        """Called before a student gets the first bench; it may give one."""
         self.on_revived: Callable[[Session, KeptWatch | None], None] = lambda *_: None
-        """Told of a bench that goes on from its checkpoint, before it does, and who looked at it."""
+        """Called with a bench before it goes on from its checkpoint, and with the watch it had."""
 
     def find(self, person: Person) -> Session | None:
         """Return the live bench of a student, if there is one."""
@@ -95,8 +95,8 @@ class StudentBenches:
     ) -> Session:
         """Give a student another bench in place of the one that is there, with a hidden fault if one is chosen.
 
-        Closing the bench of before leads the pages of the student to the new one. ``before_shown`` is awaited ahead of
-        that, for what these pages then ask for.
+        The old bench closes, and then the pages of the student go to the new one. ``before_shown`` is awaited before
+        that, so that the pages find all they ask for.
 
         Raises
         ------
@@ -118,7 +118,7 @@ class StudentBenches:
                 await self._close_bench(bench)
 
     async def recover(self, students: list[Person]) -> None:
-        """Bring all benches back, as they were shortly before the server ended; forget those that are nobody's."""
+        """Bring all benches back, as they were shortly before the server ended; forget those without an owner."""
         for person in students:
             try:
                 if self._people.bench_of(person):

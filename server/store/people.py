@@ -25,13 +25,13 @@ class ClassRow(Base):
     scenario : dict
         What their benches begin with, as ``POST /benches`` takes it.
     secret : str
-        From which it is drawn what each student gets; it never leaves the server.
+        From it the server draws device, noise and fault of each student; it stays on the server.
     shown : str
         The bench that all students see in place of their own.
     layout : dict
         The layout of panels that was given to all last.
     sheet : str
-        The lab sheet that who joins begins with, instead of the scenario.
+        The lab sheet that students begin with when they join, instead of the scenario.
     """
 
     __tablename__ = "classes"
@@ -57,7 +57,7 @@ class PersonRow(Base):
     bench_id : str
         The bench of a student, or the one that a watcher sees.
     earlier : list of str
-        Those that were the student's before.
+        Benches that the student had before.
     lent : str
         A bench of the teacher that the student drives.
     """

@@ -24,7 +24,7 @@ export function ClassLines() {
   );
 }
 
-/** Somebody asks whoever is at this page for the bench. */
+/** Somebody asks the person at this page for the bench. */
 function Asked() {
   const company = useCompany();
   const me = useMe((s) => s.me?.id);
