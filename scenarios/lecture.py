@@ -62,7 +62,7 @@ class Question(Table):
     """A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers."""
 
     text: str = Field(min_length=1, max_length=300)
-    answers: list[str] = Field([], max_length=6, description="what can be chosen; none where lanes are asked for")
+    answers: list[str] = Field([], max_length=6, description="the options; none for a question about lanes")
     diagnoser: str = Field("", max_length=64, description="whose lanes are the answers")
     when: Span | None = Field(None, description="device time within which a moment is guessed, too")
     right: str = Field("", max_length=100, description="the right answer, shown with the votes")

@@ -142,7 +142,7 @@ def create_app(settings: Settings) -> FastAPI:
         identity=identity,
         people=service.people,
         driving=service.driving,
-        is_blind=service.is_blind,
+        is_blind=service.views.is_blind,
         origin=OriginPolicy(settings.host, settings.allowed_hosts, public, settings.classroom),
         open_paths=frozenset({"/metrics"}) if settings.metrics_open else frozenset(),
         prefix=public.prefix,

@@ -13,7 +13,7 @@ import segno
 from server.settings import ANY_IPV4, ANY_IPV6, Settings
 
 FAR_AWAY = {socket.AF_INET: "198.51.100.1", socket.AF_INET6: "2001:db8::1"}
-"""Addresses that belong to nobody: nothing is sent to them, they only ask which way packets to elsewhere leave."""
+"""Addresses that belong to nobody, to learn which way packets leave; nothing is sent to them."""
 
 EXPOSED = """\
 This address is the teacher's. It works on this machine alone.
@@ -26,7 +26,7 @@ little, serve the class with TLS: docs/behind-a-proxy.md says how.
 NO_NETWORK = "This machine has no address that students could open: connect it to a network and start again.\n"
 
 PAPER, PLAIN = "\033[38;5;231;48;5;16m", "\033[0m"
-"""White on black, whatever the colours of the terminal: the blocks drawn are the light modules."""
+"""White on black in terminals of all colours: the blocks drawn are the light modules."""
 
 
 def join_addresses(host: str, port: int) -> list[str]:

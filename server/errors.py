@@ -24,7 +24,7 @@ from core.errors import InputError, either, field_of, one_line
 log = logging.getLogger(__name__)
 
 SHARD = "shard"
-"""What in the query of an address tells the proxy to which of several processes it leads."""
+"""Name in the query of an address that tells the proxy which of several processes it leads to."""
 LONGEST = 300
 """Characters of a message, a field or a hint: one line a person reads."""
 METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
@@ -84,7 +84,7 @@ class ApiError(HTTPException):
 
 
 class Elsewhere(Exception):
-    """Another of several processes has what is asked for; whoever asks is sent there by the proxy.
+    """Another of several processes has it; the answer redirects there through the proxy.
 
     Parameters
     ----------

@@ -65,5 +65,5 @@ class Idling:
             or self._watchers(session.id) > 0
             or bool(recordings.under_way or recordings.armed or session.snapshots.all())
             or (session.is_running and len(session.board.pending) > 0)
-            or bool(session.steps)
+            or bool(session.running.steps)
         )

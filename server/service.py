@@ -13,18 +13,14 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from server.bench.benches import Benches
-from server.bench.blind import refusal
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
-from server.bench.experiment import THIS_VERSION, experiment_of
 from server.bench.recording import Records
 from server.bench.safety import Safety
-from server.bench.session import Seen, Session
+from server.bench.session import Session
 from server.bench.staging import Staging
-from server.bench.status import Bench, Opened
 from server.bench.watchdog import Watchdog
-from server.errors import ApiError, not_found
-from server.idling import EVERY_S, Idling
+from server.idling import Idling
 from server.kernels import Kernels
 from server.lag import Lateness, probe
 from server.metrics import Metrics
@@ -40,6 +36,7 @@ from server.people.sheet_shelf import Shelf
 from server.people.sheets import Sheets
 from server.people.student_benches import StudentBenches
 from server.people.votes import Votes
+from server.reopening import Reopening
 from server.runs.figures import Figures
 from server.runs.jobs import Jobs
 from server.runs.queue import Queue
@@ -49,10 +46,11 @@ from server.security.public import PublicOrigin
 from server.settings import Settings
 from server.store.database import Database
 from server.store.keeping import Keeping
-from server.store.links import Content, LinkDetail, Links
+from server.store.links import Links
 from server.store.parameter_sets import ParameterSets
 from server.store.recordings import Recordings
 from server.stream.hub import Hub
+from server.views import Views
 
 if TYPE_CHECKING:
     from server.view3d.viewers import Viewers
@@ -131,8 +129,11 @@ class Service:
             self.blinds,
         )
         self.viewers = _viewers()
-        self._coming_back = asyncio.Lock()
+        self.views = Views(self.benches, self.people, self.hub, self.idling, self.viewers is not None, self.close_bench)
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
+        self.reopening = Reopening(
+            self.benches, self.engine, self.links, self.idling, self.close_bench, self.experiment_turn
+        )
         self.kernels = Kernels()
         self.is_ready = False
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -156,8 +157,8 @@ class Service:
         await self.queue.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run()))
-        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.sheets)
-        tasks += [asyncio.create_task(self._watch_idle()), *(asyncio.create_task(part.run()) for part in lasting)]
+        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.reopening, self.sheets)
+        tasks += [asyncio.create_task(part.run()) for part in lasting]
         tasks.append(asyncio.create_task(self.queue.warm(self.kernels.compiled)))
         # where pandas is installed, pyarrow loads it with the first array, which takes longer than a recording may wait
         tasks.append(asyncio.create_task(asyncio.to_thread(pa.array, [0.0])))
@@ -184,48 +185,6 @@ class Service:
             await asyncio.to_thread(self.engine.stop)
             for database in self.databases:
                 await asyncio.to_thread(database.close)
-
-    def seen(self, session: Session, person: Person) -> Seen:
-        """Return a bench as somebody may see it: all of it, or what is shown while a fault is hidden there."""
-        view = session.hiding.view
-        return view if view is not None and session.hiding.hides_from(person) else session
-
-    def is_blind(self, person: Person, bench_id: str) -> bool:
-        """Whether a fault is hidden from somebody, on the bench in the path or on that of a student."""
-        session = self.benches.find(bench_id or self.people.bench_of(person))
-        return session is not None and session.hiding.hides_from(person)
-
-    def whole(self, bench_id: str, person: Person) -> Session:
-        """Return a bench that somebody may see all of, or refuse."""
-        if self.is_blind(person, bench_id):
-            raise refusal()
-        return self.benches.get(bench_id)
-
-    def view(self, session: Session, person: Person) -> Bench:
-        """Describe a bench as somebody may see it."""
-        view3d = f"/benches/{session.id}/3d/" if self.viewers is not None else None
-        bench = self.seen(session, person).describe(self.hub.around(session), view3d)
-        return bench.model_copy(update={"let_go_in_s": self.idling.left_s(session)})
-
-    def views(self, person: Person) -> list[Bench]:
-        """Describe the benches that are no students', oldest first; one that cannot be described hides no others."""
-        descriptions = []
-        for session in self.benches.all():
-            if session.class_id:
-                continue
-            try:
-                descriptions.append(self.view(session, person))
-            except Exception:
-                log.exception("bench %s cannot be described", session.id)
-        return descriptions
-
-    async def opened(self, session: Session, person: Person) -> Bench:
-        """Describe a bench just made; one that cannot be described is closed again."""
-        try:
-            return self.view(session, person)
-        except Exception:
-            await self.close_bench(session)
-            raise
 
     async def close_bench(self, session: Session, *, comes_back: bool = False) -> None:
         """Close a bench, its streams and its 3D view; unless it comes back, links to watch it end too."""
@@ -261,69 +220,6 @@ class Service:
                 self.driving.forget(bench_id)
                 await self.lesson.forget(bench_id)
 
-    async def open_link(self, link: LinkDetail, bench_id: str | None = None) -> Session:
-        """Make a bench that repeats the experiment of a link.
-
-        Raises
-        ------
-        ApiError
-            If it leads to none, or it cannot be repeated.
-        """
-        experiment = link.content.experiment
-        if experiment is None:
-            raise ApiError(409, "conflict", "the link leads to a layout, not to an experiment")
-        opened = Opened(
-            link=None if bench_id else link.id,
-            note=link.note,
-            version=experiment.version,
-            version_now=THIS_VERSION,
-            same_bits=False,
-        )
-        async with self.experiment_turn:  # a class opens a link all at once
-            return await self.benches.repeat(experiment, opened, bench_id)
-
-    async def bring_back(self, bench_id: str) -> Session:
-        """Return a bench; one that was let go is opened again as it was, by the same id."""
-        async with self._coming_back:  # two pages may come back at once
-            if found := self.benches.find(bench_id):
-                return found
-            link = await self.links.let_go(bench_id)
-            if link is None:
-                raise not_found("bench", bench_id, "it was closed, or let go too long ago")
-            session = await self.open_link(link, bench_id)
-            await self.links.delete(bench_id)
-            return session
-
-    async def let_go(self) -> None:
-        """Keep what was done on the benches that nobody needs any more, and close them."""
-        for session in self.idling.due(self.benches.all()):
-            try:
-                await self._let_go(session)
-            except Exception:
-                log.exception("bench %s could not be let go", session.id)
-
-    async def _let_go(self, session: Session) -> None:
-        """Keep what was done on a bench, and close it unless somebody has come meanwhile."""
-        is_kept = False
-        if not session.replay_of:  # a recording is kept already
-            experiment = await self.engine.call(experiment_of, session)
-            title = session.scenario.head.title or session.scenario.id
-            try:
-                await self.links.keep(Content(experiment=experiment), title[:200], bench_id=session.id)
-                is_kept = True
-            except ApiError as error:
-                log.warning("bench %s is let go for good: %s", session.id, error.body.message)
-        if not self.idling.due([session]):
-            return await self.links.delete(session.id)
-        await self.close_bench(session, comes_back=is_kept)
-        log.info("bench %s was let go: nobody had been there for a while", session.id)
-
-    async def _watch_idle(self) -> None:
-        """Let benches go that nobody needs."""
-        while True:
-            await asyncio.sleep(EVERY_S)
-            await self.let_go()
-
     async def close_streams(self) -> None:
         """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")
@@ -342,7 +238,7 @@ class Service:
             self.audit.add(name, "driving", text, class_id, bench_id, bench.status.tick)
 
     def _go_without_driver(self, bench_id: str, why: str) -> None:
-        """Let a bench do what its scenario says when whoever drove it is gone."""
+        """Let a bench do what its scenario says when its driver is gone."""
         bench = self.benches.find(bench_id)
         if bench is not None:
             self.engine.submit(go_without_driver, bench, why)

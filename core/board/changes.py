@@ -11,18 +11,15 @@ from pydantic import ValidationError
 from core.block import BlockParams
 from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch, Trip
 from core.board.difference import change
-from core.board.document import CHOSEN, as_written
 from core.board.fitting import misfit
+from core.board.live import live_change, value_at
 from core.board.parse import changed
-from core.board.spec import Section, Spec
+from core.board.spec import Spec
 from core.board.wiring import Wiring, command_of, engage, wire
 from core.errors import InputError, from_validation, unknown
 from core.faults.fault import FaultParams
 from core.format import format_short
 from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, REASONS
-from core.registry import is_live
-
-LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "guard")
 
 
 class Board(Protocol):
@@ -54,9 +51,9 @@ def check(board: Board, command: Command) -> None:
     elif isinstance(command, Heal):
         _names(board.spec, command)
     elif isinstance(command, Set):
-        _changed(board.spec, command.set)
+        live_change(board.spec, command.set)
     elif isinstance(command, Switch):
-        _changed(board.spec, switched(board.spec, command))
+        live_change(board.spec, switched(board.spec, command))
 
 
 def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
@@ -106,7 +103,7 @@ def heal(board: Board, command: Heal) -> tuple[Any, Any]:
 
 def set_values(board: Board, values: dict[str, Any]) -> tuple[Any, Any]:
     """Change parameters by path, all in this tick."""
-    spec, old, new = _changed(board.spec, values)
+    spec, old, new = live_change(board.spec, values)
     _change(board, spec)
     return old, new
 
@@ -115,7 +112,7 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
     """Give the drive of its slot to another controller."""
     values = switched(board.spec, command)
     ((path, name),) = values.items()
-    old = _get(board.spec, path)
+    old = value_at(board.spec, path)
     if name == old and not command.cold:
         raise InputError(f"{name} drives already", "switch", "choose another, or a cold start", "conflict")
     spec = changed(board.spec, values)
@@ -223,81 +220,6 @@ def _fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
 def _own_parameters(params: type[BlockParams]) -> list[str]:
     """Return the names of what a fault lets one choose besides its severity and profile."""
     return [name for name in params.model_fields if name not in FaultParams.model_fields]
-
-
-def _changed(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:
-    """Return the new bench with old and new values, or refuse what is not tunable while running."""
-    new = changed(spec, values)
-    try:
-        _check_live(spec, new)
-    except InputError as error:
-        raise as_written(error, new.document, values) from None
-    return new, {path: _get(spec, path) for path in values}, dict(values)
-
-
-def _check_live(spec: Spec, new: Spec) -> None:
-    """Refuse what is not tunable while running."""
-    for field in ("sample_rate_khz", "seed"):
-        if getattr(new.frame, field) != getattr(spec.frame, field):
-            raise _not_live(field)
-    if new.library is not spec.library:
-        raise _not_live("units")
-    for key in LIVE_SECTIONS:
-        _check_section(key, getattr(spec, key), getattr(new, key))
-    if new.device != spec.device:
-        raise _not_live("device")
-    for key, section in new.generators.items():
-        _check_section(key, spec.generators[key], section)
-    for key in ("controllers", "sensors"):
-        before = getattr(spec, key)
-        for name, section in getattr(new, key).items():
-            _check_section(f"{key}.{name}", before[name], section)
-    for key in CHOSEN:
-        before, after = getattr(spec, key), getattr(new, key)
-        if list(after) != list(before):
-            raise _not_live(key)
-        for name, section in after.items():
-            _check_section(f"{key}.{name}", before[name], section)
-
-
-def _check_section(path: str, old: Section, new: Section) -> None:
-    if old is new:
-        return
-    if old.every != new.every:
-        raise _not_live(f"{path}.every")
-    if old.block is not new.block:
-        ports = [(port.name, port.labels) for port in (*old.block.outputs, *old.block.taps)]
-        if path.startswith(tuple(CHOSEN)) or ports != [
-            (p.name, p.labels) for p in (*new.block.outputs, *new.block.taps)
-        ]:
-            raise _not_live(f"{path}.kind")
-        return
-    for name, info in type(new.params).model_fields.items():
-        if getattr(old.params, name) != getattr(new.params, name) and not is_live(info):
-            raise _not_live(f"{path}.{name}")
-
-
-def _not_live(path: str) -> InputError:
-    return InputError("cannot change while the board runs", path, "reset the bench with the new value", "not_live")
-
-
-def _get(spec: Spec, path: str) -> Any:
-    """Return the value a path has now, defaults included."""
-    head, _, leaf = path.rpartition(".")
-    in_use = {"controller.kind": spec.active, "sensor.kind": spec.measuring}
-    in_use |= {f"slots.{slot}": name for slot, name in spec.driving.items()}
-    if path in in_use:
-        return in_use[path]
-    sections: dict[str, Section] = {key: getattr(spec, key) for key in LIVE_SECTIONS}
-    for key in ("controllers", "sensors", *CHOSEN):
-        sections |= {f"{key}.{name}": section for name, section in getattr(spec, key).items()}
-    sections |= spec.generators
-    sections["controller"] = spec.controllers[spec.active]
-    sections["sensor"] = spec.sensors[spec.measuring]
-    section = sections.get(head)
-    if section is None:
-        return None
-    return section.block.name if leaf in ("kind", "model") else getattr(section.params, leaf, None)
 
 
 def _change(board: Board, spec: Spec) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.block import Block, Oscillator
-from core.board.document import CHOSEN, ONE_DISPLACEMENT, Document, generators
+from core.board.document import CHOSEN, ONE_DISPLACEMENT, PARKED, Document, generators
 from core.board.instances import faults_of, feeds_forward
 from core.board.library import library_of
 from core.board.spec import Section, Spec
@@ -36,6 +36,10 @@ def refuse_what_does_not_fit(doc: Document, plant: type[Block]) -> None:
         if key in doc:
             inputs = ", ".join(plant.generators) or "reference"
             raise InputError(f"{plant.name} has no {key}; it has {inputs}", key, "leave it out")
+    for key, family in PARKED.values():
+        for name in doc.get(key, {}):
+            if reason := misfit(library_of(doc).block(family, name, key), plant):
+                raise InputError(f"{name} {reason}", f"{key}.{name}", "leave it out")
 
 
 def driving(doc: Document, plant: type[Block]) -> dict[str, str]:

@@ -47,7 +47,7 @@ class Frame(Table):
     seed: int = Field(1, ge=0, le=MOST_SEED, description="seed of all noise")
     without_driver: Literal["hold", "safe"] = Field(
         "hold",
-        description="what a live bench does when whoever drives it among several is gone: go on, or safe outputs",
+        description="what a live bench does when its driver, one of several people, is gone: go on, or safe outputs",
     )
 
 

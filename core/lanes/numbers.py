@@ -192,6 +192,9 @@ class Arithmetic:
     def binary(self, sign: type[ast.AST], left: Any, right: Any) -> Any:
         """Do arithmetic on two numbers."""
         if not isinstance(left, Number | np.uint64) and not isinstance(right, Number | np.uint64):
+            if sign is ast.Div and right == 0:  # Python stops there; a processor goes on
+                with np.errstate(all="ignore"):
+                    return float(np.float64(left) / np.float64(right))
             return PLAIN[sign](left, right)
         if sign is ast.Pow:
             if right == 2 and not isinstance(right, Number):

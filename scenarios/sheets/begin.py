@@ -1,4 +1,4 @@
-"""What a student begins with: the scenario with the own device and numbers, and the facts that formulas name.
+"""The bench with which a student begins: the scenario with the own device and numbers, and facts for formulas.
 
 The same words give the same bench. All of it stays on the server until a step is done.
 """
@@ -17,7 +17,7 @@ from scenarios.sheets.expression import evaluate
 from scenarios.sheets.sheet import Sheet
 
 DIGITS = 6
-"""Decimals of what a drawn device is made of, in its own units."""
+"""Decimals of the parts of a drawn device, in their own units."""
 SEEDS = 1_000_000
 
 
@@ -57,7 +57,7 @@ def begin(sheet: Sheet, drawn: Callable[[str], int]) -> Beginning:
 
 
 def _own(values: dict[str, Any]) -> dict[str, Any]:
-    """Return what of the values set belongs to the device."""
+    """Return the values that belong to the device."""
     return {path: value for path, value in values.items() if path.split(".")[0] == "device"}
 
 

@@ -1,4 +1,4 @@
-"""A sheet is read, and all of it is tried on the bench it begins with before anybody sees it."""
+"""Reads a sheet and tries all of it on the bench it begins with, before anybody sees it."""
 
 from __future__ import annotations
 

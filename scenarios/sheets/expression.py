@@ -32,7 +32,7 @@ LONGEST = 300
 """Characters of a formula."""
 OPERATORS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd)
 PARTS = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Load, ast.Constant, *OPERATORS)
-"""What a formula may be made of."""
+"""The parts that a formula may have."""
 
 
 def evaluate(formula: float | str, facts: Mapping[str, float], field: str = "") -> float:

@@ -1,4 +1,4 @@
-"""What an answer is worth, and why: all of a step's points, a part of them, or none."""
+"""Judges an answer: it earns all points of a step, a part of them or none, for a reason."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scenarios.sheets.quantity import parse_quantity, unit_of
 from scenarios.sheets.sheet import Answered, Choice, Number
 
 SMALLEST = 1e-12
-"""What a number that is to be 0 may be away from it when only a relative tolerance is given."""
+"""Tolerance of a number that should be 0 when the sheet gives only a relative one."""
 
 
 class Verdict(NamedTuple):

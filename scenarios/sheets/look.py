@@ -1,4 +1,4 @@
-"""Looks at a bench at the end of a window: what each condition of a step measures, and whether it holds."""
+"""Looks at a bench at the end of a window: measures each condition of a step, and says whether it holds."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Window(Protocol):
 
 
 class Finding(NamedTuple):
-    """What a condition measured, and whether it holds."""
+    """The value of a condition, and whether it holds."""
 
     value: Value
     holds: bool
@@ -162,7 +162,7 @@ def _measured(kind: str, signal: str, window: Window) -> float:
 
 
 def wanted_text(condition: Limits, ends: tuple[float, float] | None) -> str:
-    """Say what a condition is to be; nothing if the sheet does not tell."""
+    """Say the value that a condition asks for; nothing if the sheet does not tell."""
     if not condition.told:
         return ""
     if ends is None:
@@ -178,7 +178,7 @@ def wanted_text(condition: Limits, ends: tuple[float, float] | None) -> str:
 
 
 def value_text(condition: Limits, value: Value) -> str:
-    """Write what was measured."""
+    """Write a measured value."""
     if value is None:
         return "–"
     return value if isinstance(value, str) else _text(condition, value, 3, format_si)

@@ -1,4 +1,4 @@
-"""How far somebody has come with a sheet: which step is open, what was answered, what it earned and lost."""
+"""How far somebody has come with a sheet: the open step, the answers, the points won and lost."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Given(BaseModel):
 
 
 class StepProgress(BaseModel):
-    """What was done at a step."""
+    """The work at a step."""
 
     answers: list[Given] = []
     hints: int = 0
@@ -40,7 +40,7 @@ class StepProgress(BaseModel):
     blind_before: int | None = None
 
     def points(self, step: AnyStep) -> float:
-        """Return what the step is worth so far; wrong answers and hints make it less than nothing."""
+        """Return the points of the step so far; wrong answers and hints can bring them below 0."""
         return round(self.share * step.points - self.lost, 3)
 
 
@@ -52,7 +52,7 @@ class Progress(BaseModel):
     recordings: list[str] = []
 
     def of(self, step: AnyStep) -> StepProgress:
-        """Return what was done at a step."""
+        """Return the work at a step."""
         return self.steps.setdefault(step.id, StepProgress())
 
     def open_step(self, sheet: Sheet) -> AnyStep | None:
@@ -67,7 +67,7 @@ class Progress(BaseModel):
         return run is None or self.of(run).done
 
     def points(self, sheet: Sheet) -> float:
-        """Return the sum of what may be told."""
+        """Return the sum of the points that the student may know."""
         return round(sum(self.of(step).points(step) for step in sheet.steps if self.is_told(sheet, step)), 3)
 
     def answer(self, sheet: Sheet, step_id: str, text: str, tick: int) -> None:

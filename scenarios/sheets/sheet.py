@@ -1,4 +1,4 @@
-"""What a sheet is: its head, and sections of text, each with at most one step that the server checks."""
+"""A sheet: its head, and sections of text, each with at most one step that the server checks."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Hint(Part):
 
 
 class Step(Part):
-    """What all steps have."""
+    """Fields of all steps."""
 
     id: Name
     points: float = Field(gt=0, le=20)
@@ -83,7 +83,7 @@ class Step(Part):
 
 
 class Limits(Part):
-    """A quantity of the bench, and what it is to be."""
+    """A quantity of the bench, and the value that the step asks for."""
 
     label: Words
     name: Name | None = Field(None, description="Its value when the step is done is the fact <step>_<name>")
@@ -198,14 +198,14 @@ class Answered(Step):
 
     @property
     def asks(self) -> Choice | Number:
-        """What is asked."""
+        """The question."""
         asked = self.choice or self.number
         assert asked is not None
         return asked
 
     @property
     def costs(self) -> float:
-        """Points that a wrong answer loses; whoever tries all options earns nothing by it."""
+        """Points that a wrong answer loses; trying all options earns nothing."""
         if self.wrong_costs is not None:
             return self.wrong_costs
         if self.choice is not None:
@@ -266,7 +266,7 @@ class Sheet:
 
     @property
     def points(self) -> float:
-        """What can be earned."""
+        """The most that a student can earn."""
         return sum(step.points for step in self.steps)
 
     def step(self, name: str) -> Hold | Question | Prediction | Blind | None:

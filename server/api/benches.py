@@ -112,7 +112,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
     if person.role == "watcher":
         raise ApiError(403, "forbidden", "a link to watch opens one bench")
     if person.role == "student":
-        if service.is_blind(person, (await service.student_benches.get(person)).id):  # it may be on its way back
+        if service.views.is_blind(person, (await service.student_benches.get(person)).id):  # it may be on its way back
             raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
         service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
         session = await service.student_benches.replace(person, body.wanted())
@@ -120,22 +120,22 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
         session = await service.benches.create(**body.wanted())
         session.keep = body.keep
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return await service.opened(session, person)
+    return await service.views.opened(session, person)
 
 
 @router.get("")
 async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
-    """List the live benches, without those of students, which are listed with their class; to them, their own."""
+    """List the live benches without those of students, which their class lists; a student sees the own bench."""
     if person.is_teacher:
-        return BenchList(benches=service.views(person))
+        return BenchList(benches=service.views.all(person))
     found = service.benches.find(service.people.bench_of(person))
-    return BenchList(benches=[service.view(found, person)] if found is not None else [])
+    return BenchList(benches=[service.views.of(found, person)] if found is not None else [])
 
 
 @router.get("/{bench_id}")
 async def get_bench(session: SessionDep, service: ServiceDep, person: PersonDep) -> Bench:
     """Describe a bench."""
-    return service.view(session, person)
+    return service.views.of(session, person)
 
 
 @router.delete("/{bench_id}", status_code=204, dependencies=[RateLimited])
@@ -147,9 +147,9 @@ async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
 @router.post("/{bench_id}/reopen", dependencies=[RateLimited])
 async def reopen_bench(bench_id: str, service: ServiceDep, person: PersonDep) -> Bench:
     """Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running."""
-    session = await service.bring_back(bench_id)
+    session = await service.reopening.bring_back(bench_id)
     service.idling.saw(bench_id)
-    return service.view(session, person)
+    return service.views.of(session, person)
 
 
 @router.post("/{bench_id}/commands", dependencies=[RateLimited])
@@ -162,7 +162,7 @@ async def command(
     reset_trip, is still read.
     """
     entry = await service.benches.command(session, command, caller)
-    if isinstance(seen := service.seen(session, person), BlindView):
+    if isinstance(seen := service.views.seen(session, person), BlindView):
         entry = seen.told(entry)
     return CommandResult(tick=entry.tick, time_ms=entry.tick * session.dt_ms, entry=entry)
 
@@ -207,7 +207,7 @@ async def fork_bench(
     """Make a second bench that goes on from this moment or a snapshot, bit for bit."""
     twin = await service.benches.fork(session, body.snapshot)
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
-    return await service.opened(twin, person)
+    return await service.views.opened(twin, person)
 
 
 @router.post("/{bench_id}/variant", status_code=201, dependencies=[RateLimited])
@@ -217,4 +217,4 @@ async def vary_bench(
     """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed."""
     made = await service.benches.variant(session, body.set)
     response.headers["Location"] = f"/api/v1/benches/{made.id}"
-    return await service.opened(made, person)
+    return await service.views.opened(made, person)

@@ -28,7 +28,7 @@ RULE = (
 
 
 class Hide(Body):
-    """What is hidden on a bench of one's own."""
+    """A fault to hide on a bench of one's own."""
 
     seed: int = Field(ge=0, le=2**53, description="The same one hides the same fault, but for students of a class")
     shows: bool = Field(False, description="The diagnosers may be looked at: whether to trust them is the question")
@@ -42,7 +42,7 @@ class Said(Body):
 
 
 class Blindness(BaseModel):
-    """What is hidden on a bench, and what was answered before."""
+    """The hidden fault of a bench, and the answers before."""
 
     question: Question | None = Field(description="Null while nothing is hidden")
     rule: str = Field(description="How points are counted")
@@ -50,7 +50,7 @@ class Blindness(BaseModel):
 
 
 class HideForAll(Body):
-    """What the students of a class are asked."""
+    """A question to the students of a class."""
 
     scenario: str | dict[str, Any] = Field("ch5-seven-step", description="Library id, TOML text, or document")
     shows: bool = Field(False, description="The diagnosers may be looked at: whether to trust them is the question")
@@ -58,7 +58,7 @@ class HideForAll(Body):
 
 
 class BlindClass(BaseModel):
-    """What was hidden from the students of a class, and what they answered."""
+    """The hidden faults of the students of a class, and their answers."""
 
     rule: str
     hidden: int = Field(description="How many have not answered yet")
@@ -67,7 +67,7 @@ class BlindClass(BaseModel):
 
 @router.get(BENCH)
 async def get_blind(session: SessionDep, service: ServiceDep, person: PersonDep) -> Blindness:
-    """Say what is asked on a bench, and what was answered."""
+    """Return the question of a bench, and the answers so far."""
     hiding = session.hiding
     return Blindness(
         question=hiding.blind.question if hiding.blind is not None else None,
@@ -78,7 +78,7 @@ async def get_blind(session: SessionDep, service: ServiceDep, person: PersonDep)
 
 @router.post(BENCH, status_code=201, dependencies=[RateLimited])
 async def hide_fault(body: Hide, session: SessionDep, service: ServiceDep, person: PersonDep) -> Blindness:
-    """Hide a fault on a bench, or none; its doors serve no more than may be seen until it is answered."""
+    """Hide a fault on a bench, or none; until somebody answers, the bench serves nothing that tells it."""
     if session.class_id and person.is_teacher:
         raise ApiError(409, "conflict", "this is the bench of a student", hint="hide one for the class")
     secret = (await service.classes.row(person.class_id)).secret if person.class_id else ""
@@ -89,7 +89,7 @@ async def hide_fault(body: Hide, session: SessionDep, service: ServiceDep, perso
 
 @router.post(f"{BENCH}/answer", dependencies=[RateLimited])
 async def answer(body: Said, session: SessionDep, service: ServiceDep, person: PersonDep) -> Answer:
-    """Say what the device is; what was hidden is in the answer, and served from then on."""
+    """Answer what the device is; the reply tells the hidden fault, and the bench serves everything again."""
     if session.class_id and person.is_teacher:
         raise ApiError(403, "forbidden", "only the student whose bench it is may answer")
     return await service.blinds.commit(session, person, body.said, body.confidence)
@@ -97,7 +97,7 @@ async def answer(body: Said, session: SessionDep, service: ServiceDep, person: P
 
 @router.delete(BENCH, dependencies=[RateLimited])
 async def give_up(session: SessionDep, service: ServiceDep, person: PersonDep) -> Answer:
-    """Show what was hidden without an answer."""
+    """Reveal the fault without an answer."""
     return await service.blinds.reveal(session, person)
 
 
@@ -113,7 +113,7 @@ async def hide_for_class(class_id: str, body: HideForAll, service: ServiceDep) -
 
 @router.get(CLASS)
 async def get_class_blind(class_id: str, service: ServiceDep) -> BlindClass:
-    """List what was hidden in a class and what was answered, with the truth."""
+    """List the hidden faults of a class and the answers, with the truth."""
     await service.classes.row(class_id)
     answers = service.blinds.of_class(class_id)
     return BlindClass(rule=RULE, hidden=sum(one.state == "hidden" for one in answers), answers=answers)
@@ -121,7 +121,7 @@ async def get_class_blind(class_id: str, service: ServiceDep) -> BlindClass:
 
 @router.delete(CLASS, dependencies=[RateLimited])
 async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) -> Outcomes:
-    """Show all students of a class what was hidden from them; who has not answered gets no points."""
+    """Reveal their faults to all students of a class; those who have not answered get no points."""
     await service.classes.row(class_id)
     done, failed = 0, []
     for student in service.people.students(class_id):

@@ -77,7 +77,7 @@ class ForAll(Body):
 
 
 class Outcomes(BaseModel):
-    """What became of something done on many benches."""
+    """The outcome of a command to many benches."""
 
     done: int
     failed: list[str] = Field(description="Name and reason of each that refused")
@@ -105,7 +105,7 @@ async def get_class(class_id: str, service: ServiceDep, request: Request) -> Cla
 
 @router.delete("/{class_id}", status_code=204, dependencies=[RateLimited])
 async def end_class(class_id: str, service: ServiceDep) -> None:
-    """End a class: its sessions and benches, the names of its students and what they did are gone."""
+    """End a class: close its benches and sessions, and delete the names of its students and the log."""
     await service.classes.end(class_id)
 
 
@@ -117,7 +117,7 @@ async def make_code(class_id: str, body: Minutes, service: ServiceDep, request: 
 
 @router.delete("/{class_id}/code", dependencies=[RateLimited])
 async def end_code(class_id: str, service: ServiceDep, request: Request) -> Class:
-    """Let nobody else join; who is there stays."""
+    """Let nobody else join; students who are there stay."""
     return _addressed(await service.classes.close_joining(class_id), service, request)
 
 
@@ -146,7 +146,7 @@ async def remove_member(class_id: str, member_id: str, service: ServiceDep) -> N
 
 @router.post("/{class_id}/commands", dependencies=[RateLimited])
 async def command_all(class_id: str, body: ForAll, service: ServiceDep) -> Outcomes:
-    """Carry out a command on the benches of all students or of some, each at its own next tick edge, whoever drives."""
+    """Carry out a command on the benches of all students or some at their next tick edges, no matter who drives."""
     students = await students_of(service, class_id, body.members)
 
     async def one(person: Person) -> str | None:
@@ -164,7 +164,7 @@ async def command_all(class_id: str, body: ForAll, service: ServiceDep) -> Outco
 
 @router.post("/{class_id}/scenario", dependencies=[RateLimited])
 async def begin_scenario(class_id: str, body: NewBench, service: ServiceDep) -> Outcomes:
-    """Begin a scenario on the benches of all students; who joins later begins with it too."""
+    """Begin a scenario on the benches of all students; students who join later begin with it too."""
     failed = await service.classes.begin_all(class_id, body.wanted())
     return Outcomes(done=len(service.people.students(class_id)) - len(failed), failed=failed)
 

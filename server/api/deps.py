@@ -54,8 +54,8 @@ def get_caller(request: Request, person: PersonDep) -> str:
 
 
 def get_seen(session: SessionDep, service: ServiceDep, person: PersonDep) -> Seen:
-    """Return the bench in the path as whoever asks may see it."""
-    return service.seen(session, person)
+    """Return the bench in the path as the caller may see it."""
+    return service.views.seen(session, person)
 
 
 SeenDep = Annotated[Seen, Depends(get_seen)]

@@ -19,8 +19,8 @@ class DrivingTurn(Body):
 
     do: Literal["ask", "hand_over", "refuse", "take", "leave"] = Field(
         description=(
-            "ask whoever drives for the bench; hand it over to somebody, or refuse who has asked; take it (the "
-            "teacher, or a student what was lent from the own bench); leave it to whoever does something next"
+            "ask the driver for the bench; hand it over to somebody, or refuse a person who has asked; take it (the "
+            "teacher, or a student who handed over the own bench); leave it: the next person who does something drives"
         )
     )
     to: str = Field("", max_length=32, description="Id of whom it is handed over to, or who is refused")

@@ -15,7 +15,7 @@ from server.people.joining import join_page
 from server.people.person import Person
 from server.security.gate import lead_on, page
 from server.security.identity import Identity
-from server.store.models import now
+from server.store.base import now
 
 router = APIRouter(include_in_schema=False)
 
@@ -57,7 +57,8 @@ async def watch(link: str, request: Request, service: ServiceDep) -> Response:
         try:
             service.joining.check(address_of(request))
         except ApiError as error:
-            return HTMLResponse(page(error.status_code, "Too many tries", "Wait a minute."), 429, error.headers)
+            status = error.status_code
+            return HTMLResponse(page(status, "Too many tries", "Wait a minute."), status, error.headers)
         text = "Ask for a new one: links to watch end after a while, or when the bench is closed."
         return HTMLResponse(page(404, "This link leads nowhere any more", text), 404)
     response = lead_on(request, "/", service.public.prefix)

@@ -102,7 +102,7 @@ async def put_cue(
     text = f"cue {number} of {found.head.title}: {cue.title}"
     async with service.experiment_turn:
         staged, digest = await service.staging.put(session, state, pace, caller, text)
-    return Staged(bench=await service.opened(staged, person), tick=state.from_tick, digest=digest)
+    return Staged(bench=await service.views.opened(staged, person), tick=state.from_tick, digest=digest)
 
 
 async def _get(lecture_id: str) -> Lecture:

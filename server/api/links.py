@@ -55,7 +55,7 @@ async def make_link(body: NewLink, service: ServiceDep, person: PersonDep, respo
     await service.keeping.room()
     experiment, title = None, body.title
     if body.bench is not None:
-        session = service.whole(body.bench, person)
+        session = service.views.whole(body.bench, person)
         experiment = await service.engine.call(experiment_of, session)
         title = title or session.scenario.head.title or session.scenario.id
     elif body.scenario is not None:
@@ -99,6 +99,6 @@ async def open_link(link_id: str, service: ServiceDep, person: PersonDep, respon
 
     `opened` says whether its bits are those of then.
     """
-    session = await service.open_link(await service.links.get(link_id))
+    session = await service.reopening.open_link(await service.links.get(link_id))
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return await service.opened(session, person)
+    return await service.views.opened(session, person)

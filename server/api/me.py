@@ -27,7 +27,7 @@ class Me(BaseModel):
     shown: str | None = Field(None, description="A bench that the teacher shows to all; a student sees it")
     lent: str | None = Field(None, description="A bench of the teacher that a student was handed, and drives")
     layout: str | None = Field(None, description="Id of the layout given to all last; /me/layout has it")
-    vote: OpenVote | None = Field(None, description="What the class of a student is asked")
+    vote: OpenVote | None = Field(None, description="The open question to the class of a student")
 
 
 class Hand(Body):

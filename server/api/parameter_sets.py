@@ -105,8 +105,8 @@ async def compare_parameter_sets(
         second = (await service.parameter_sets.get(other)).values
     else:
         if not service.people.may(person, Need.WATCH, bench or ""):
-            raise ApiError(403, "forbidden", "only whoever has this bench may do that", "bench")
-        session = service.whole(bench or "", person)
+            raise ApiError(403, "forbidden", "only the person who has this bench may do that", "bench")
+        session = service.views.whole(bench or "", person)
         second = await service.engine.call(lambda: tuned(session.board.spec))
     rows = [
         Differs(path=path, first=first.get(path), second=second.get(path))

@@ -68,7 +68,7 @@ async def list_bench_recordings(session: SessionDep, service: ServiceDep) -> Rec
 
 @router.get("/recordings")
 async def list_recordings(service: ServiceDep, person: PersonDep) -> RecordingList:
-    """List all recordings, of benches that are gone as well; to a student those of the own benches."""
+    """List all recordings, also of benches that are gone; a student sees those of the own benches."""
     benches = None if person.is_teacher else service.people.benches_of(person)
     return RecordingList(recordings=await service.recordings.all(benches))
 
@@ -95,7 +95,7 @@ async def replay_recording(
     recording, path = await service.recordings.finished(recording_id)
     session = await service.benches.replay(recording, path, body.speed, body.paused)
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
-    return await service.opened(session, person)
+    return await service.views.opened(session, person)
 
 
 @router.post("/recordings/{recording_id}/compare")

@@ -39,14 +39,14 @@ class SheetCard(BaseModel):
     points: float
     steps: int
     own: bool = Field(description="Somebody opened it; the others are those of the library")
-    work: SheetBrief | None = Field(description="How far who asks has come")
+    work: SheetBrief | None = Field(description="How far the caller has come")
 
 
 class SheetList(BaseModel):
     """The sheets, in the order in which they are taught."""
 
     sheets: list[SheetCard]
-    current: str | None = Field(description="The one who asks began last")
+    current: str | None = Field(description="Id of the sheet that the caller began last")
 
 
 class NewSheet(Body):
@@ -108,7 +108,7 @@ async def open_sheet(body: NewSheet, person: PersonDep, service: ServiceDep, res
 
 @router.get("/sheets/{sheet_id}")
 async def get_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
-    """Show a sheet as far as who asks has come."""
+    """Show a sheet as far as the caller has come."""
     return await service.sheets.view(person, sheet_id)
 
 
@@ -242,6 +242,6 @@ def _recording(recording: Recording | None, recording_id: str) -> str:
 
 
 def _must_work(person: Person) -> None:
-    """Refuse somebody who only watches: there is no bench of theirs that a sheet could begin on."""
+    """Refuse a watcher, who has no bench on which a sheet could begin."""
     if person.role == "watcher":
         raise ApiError(409, "conflict", "who watches a bench has no sheet")

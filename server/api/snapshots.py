@@ -51,4 +51,4 @@ async def restore_snapshot(
 ) -> Bench:
     """Go back to a moment; from there the bench computes the same bits again."""
     await service.engine.call(session.restore, snapshot_id, caller)
-    return service.view(session, person)
+    return service.views.of(session, person)

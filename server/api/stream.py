@@ -78,7 +78,7 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
         return
     await socket.accept(subprotocol=SUBPROTOCOL)
     person: Person = socket.scope["person"]
-    seen, bench = service.seen(session, person), service.view(session, person)
+    seen, bench = service.views.seen(session, person), service.views.of(session, person)
     hub, line = service.hub, Line.of(socket)
     room = hub.room(seen)
     client = Client(line, seen, service.metrics.sent, room.news, room.cuts, bench.last_event, person)

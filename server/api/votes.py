@@ -1,4 +1,4 @@
-"""Votes: a question to a class or to the room, and how many said what once it is revealed."""
+"""Votes: a question to a class or to the room; the counts are shown once the teacher reveals them."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Hands(Body):
 
 
 class NewBallot(Body):
-    """What a student answers."""
+    """The answer of a student."""
 
     vote: str = Field(max_length=32)
     answer: int = Field(ge=0, lt=MOST_LANES, description="Position among the answers")
@@ -84,7 +84,7 @@ async def close_vote(vote_id: str, service: ServiceDep) -> Vote:
 
 @router.post("/votes/{vote_id}/reveal", dependencies=[RateLimited])
 async def reveal_vote(vote_id: str, service: ServiceDep) -> Vote:
-    """Close a vote and show how many said what."""
+    """Close a vote and show the counts."""
     return await service.votes.move(vote_id, "revealed")
 
 

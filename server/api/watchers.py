@@ -1,4 +1,4 @@
-"""Links to watch a bench: whoever opens one sees it live and can change nothing, until the link ends."""
+"""Links to watch a bench: people who open one see it live and can change nothing, until the link ends."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep, SessionDep
 from server.errors import ApiError, not_found
-from server.store.models import now
+from server.store.base import now
 
 router = APIRouter(prefix="/benches/{bench_id}/watchers", tags=["classes"], route_class=StrictRoute)
 

@@ -3,36 +3,33 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import secrets
 from collections import Counter
 from collections.abc import Callable, Coroutine
 from concurrent.futures import Future
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 from core.board.board import Board
-from core.board.history import History
 from core.errors import InputError
-from core.format import format_count
 from core.own.admission import kept_with
-from scenarios.schema import Scenario
 from server.bench.blind import Blind
 from server.bench.checkpoints import Kept
-from server.bench.commands import MAX_SCALE, MIN_SCALE, Reset, Seek
+from server.bench.commands import Reset, Seek
 from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.experiment import Experiment, rebuilt, repeat
 from server.bench.hiding import STOPPED
+from server.bench.maker import Maker
 from server.bench.making import prepare, usual_scale
 from server.bench.portrait import design_of
 from server.bench.recorder import Recorder
-from server.bench.replay import Replay, played
+from server.bench.room import Room
 from server.bench.session import Session
 from server.bench.status import Opened
 from server.bench.tape import REFUSAL, Tape
-from server.bench.tick_source import TickSource
 from server.bench.watch import KeptWatch
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
@@ -63,8 +60,9 @@ class Benches:
         witness: Callable[[Session, Event], None] | None = None,
     ) -> None:
         self._engine, self._settings, self._metrics, self._witness = engine, settings, metrics, witness
+        self.maker = Maker(settings, metrics, engine.clock)
         self._sessions: dict[str, Session] = {}
-        self._coming = 0
+        self._room = Room(settings, lambda: sum(not session.class_id for session in self.all()))
 
     def __len__(self) -> int:
         return len(self._sessions)
@@ -115,11 +113,8 @@ class Benches:
         def made() -> Session:
             scenario, board = prepare(source, values, seed)
             scale = usual_scale(board) if own_scale else time_scale
-            kept = self._kept(board, self._settings.student_history_mb if class_id else None)
-            session = Session(scenario, board, scale, kept, self._metrics, self._engine.clock)
-            if class_id:
-                session.belong(class_id, self._settings.student_ticks_per_s)
-            session.fast_forward.leads = quiet_lead
+            session = self.maker.around(scenario, board, scale, class_id)
+            session.running.fast_forward.leads = quiet_lead
             if hide is not None:
                 session.hiding.begin(hide(board))
                 session.hiding.inject("teacher")
@@ -153,15 +148,7 @@ class Benches:
         ApiError
             If there are too many benches, or this version cannot read its scenario.
         """
-
-        def made() -> Session:
-            scenario, tape, recorded = played(recording, path)
-            pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
-            session = Replay(recording, scenario, tape, pace, self._kept(tape), self._metrics, self._engine.clock)
-            session.recorded_scale = recorded
-            return session
-
-        return await self.admit(asyncio.to_thread(made), not paused)
+        return await self.admit(asyncio.to_thread(self.maker.replay, recording, path, speed), not paused)
 
     async def repeat(self, experiment: Experiment, opened: Opened, bench_id: str | None = None) -> Session:
         """Make a bench that has done what an experiment has, and goes on or stands as it did.
@@ -183,7 +170,7 @@ class Benches:
 
         def made() -> Session:
             scenario, board = rebuilt(experiment, self._settings.max_run_ticks)
-            session = self.around(scenario, board, experiment.time_scale)
+            session = self.maker.around(scenario, board, experiment.time_scale)
             session.id = bench_id or ""
             same = repeat(session, experiment)
             session.opened = opened.model_copy(update={"same_bits": same})
@@ -202,11 +189,8 @@ class Benches:
 
         def made() -> Session:
             scenario, board = kept.board_of()
-            ticks = self._kept(board, self._settings.student_history_mb if class_id else None)
-            session = Session(scenario, board, kept.head.time_scale, ticks, self._metrics, self._engine.clock)
+            session = self.maker.around(scenario, board, kept.head.time_scale, class_id)
             kept.put_into(session)
-            if class_id:
-                session.belong(class_id, self._settings.student_ticks_per_s)
             return session
 
         async def coming() -> Session:
@@ -217,32 +201,18 @@ class Benches:
         class_id = kept.head.class_id
         return await self.admit(coming(), kept.head.running, is_counted=not class_id)
 
-    def around(self, scenario: Scenario, board: Board, time_scale: float | None) -> Session:
-        """Put a bench around a board; nobody has it yet."""
-        return Session(scenario, board, time_scale, self._kept(board), self._metrics, self._engine.clock)
-
     async def admit(self, coming: Coroutine[Any, Any, Session], start: bool, *, is_counted: bool = True) -> Session:
         """Take in a bench that is being made, if there is room; those of students are limited by their number."""
         try:
-            if is_counted:
-                self._check_room()
-        except ApiError:
-            coming.close()
-            raise
-        self._coming += is_counted
-        try:
-            return await self._enter(await coming, start)
+            with self._room.taken() if is_counted else nullcontext():
+                return await self._enter(await coming, start)
         finally:
-            self._coming -= is_counted
+            coming.close()  # if there was no room, nobody has awaited it
 
     async def take_in(self, session: Session, start: bool) -> Session:
         """Take in a bench that is made already, if there is room."""
-        self._check_room()
-        self._coming += 1
-        try:
+        with self._room.taken():
             return await self._enter(session, start)
-        finally:
-            self._coming -= 1
 
     async def _enter(self, session: Session, start: bool) -> Session:
         session.id = session.id or f"{self._settings.shard}{secrets.token_hex(6)}"
@@ -309,29 +279,6 @@ class Benches:
         states = Counter(session.status.state for session in self.all())
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
-
-    def _kept(self, board: TickSource, megabytes: int | None = None) -> int:
-        """Return for how many ticks the signals of a board are kept."""
-        most = megabytes or self._settings.history_mb
-        affordable = History.ticks_within(most, board.signals.outputs, len(board.signals.taps))
-        return min(self._settings.history_ticks, affordable)
-
-    def _check_room(self) -> None:
-        """Refuse a new bench if the limit is reached."""
-        live = sum(not session.class_id for session in self._sessions.values())
-        if live + self._coming >= self._settings.max_benches:
-            most, minutes = self._settings.max_benches, self._settings.idle_minutes
-            wait = (
-                f"; one that nobody watches is let go after {format_count(math.ceil(minutes), 'minute')}"
-                if minutes
-                else ""
-            )
-            raise ApiError(
-                409,
-                "too_many_benches",
-                f"the server is full: {most} of {most} benches are live (max_benches)",
-                hint=f"join one that runs, or close one{wait}",
-            )
 
     def _open(self, session: Session, start: bool) -> None:
         """Give a bench to the engine (a job)."""

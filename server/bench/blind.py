@@ -1,4 +1,4 @@
-"""Blind: a fault that is hidden on a bench until somebody has said what it is, and what is shown meanwhile."""
+"""A fault that a bench hides until somebody answers, and the signals that people see meanwhile."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from server.bench.tick_source import TickSource
 from server.errors import ApiError
 
 ACTOR = "board"
-"""Who injects the fault: nobody who could be asked."""
+"""Actor of the hidden fault in the log."""
 
 EARLIEST_S, LATEST_S = 1.0, 4.0
 """When the fault comes: seconds of wall time after the beginning, at the usual pace of the device."""
@@ -33,17 +33,17 @@ COMMANDS = (
     Switch,
     ResetTrip,
 )
-"""What may be done meanwhile: let time run, change the reference and the controller."""
+"""Commands that are allowed meanwhile: to time, to the reference and to the controller."""
 MAY_SET = ("reference", "controller", "controllers")
 """First words of the parameters that may be set meanwhile."""
 
 SIGNALS = ("reference", "sensor", "drive", "model.displacement", "model.velocity")
-"""What may be seen meanwhile: what is asked for, measured and applied; `model` follows the reference alone."""
+"""Signals that people see meanwhile: reference, measurement and drive; `model` follows the reference alone."""
 OF_A_DIAGNOSER = ("probability", "winner", "residual", "nis", "information", "unexcited", "least_nis", "unexplained")
 """Ports of a diagnoser that may be seen if the exercise adds it; its score knows the truth."""
 
 SHEET = ("sample_rate_khz", "device", "plant", "reference", "controller", "sensor", "sensors", "controllers", "slots")
-"""Tables of the bench that are told: as the device is meant to be, before it was drawn."""
+"""Tables of the bench that people see: those of the nominal device, not of the drawn one."""
 
 REFUSAL = "a fault is hidden on this bench"
 HINT = "answer or give up first, under Blind diagnosis"
@@ -61,7 +61,7 @@ FAULTS: dict[str, tuple[str, Callable[[float], float]]] = {
 
 
 class Question(BaseModel):
-    """What is told of a hidden fault."""
+    """The words people get about a hidden fault."""
 
     id: str
     answers: list[str] = Field(description="One of these is true, each as likely as the others")
@@ -93,7 +93,7 @@ class Blind(BaseModel):
         return block in SIGNALS or signal in SIGNALS
 
     def check(self, command: Command | commands.RunCommand) -> None:
-        """Refuse a command that would tell or change what is hidden, by whomever.
+        """Refuse a command of anybody that would tell or change the hidden fault.
 
         Raises
         ------
@@ -137,7 +137,7 @@ def faults_of(hypothesis: NamedModel) -> list[Document]:
 
 
 def hide(board: TickSource, sheet: Document, id_: str, shows: bool, which: int, when: float) -> Blind:
-    """Choose what is hidden on a board from now on.
+    """Choose the fault that a board hides from now on.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def hide(board: TickSource, sheet: Document, id_: str, shows: bool, which: int, 
     id_ : str
         Of the question.
     shows : bool
-        Whether the diagnosers may be looked at: then it is the question whether to trust them.
+        Whether people may look at the diagnosers, and have to decide whether to trust them.
     which : int
         Number that chooses among the answers, all of them as likely.
     when : float

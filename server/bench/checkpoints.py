@@ -1,7 +1,7 @@
 """Checkpoints of live benches on disk: after a crash each goes on at its tick, bit for bit, with its log.
 
-A bench has two files. One is replaced as a whole and holds the board, the other grows by the events. A crash between
-two writes loses what came since the last: less than a second.
+A bench has two files. One holds the board and is replaced as a whole, the other grows by the events. A crash loses what
+came after the last write: less than a second.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ import numpy as np
 from pydantic import BaseModel
 
 from core.board.board import Board
-from core.board.document import Document
 from core.board.stored import Stored, revived, stored
 from core.errors import InputError
 from core.own.admission import kept
@@ -40,7 +39,7 @@ BOARD, EVENTS, PART, DOCUMENT, WATCH = ".npz", ".events", ".part", "document", "
 
 
 class Head(BaseModel):
-    """What a bench is beside its board and its events."""
+    """A bench without its board and its events."""
 
     id: str
     class_id: str
@@ -53,7 +52,6 @@ class Head(BaseModel):
     version: str
     blind: Blind | None = None
     hidden_since: int = 0
-    watch: Document | None = None
 
 
 @dataclass
@@ -165,7 +163,9 @@ class Checkpoints:
         if events:
             with self._path(head.id, EVENTS).open("a", encoding="utf-8") as file:
                 file.write("".join(f"{event.model_dump_json()}\n" for event in events))
-        text = json.dumps({**head.model_dump(), "board": kept.stored.document}, default=str).encode()
+        watch = kept.watch.document if kept.watch is not None else None
+        document = {**head.model_dump(), "board": kept.stored.document, WATCH: watch}
+        text = json.dumps(document, default=str).encode()
         part = self._path(head.id, BOARD + PART)
         with part.open("wb") as file:
             arrays: dict[str, Any] = {DOCUMENT: np.frombuffer(text, np.uint8), **kept.stored.arrays}
@@ -178,7 +178,7 @@ class Checkpoints:
         with self._path(bench_id, BOARD).open("rb") as file, np.load(file, allow_pickle=False) as parts:
             document = json.loads(parts[DOCUMENT].tobytes())
             arrays = {name: parts[name] for name in parts.files if name != DOCUMENT}
-        board, samples = document.pop("board"), arrays.pop(WATCH, None)
+        board, seen, samples = document.pop("board"), document.pop(WATCH, None), arrays.pop(WATCH, None)
         head, path = Head.model_validate(document), self._path(bench_id, EVENTS)
         lines = path.read_text("utf-8").splitlines() if path.exists() else []
         known: dict[int, Event] = {}
@@ -192,7 +192,7 @@ class Checkpoints:
         events = [known[seq] for seq in sorted(known)]
         path.write_text("".join(f"{event.model_dump_json()}\n" for event in events), "utf-8")
         self._written[bench_id] = (head.tick, head.last_event, head.running)
-        watch = KeptWatch(head.watch, samples) if head.watch is not None and samples is not None else None
+        watch = KeptWatch(seen, samples) if seen is not None and samples is not None else None
         return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
 
 
@@ -212,6 +212,5 @@ def _taken(session: Session) -> Kept:
         version=THIS_VERSION,
         blind=session.hiding.blind,
         hidden_since=session.hiding.since,
-        watch=watch.document if watch is not None else None,
     )
     return Kept(head, stored(session.board), [], watch)  # type: ignore[arg-type]

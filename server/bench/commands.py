@@ -108,8 +108,8 @@ class Loop(RunCommand):
     end_tick: int | None = Field(None, ge=0, le=2**53)
 
 
-RunsBench = Start | Pause | Step | StepPeriod | Undo | Redo | TimeScale | FastForward | Seek | Loop
-"""What a bench carries out itself, without a new board."""
+RunsTime = Start | Pause | Step | StepPeriod | TimeScale | FastForward | Seek | Loop
+"""Commands to the time of a bench."""
 
 RUN_KINDS: dict[str, type[RunCommand]] = {
     "start": Start,

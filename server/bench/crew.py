@@ -1,7 +1,7 @@
 """The threads that turn the engine: one that keeps time, and helpers that advance benches beside it.
 
-A crew that hangs is left behind and another takes its place. What one of its threads has in hand belongs to that thread
-until then, and none of them runs another line of it: should it come back, it ends there.
+The watchdog leaves a crew behind that hangs, and another takes its place. Until then a thread has what it works on to
+itself. A thread of the old crew that wakes up ends before its next line.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Crew(Generic[T]):
     Parameters
     ----------
     run : callable
-        What the thread does that keeps time.
+        The work of the thread that keeps time.
     helpers : int
         Threads beside it.
     """
@@ -39,7 +39,7 @@ class Crew(Generic[T]):
             for number in range(helpers)
         ]
         self.in_hand: dict[int, T] = {}
-        """What each thread works on, by the number of the thread."""
+        """The work of each thread, by the number of the thread."""
 
     @property
     def threads(self) -> list[threading.Thread]:
@@ -48,7 +48,7 @@ class Crew(Generic[T]):
 
     @property
     def held(self) -> list[T]:
-        """What its threads have in hand; a thread that has ended has nothing."""
+        """The work of its threads; a thread that has ended has none."""
         in_hand = self.in_hand.copy()
         return [in_hand[number] for thread in self.threads if (number := thread.ident or 0) in in_hand]
 
@@ -86,7 +86,7 @@ class Crew(Generic[T]):
             self._tasks.put(None)
 
     def _help(self) -> None:
-        """Do what is asked for until the end."""
+        """Take tasks until the end."""
         with suppress(LeftBehind):
             while (task := self._tasks.get()) is not None:
                 task()

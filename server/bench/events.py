@@ -13,6 +13,7 @@ from pydantic import Field
 
 from core.board.document import Document
 from core.board.log import Log, LogEntry
+from server.bench.tick_source import TickSource
 
 KEPT = 4000
 
@@ -66,6 +67,12 @@ class EventLog(Log):
             self._entries.append(event)
             self.last = event.seq
         return event
+
+    def take_over(self, board: TickSource) -> None:
+        """Add what a board has noted so far, and let it note here from now on."""
+        for entry in board.log:
+            self.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
+        board.log = self
 
     def go_on(self, events: list[Event]) -> None:
         """Go on from the events of another log, which ended with these."""

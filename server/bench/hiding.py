@@ -1,4 +1,4 @@
-"""Hiding: what a bench keeps to itself while a fault is hidden on it, and the view that people have of it meanwhile."""
+"""Hiding: a bench hides a fault, and people have a view of the bench that does not tell it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from server.bench.status import Bench, BenchStatus
 from server.people.person import Person
 
 STOPPED = "the board has stopped itself"
-"""All that is told of a trip: its reason and its signal would tell the fault."""
+"""The only words about a trip: its reason and its signal would tell the fault."""
 
 RUNNING = ("opened", "start", "pause", "step", "step_period", "reset_trip", "finished", "blind")
 CHANGES = ("time_scale", Set.kind, Switch.kind)
-"""Kinds of events that are told, the latter with what was before; of a trip it is told that the board has stopped."""
+"""Kinds of events that people see, the latter with the values before; of a trip they see that the board has stopped."""
 
 STATUS = (
     *("state", "tick", "first_tick", "time_scale", "achieved_scale", "capped", "overruns", "given_up_ms"),
@@ -31,7 +31,7 @@ BENCH = (
     *("id", "title", "scenario_id", "source", "created", "dt_ms", "sample_rate_khz", "samples", "history_ticks"),
     *("drive_period_ticks", "axes", "controllers", "keep"),
 )
-"""Fields of a status and of a bench that are told; any other is not."""
+"""Fields of a status and of a bench that people are told; they are told no others."""
 
 
 class HidingBench(ShownBench, Protocol):
@@ -52,13 +52,13 @@ class Hiding:
     def __init__(self, bench: HidingBench) -> None:
         self._bench = bench
         self.view: BlindView | None = None
-        """What is seen of the bench while a fault is hidden."""
+        """The view that people have while a fault is hidden."""
         self.since = 0
         """Number of the first event that came then."""
 
     @property
     def blind(self) -> Blind | None:
-        """What is hidden."""
+        """The hidden fault."""
         return self.view.blind if self.view is not None else None
 
     def hides_from(self, person: Person) -> bool:
@@ -73,10 +73,10 @@ class Hiding:
             self.hear(event)
 
     def clear(self) -> None:
-        """Heal the device, and let nothing that was to come or was being kept tell more (a job of the engine)."""
+        """Heal the device, drop waiting commands and end recordings: all could tell the fault (a job of the engine)."""
         bench = self._bench
-        bench.fast_forward.end()
-        bench.fast_forward.leads = False
+        bench.running.fast_forward.end()
+        bench.running.fast_forward.leads = False
         bench.recordings.close("a fault was hidden")
         bench.board.pending.clear()
         bench.board.apply(Heal(heal="all"), ACTOR)
@@ -95,21 +95,21 @@ class Hiding:
         self._bench.refresh_status()
 
     def hear(self, event: Event) -> bool:
-        """Put an event of the bench into the log that is told, if it may be; return whether a fault is hidden."""
+        """Put an event of the bench into the log of the view, if it may go there; return whether a fault is hidden."""
         if self.view is not None:
             self.view.hear(event)
         return self.view is not None
 
 
 class BlindView:
-    """A bench as it is seen while a fault is hidden on it: whatever is not named here is not served.
+    """A bench as people see it while a fault is hidden on it: the server serves only what this class names.
 
     Parameters
     ----------
     bench : HidingBench
         The bench.
     blind : Blind
-        What is hidden.
+        The hidden fault.
     """
 
     def __init__(self, bench: HidingBench, blind: Blind) -> None:
@@ -189,7 +189,7 @@ class BlindView:
         )
 
     def hear(self, event: Event) -> None:
-        """Take an event into the log that is told, if it may be."""
+        """Take an event into this log, if people may see it."""
         if event.kind == "tripped":
             self._keep(event, text=STOPPED)
         elif event.kind in CHANGES:
@@ -198,14 +198,14 @@ class BlindView:
             self._keep(event, text=event.text, command=event.command)
 
     def told(self, event: Event) -> Event:
-        """Return an event of the bench as the log that is told has it."""
+        """Return an event of the bench as this log has it."""
         return next(one for one in reversed(self.events.after(0)[1]) if one.at == event.at)
 
     def _keep(self, event: Event, **told: Any) -> None:
         self.events.keep(tick=event.tick, actor=event.actor, kind=event.kind, at=event.at, **told)
 
     def _told(self, whole: BenchStatus) -> BenchStatus:
-        """Return what may be told of a status."""
+        """Return the parts of a status that people may see."""
         stopped = whole.trip
         if stopped is not None:
             stopped = Trip(tick=stopped.tick, time_ms=stopped.time_ms, reason=STOPPED, signal="", value=None)

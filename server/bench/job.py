@@ -8,7 +8,7 @@ from typing import Any
 
 
 class Job:
-    """A function and what comes of it.
+    """A function and its outcome.
 
     Parameters
     ----------

@@ -19,7 +19,10 @@ class LiveBench(Protocol):
     board: TickSource
     history: History
     events: EventLog
-    pacer: Pacer
+
+    @property
+    def pacer(self) -> Pacer:
+        """The pace of the bench."""
 
     @property
     def now(self) -> float:

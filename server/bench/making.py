@@ -1,4 +1,4 @@
-"""What a new bench is made of: its scenario, its board, the pace that suits it."""
+"""The parts of a new bench: its scenario, its board, the pace that suits it."""
 
 from __future__ import annotations
 

@@ -12,9 +12,9 @@ from core.faults.fault import FaultParams
 from scenarios.schema import Scenario
 from server.bench.changes import Changes
 from server.bench.commands import MAX_PENDING
-from server.bench.fast_forward import FastForwarding
 from server.bench.live_bench import LiveBench
 from server.bench.recordings import Recordings
+from server.bench.running import Running
 from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Opened, Pending, State
 
 
@@ -25,7 +25,7 @@ class ShownBench(LiveBench, Protocol):
     scenario: Scenario
     created: datetime
     status: BenchStatus
-    fast_forward: FastForwarding
+    running: Running
     recordings: Recordings
     changes: Changes
     replay_of: str
@@ -55,7 +55,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         first_tick=bench.history.first_tick,
         time_scale=pacer.scale,
         achieved_scale=pacer.achieved if bench.is_started else 0.0,
-        fast_forward=bench.fast_forward.reason,
+        fast_forward=bench.running.fast_forward.reason,
         capped=bench.is_started and pacer.capped,
         overruns=pacer.overruns,
         given_up_ms=pacer.given_up_s * 1e3,

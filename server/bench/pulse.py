@@ -24,10 +24,10 @@ OTHERS_WORK = ("numba", "importlib", "_frozen_importlib", "_frozen_importlib_ext
 
 @dataclass(frozen=True)
 class Pulse:
-    """What threads have done since they were felt last."""
+    """The work of threads since the last look."""
 
     is_blocked: bool
-    """None has run, none could, and none waits for another that works."""
+    """No thread has run, and none waits for a processor or for a thread that works."""
     worked_s: float
     """Processor time of all of them, or the whole time if one of them slept in between."""
     is_crowded: bool = False

@@ -13,8 +13,10 @@ from core.errors import InputError
 from core.own.admission import kept
 from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.commands import DEFAULT_SCALE, Loop, RunsBench, Seek, Start
+from server.bench.commands import DEFAULT_SCALE, Loop, RunsTime, Seek, Start
 from server.bench.events import Event
+from server.bench.live_bench import LiveBench
+from server.bench.running import Running
 from server.bench.session import Session
 from server.bench.tape import Tape
 from server.errors import ApiError
@@ -42,6 +44,83 @@ def played(recording: RecordingDetail, path: Path) -> tuple[Scenario, Tape, floa
         raise ApiError(409, "conflict", text, hint="its trace can be downloaded") from None
     about = json.loads((pq.read_schema(path).metadata or {}).get(b"combbench", b"{}"))
     return scenario, tape, about.get("time_scale") or DEFAULT_SCALE
+
+
+class Playing(Running):
+    """How a recording plays: from any tick, to its end or a span of it again and again.
+
+    Parameters
+    ----------
+    bench : LiveBench
+        The bench that plays it.
+    tape : Tape
+        The recording.
+    time_scale : float
+        Device seconds per wall second.
+    metrics : Metrics
+        Where overruns are counted.
+    rewind_history : callable
+        Lets the history of the bench follow the tape.
+    """
+
+    def __init__(
+        self,
+        bench: LiveBench,
+        tape: Tape,
+        time_scale: float | None,
+        metrics: Metrics,
+        rewind_history: Callable[[], None],
+    ) -> None:
+        super().__init__(bench, time_scale, tape.end, metrics)
+        self._tape, self._rewind_history = tape, rewind_history
+        self._loop_start: int | None = None
+
+    def carry_out(self, command: RunsTime, actor: str) -> Event | Future[Event]:
+        """Carry out a command to time; only a replay can seek and loop."""
+        tape = self._tape
+        if isinstance(command, Seek):
+            tape.seek(command.tick)
+            self._jump()
+            return self._bench.note(actor, "seek", f"went to tick {command.tick}", command.model_dump())
+        if isinstance(command, Loop):
+            return self._set_loop(command, actor)
+        if isinstance(command, Start) and tape.tick >= tape.end:
+            tape.seek(tape.first)
+            self._jump()
+        return super().carry_out(command, actor)
+
+    def _set_loop(self, command: Loop, actor: str) -> Event:
+        """Play a span again and again, or to the end."""
+        tape = self._tape
+        if command.start_tick is None and command.end_tick is None:
+            self._loop_start, self.ends_at = None, tape.end
+            return self._bench.note(actor, "loop", "plays to the end", command.model_dump())
+        start = tape.first if command.start_tick is None else command.start_tick
+        end = tape.end if command.end_tick is None else command.end_tick
+        if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
+            text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
+            raise InputError(text, "end_tick")
+        self._loop_start, self.ends_at = start, end
+        if not start <= tape.tick < end:
+            tape.seek(start)
+            self._jump()
+        return self._bench.note(actor, "loop", f"plays ticks {start} to {end} again and again", command.model_dump())
+
+    def _jump(self) -> None:
+        """Let history and clock follow the tape."""
+        self.steps.end()
+        self._rewind_history()
+        if self.ends_at is None:
+            self.ends_at = self._tape.end
+        self._anchor()
+
+    def _finish(self) -> None:
+        """Begin the span again, or stop at the end."""
+        if self._loop_start is not None:
+            self._tape.seek(self._loop_start)
+            self._jump()
+        else:
+            super()._finish()
 
 
 class Replay(Session):
@@ -76,57 +155,8 @@ class Replay(Session):
         clock: Callable[[], float],
     ) -> None:
         super().__init__(scenario, tape, time_scale, history_ticks, metrics, clock)
-        self._tape = tape
-        self._loop_start: int | None = None
-        self._ends_at = tape.end
+        self.running = Playing(self, tape, time_scale, metrics, self._rewind_history)
         self.replay_of = recording.id
         names = ("tick", "actor", "kind", "text", "command", "old", "new")
         for event in recording.events or []:
             self.events.keep(**{name: event.get(name) for name in names})
-
-    def _run_command(self, command: RunsBench, actor: str) -> Event | Future[Event]:
-        """Carry out a command to time; only a replay can seek and loop."""
-        tape = self._tape
-        if isinstance(command, Seek):
-            tape.seek(command.tick)
-            self._jump()
-            return self.note(actor, "seek", f"went to tick {command.tick}", command.model_dump())
-        if isinstance(command, Loop):
-            return self._set_loop(command, actor)
-        if isinstance(command, Start) and tape.tick >= tape.end:
-            tape.seek(tape.first)
-            self._jump()
-        return super()._run_command(command, actor)
-
-    def _set_loop(self, command: Loop, actor: str) -> Event:
-        """Play a span again and again, or to the end."""
-        tape = self._tape
-        if command.start_tick is None and command.end_tick is None:
-            self._loop_start, self._ends_at = None, tape.end
-            return self.note(actor, "loop", "plays to the end", command.model_dump())
-        start = tape.first if command.start_tick is None else command.start_tick
-        end = tape.end if command.end_tick is None else command.end_tick
-        if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
-            text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
-            raise InputError(text, "end_tick")
-        self._loop_start, self._ends_at = start, end
-        if not start <= tape.tick < end:
-            tape.seek(start)
-            self._jump()
-        return self.note(actor, "loop", f"plays ticks {start} to {end} again and again", command.model_dump())
-
-    def _jump(self) -> None:
-        """Let history and clock follow the tape."""
-        self.steps.end()
-        self._rewind_history()
-        if self._ends_at is None:
-            self._ends_at = self._tape.end
-        self.pacer.anchor(self._tape.tick, self._clock())
-
-    def _finish(self) -> None:
-        """Begin the span again, or stop at the end."""
-        if self._loop_start is not None:
-            self._tape.seek(self._loop_start)
-            self._jump()
-        else:
-            super()._finish()

@@ -1,4 +1,4 @@
-"""What becomes of benches when the engine hangs: safe outputs, the last seconds kept, an end for one that is stuck.
+"""Takes care of benches when the engine hangs: safe outputs, a recording of the last seconds, an end for a stuck one.
 
 Only the engine changes a bench. So the status says at once that it has tripped, and the outputs go to their safe
 values by a command, at the tick where the bench stands and before any other one: the run repeats with the same bits.
@@ -25,9 +25,9 @@ from server.store.keeping import Keeping
 log = logging.getLogger(__name__)
 
 KEPT_S = 2.0
-"""Wall time before a trip that is kept."""
+"""Wall time before a trip that a recording keeps."""
 MOST_KEPT = 8
-"""Benches of which it is kept at a time; the others have it in their history as long as they are live."""
+"""Most such recordings at a time; the other benches have that time in their history as long as they are live."""
 
 
 class Safety:
@@ -68,7 +68,7 @@ class Safety:
         self._loop = asyncio.get_running_loop()
 
     async def stop(self) -> None:
-        """Wait for what is being kept."""
+        """Wait for recordings under way."""
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
     def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
@@ -153,7 +153,7 @@ def make_safe(session: Session, reason: str) -> None:
 
 
 def _shut(session: Session) -> None:
-    """Let nothing more be done to a bench (urgent)."""
+    """Refuse all further commands to a bench (urgent)."""
     session.close()
     show_trip(session, "the bench hung and has been given up")
 

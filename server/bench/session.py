@@ -6,7 +6,6 @@ that is replaced whole.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import replace
@@ -17,28 +16,25 @@ from core.board.board import Board
 from core.board.commands import MakeSafe
 from core.board.document import Document
 from core.errors import InputError
-from core.format import format_short
 from scenarios.schema import Scenario
 from server.bench import commands
 from server.bench.changes import Changes
 from server.bench.events import Event, EventLog
-from server.bench.fast_forward import FastForwarding
 from server.bench.hiding import BlindView, Hiding
 from server.bench.moment import Moment
 from server.bench.pacing import Pacer
 from server.bench.portrait import bench_of, document_now, status_of
 from server.bench.recorder import Recorder
 from server.bench.recordings import Recordings
+from server.bench.running import Running
 from server.bench.snapshots import Snapshots
 from server.bench.status import Bench, Opened
-from server.bench.steps import Steps
 from server.bench.tick_source import TickSource
 from server.bench.timeline import Timeline
 from server.bench.watch import Watch
 from server.errors import not_found
 from server.metrics import Metrics
 
-STATUS_S = 0.2
 STUDENT_PAST_TICKS = 2000
 """Ticks of the past that a jump on the bench of a student brings along."""
 
@@ -72,8 +68,6 @@ class Session(Timeline):
     """Whether it is never let go."""
     class_id = ""
     """The class whose student has it."""
-    most_scale = math.inf
-    """The highest time scale allowed."""
     witness: Callable[[Session, Event], None] | None = None
     """Hears of every event."""
     watch: Watch | None = None
@@ -91,85 +85,58 @@ class Session(Timeline):
         super().__init__(scenario, board, history_ticks, clock)
         self.id = ""  # given when it is taken in
         self.created = datetime.now(UTC)
-        self.pacer = Pacer(board.dt_ms * 1e-3, time_scale)
-        self.changes = Changes(self, clock)
-        self.snapshots = Snapshots(self)
-        self.recordings = Recordings(self)
-        self.hiding = Hiding(self)
+        self.running = Running(self, time_scale, scenario.samples, metrics)
+        self.changes, self.snapshots = Changes(self, clock), Snapshots(self)
+        self.recordings, self.hiding = Recordings(self), Hiding(self)
         self._metrics = metrics
         self.events = EventLog(self._happened)
-        self.steps = Steps(self)
-        self.fast_forward = FastForwarding(self)
-        self._running, self._closed = False, False
-        self._ends_at = scenario.samples
-        self._counted, self._status_due = (0, 0.0), 0.0
+        self._closed = False
         self.refresh_status()
 
     @property
     def is_running(self) -> bool:
         """Whether time runs, until a pause or to the end of a step."""
-        return self._running or bool(self.steps)
+        return self.running.is_running
 
     @property
     def is_started(self) -> bool:
         """Whether time runs until it is paused."""
-        return self._running
+        return self.running.is_started
+
+    @property
+    def pacer(self) -> Pacer:
+        """The pace of the bench."""
+        return self.running.pacer
 
     def target(self, now: float) -> int | None:
-        """Return the tick to reach in this round; the bench stops once at the end of its scenario."""
-        if self.steps:
-            return None
-        target = self.pacer.target(self.board.tick, now)
-        if self._ends_at is not None:
-            return self._ends_at if target is None else min(target, self._ends_at)
-        return target
+        """Return the tick to reach in this round."""
+        return self.running.target(now)
 
     def slice(self, target: int | None) -> bool:
         """Advance by one slice; true while there is more to do."""
-        if self.steps:
-            return self.steps.slice()
-        wanted = self.board.chunk if target is None else target - self.board.tick
-        if wanted > 0 and not self.fast_forward.advance(wanted):
-            return False
-        if self._ends_at is not None and self.board.tick >= self._ends_at and self._running:
-            self._finish()
-        return self._running and (target is None or self.board.tick < target)
+        return self.running.slice(target)
 
     def finish_round(self, target: int | None, now: float) -> None:
         """Account for a round; refresh the status now and then."""
-        if self._running:
-            self.pacer.record(self.board.tick, target if self.pacer.scale is not None else None, now)
-        overruns, given_up = self._counted
-        self._metrics.overruns.inc(max(0, self.pacer.overruns - overruns))
-        self._metrics.given_up_seconds.inc(max(0.0, self.pacer.given_up_s - given_up))
-        self._counted = (self.pacer.overruns, self.pacer.given_up_s)
-        if now >= self._status_due:
-            self._status_due = now + STATUS_S
-            self.refresh_status()
+        self.running.finish_round(target, now)
 
     def fail(self, error: Exception) -> None:
         """Pause after an unexpected error, and note it."""
-        self._running = False
-        self.steps.end()
+        self.running.stop()
         self.note("board", "failed", f"stopped by an internal error: {error}")
         self.refresh_status()
 
     def belong(self, class_id: str, most_ticks_per_s: float) -> None:
-        """Be the bench of a student: one of many, so it stays, is no faster than all can be, and keeps less."""
+        """Be the bench of a student, one of many: never let go, limited in pace, with less history."""
         self.class_id, self.keep, self.past_ticks = class_id, True, STUDENT_PAST_TICKS
-        self.most_scale = most_ticks_per_s * self.dt_ms * 1e-3
-        if self.pacer.scale is not None and self.pacer.scale > self.most_scale:
-            self.pacer = Pacer(self.dt_ms * 1e-3, self.most_scale)
+        self.running.limit(most_ticks_per_s * self.dt_ms * 1e-3)
 
     def begin(self, start: bool) -> None:
         """Begin, running or paused."""
-        self._running = start
-        if self._ends_at is not None and self.board.tick >= self._ends_at:
-            self._ends_at = None
-        self.pacer.anchor(self.board.tick, self._clock())
-        self._share_log()
+        self.running.begin(start)
+        self.events.take_over(self.board)
         self.note("board", "opened", "running" if start else f"paused at tick {self.board.tick}")
-        self.fast_forward.begin()
+        self.running.fast_forward.begin()
         self.refresh_status()
 
     def execute(self, command: Any, actor: str) -> Event | Future[Event]:
@@ -181,16 +148,18 @@ class Session(Timeline):
             If the command cannot be carried out; nothing has changed then.
         """
         self.must_be_open()
-        if isinstance(command, get_args(commands.RunsBench)):
-            event = self._run_command(command, actor)
+        if isinstance(command, get_args(commands.RunsTime)):
+            event = self.running.carry_out(command, actor)
             if isinstance(event, Future):  # its end refreshes the status
                 return event
+        elif isinstance(command, commands.Undo | commands.Redo):
+            event = self.changes.back(actor) if isinstance(command, commands.Undo) else self.changes.again(actor)
         else:
             if len(self.board.pending) >= commands.MAX_PENDING and not isinstance(command, MakeSafe):
                 raise InputError(f"{commands.MAX_PENDING} commands wait for their moment already", code="limit")
             event = self.changes.apply(command, actor)
-            self.fast_forward.end()
-            self._running = self._running and self.board.trip is None
+            self.running.fast_forward.end()
+            self.running.stop_if_tripped()
         self.refresh_status()
         return event
 
@@ -201,44 +170,36 @@ class Session(Timeline):
 
     def reset(self, scenario: Scenario, board: Board, actor: str, before_tick: int | None = None) -> Event:
         """Begin again with a new board of the same signals; given a tick, run at once to shortly before it."""
-        if [signal.name for signal in board.signals] != list(self._index):
+        if not self.has_signals_of(board):
             text = "these values give the bench other signals"
             raise InputError(text, "values", "make a new bench for them", "conflict")
         before = self.moment(with_past=True)
         self._begin_again(scenario, board)
-        self._ends_at = scenario.samples
-        self._jumped("the bench was reset")
-        event = self.note(actor, "reset", "reset to tick 0")
-        self._share_log()
-        self.changes.jumped(event, before)
-        self._running = self._running or before_tick is not None
-        self.fast_forward.begin(before_tick)
+        self._jumped("the bench was reset", scenario.samples)
+        event = self._begun(before, actor, "reset to tick 0")
+        self.running.is_started = self.is_started or before_tick is not None
+        self.running.fast_forward.begin(before_tick)
         self.refresh_status()
         return event
-
-    def has_signals_of(self, other: Timeline) -> bool:
-        """Whether another bench could take the place of this one."""
-        return list(other._index) == list(self._index)
 
     def become(self, other: Session, actor: str, text: str, start: bool) -> Event:
         """Go on as another bench of the same signals that nobody has, with its past and its pace."""
         assert isinstance(other.board, Board)
         before = self.moment(with_past=True)
         self._begin_again(other.scenario, other.board)
-        self.history, self.pacer = other.history, other.pacer
-        self._ends_at = other.ends_at
-        self._jumped(text)
-        event = self.note(actor, "reset", text, tick=0)
-        self._share_log()
-        self.changes.jumped(event, before)
-        self._running = start and self.board.trip is None
+        self.history, self.running.pacer = other.history, other.pacer
+        self._jumped(text, other.running.ends_at)
+        event = self._begun(before, actor, text)
+        self.running.is_started = start and self.board.trip is None
         self.refresh_status()
         return event
 
-    @property
-    def ends_at(self) -> int | None:
-        """The end of its scenario, if that is ahead."""
-        return self._ends_at if self._ends_at is not None and self.board.tick < self._ends_at else None
+    def _begun(self, before: Moment, actor: str, text: str) -> Event:
+        """Note at tick 0 that another board has begun, and take its log over."""
+        event = self.note(actor, "reset", text, tick=0)
+        self.events.take_over(self.board)
+        self.changes.jumped(event, before)
+        return event
 
     def restore(self, snapshot_id: str, actor: str) -> Event:
         """Go back to a snapshot."""
@@ -257,17 +218,15 @@ class Session(Timeline):
     def go_to(self, moment: Moment) -> None:
         """Be what the bench was."""
         self._be_again(moment)
-        self._share_log()
-        samples = self.scenario.samples
-        self._ends_at = samples if samples is not None and self.board.tick < samples else None
-        self._jumped("the bench was restored")
+        self.events.take_over(self.board)
+        self._jumped("the bench was restored", self.scenario.samples)
 
     def fork(self, snapshot_id: str | None) -> Session:
         """Return a second bench that goes on from this moment or from a snapshot."""
         moment = self.snapshots.get(snapshot_id).moment if snapshot_id else self.moment()
         board = Board.restore(moment.checkpoint)
         twin = Session(moment.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
-        twin._ends_at = self._ends_at if self._ends_at is not None and board.tick < self._ends_at else None
+        twin.running.ends_at = self.running.ends_at
         if self._branches.share(moment.branch, board.tick) and (past := self._past(board.tick)) is not None:
             twin.history.append(past)
         twin.note("api", "forked", f"forked from bench {self.id}")
@@ -276,43 +235,9 @@ class Session(Timeline):
 
     def close(self) -> list[Recorder]:
         """Stop for good; return the recordings that were under way."""
-        self._running, self._closed = False, True
-        self.steps.end()
+        self._closed = True
+        self.running.stop()
         return self.recordings.close()
-
-    def _run_command(self, command: commands.RunsBench, actor: str) -> Event | Future[Event]:
-        """Carry out a command that runs the bench."""
-        document = command.model_dump()
-        if isinstance(command, commands.Undo | commands.Redo):
-            return self.changes.back(actor) if isinstance(command, commands.Undo) else self.changes.again(actor)
-        if isinstance(command, commands.Seek | commands.Loop):
-            raise InputError("only a recording that is played can do that", "kind", code="conflict")
-        if isinstance(command, commands.TimeScale):
-            old, new = self.pacer.scale, command.value
-            if new is not None and new > self.most_scale:
-                most = format_short(self.most_scale, "s/s")
-                raise InputError(f"the benches of a class run at {most} at most", "value", code="limit")
-            self.pacer.rescale(new, self.board.tick, self._clock(), self._running)
-            text = f"time scale set to {format_short(new, 's/s')}" if new else "time runs as fast as possible"
-            return self.events.add(self.board.tick, actor, "time_scale", text, document, old, new)
-        if isinstance(command, commands.Pause):
-            self._running = False
-            self.steps.end()
-            return self.note(actor, "pause", "paused", document)
-        if self.board.trip is not None:
-            text = f"the board has tripped: {self.board.trip.reason}"
-            raise InputError(text, hint="reset the trip first", code="tripped")
-        if isinstance(command, commands.Start | commands.FastForward):
-            skips = isinstance(command, commands.FastForward) and self.fast_forward.skip(
-                command.before_tick, self._ends_at
-            )
-            self.steps.end()
-            self._running = True
-            self.pacer.anchor(self.board.tick, self._clock())
-            return self.note(actor, command.kind, skips or "started", document)
-        ended = self.steps.add(command, actor)
-        self._running = False
-        return ended
 
     def advance(self, ticks: int) -> int:
         """Run ticks, as many as a slice has; keep them, record them, note what happened; return how many there were."""
@@ -323,16 +248,10 @@ class Session(Timeline):
             self.recordings.take(rows)
             if watch is not None:
                 watch.look(self)
-        if self.board.trip is not None and self._running and not self._has_due():
-            self._running = False
+        if self.board.trip is not None and self.is_started and not self._has_due():
+            self.running.is_started = False
             self.refresh_status()
         return rows.count
-
-    def _share_log(self) -> None:
-        """Take over what the board has noted so far, and let it note in the log of the bench from now on."""
-        for entry in self.board.log:
-            self.events.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
-        self.board.log = self.events
 
     def _happened(self, event: Event) -> None:
         """Count an event, tell of it, and write it into the recordings under way."""
@@ -342,23 +261,12 @@ class Session(Timeline):
         if self.witness is not None:
             self.witness(self, event)
 
-    def _finish(self) -> None:
-        """Pause at the end of the scenario; starting again goes beyond it."""
-        self._running, self._ends_at = False, None
-        self.note("scenario", "finished", "scenario finished; start again to go on")
-        self.refresh_status()
-
-    def _jumped(self, why: str) -> None:
-        """Follow a jump in time: recordings end, the clock is anchored anew."""
-        self.steps.end()
-        self.fast_forward.end()
+    def _jumped(self, why: str, ends_at: int | None) -> None:
+        """Follow a jump in time to a scenario that ends at a tick: recordings end, the clock is anchored anew."""
+        self.running.jumped(ends_at)
         self.recordings.close(why)
         if self.watch is not None:
             self.watch.jumped(self.board.tick)
-        if self.board.dt_ms * 1e-3 != self.pacer.dt_s:
-            self.pacer = Pacer(self.board.dt_ms * 1e-3, self.pacer.scale)
-        self._running = self._running and self.board.trip is None
-        self.pacer.anchor(self.board.tick, self._clock())
 
     def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:
         """Add an event of the bench itself, of now unless a tick is given."""
@@ -376,7 +284,7 @@ class Session(Timeline):
 
     @property
     def about(self) -> Document:
-        """What a file of its trace says of it."""
+        """The words about it in a file of its trace."""
         return {"scenario": self.scenario.document, "bench": self.id}
 
     def describe(self, around: dict[str, Any], view3d: str | None) -> Bench:

@@ -1,4 +1,4 @@
-"""Staging: a bench is put into the exact state of a cue of a lecture, whatever was done to it before."""
+"""Staging puts a bench into the exact state of a cue of a lecture. What people did to it before leaves no trace."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ class Staging:
 
         def made() -> Session:
             board = build(state.scenario)
-            fresh = self._benches.around(state.scenario, board, pace or usual_scale(board))
+            fresh = self._benches.maker.around(state.scenario, board, pace or usual_scale(board))
             _advance(fresh, board, state.from_tick)
             return fresh
 
         fresh = await asyncio.to_thread(made)
         start, digest = state.until_tick > state.from_tick, fresh.board.digest()
-        if session is not None and session.has_signals_of(fresh):
+        if session is not None and session.has_signals_of(fresh.board):
             await self._engine.call(session.become, fresh, actor, text, start)
             return session, digest
         return await self._benches.take_in(fresh, start), digest

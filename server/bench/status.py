@@ -63,10 +63,12 @@ class Company(BaseModel):
     """Who is at a bench that several have open."""
 
     is_leased: bool = Field(description="Two or more who may drive have it open, so only one of them does")
-    driver: Somebody | None = Field(description="Who drives; null: whoever does something next")
+    driver: Somebody | None = Field(
+        description="Who drives; null: nobody, and the next person who does something drives"
+    )
     drivers: list[Somebody] = Field(description="Who is there and may drive")
     asking: list[Somebody] = Field(description="Who has asked for the bench")
-    lent_by: str = Field(description="Id of whoever handed it over and may take it back; empty: nobody did")
+    lent_by: str = Field(description="Id of the person who handed it over and may take it back; empty: nobody did")
     watching: list[str] = Field(description="Names of students who look on")
     more_watching: int = Field(description="And so many more")
     links: int = Field(description="Pages opened by links to watch")

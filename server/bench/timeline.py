@@ -20,7 +20,7 @@ PAST_TICKS = 20_000
 SLICE_S = 0.005
 """Longest slice, by what a tick takes; other benches and commands wait for it."""
 MOST_SLOWER = 4.0
-"""Times as long as before that a tick is taken to need: more is the wait of a thread, and the bench as fast as ever."""
+"""Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
 
 
 class Timeline:
@@ -86,6 +86,10 @@ class Timeline:
     def indices(self, names: Sequence[str]) -> list[int]:
         """Return the columns of signals; an unknown name is an `InputError` with suggestions."""
         return [self.board.signals.index(name) for name in names]
+
+    def has_signals_of(self, board: TickSource) -> bool:
+        """Whether a board has the signals of this one, and could take its place."""
+        return [signal.name for signal in board.signals] == list(self._index)
 
     def _advance_slice(self, ticks: int) -> Rows:
         """Run ticks, as many as a slice has, and keep their rows in the history."""

@@ -1,4 +1,4 @@
-"""Somebody who looks at a bench at ticks of its own, such as a lab sheet for the step that is open."""
+"""A watch looks at a bench at ticks of its own, such as a lab sheet for the step that is open."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from server.bench.live_bench import LiveBench
 
 @dataclass(frozen=True)
 class KeptWatch:
-    """How far somebody is who looks at a bench, as plain data: from it another goes on at the same tick.
+    """How far a watch has come, as plain data: from it another watch goes on at the same tick.
 
     Parameters
     ----------
     document : dict
-        JSON can hold all of it.
+        Numbers, texts, lists and tables, as JSON has them.
     samples : ndarray
-        What was seen of the last ticks, ticks by signals.
+        Signals of the last ticks, ticks by signals.
     """
 
     document: Document
@@ -35,10 +35,10 @@ class Watch(Protocol):
         """Return how far the bench may run at a time."""
 
     def jumped(self, tick: int) -> None:
-        """Hear that the bench has gone to a tick: it was reset, or restored."""
+        """Go on from this tick: the bench was reset, or restored."""
 
     def look(self, bench: LiveBench) -> None:
         """Look at the bench after it has run."""
 
     def kept(self, bench: LiveBench) -> KeptWatch:
-        """Return how far it is, at the tick of the bench."""
+        """Return how far it has come, at the tick of the bench."""

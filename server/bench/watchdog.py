@@ -1,9 +1,8 @@
 """The watchdog over the engine: it looks on from a thread of its own and acts when the engine gives no sign of life.
 
-Silence is time beyond what is due in which the threads of the engine neither ran nor wanted to, from look to look. A
-machine that is busy delays the looks too, and one that is late counts little; while other threads of this process wait
-for a processor, each counts a tenth. So lateness by load is no silence. Work that takes long, such as to compile a
-kernel, is none either, up to a larger bound.
+It adds up silence: the time after a round was due in which the threads of the engine neither ran nor wanted to. A busy
+machine delays the looks too, so a late look counts little, and a tenth of that while other threads of this process wait
+for a processor. Long work, such as to compile a kernel, has a larger bound.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ log = logging.getLogger(__name__)
 
 LOOK_S = 0.0125
 MOST_S = 2 * LOOK_S
-"""What a look counts at most, however late it comes."""
+"""Most that a look counts, if it comes late."""
 CROWDED = 0.1
 """Share that a look counts while other threads wait for a processor: one may hold the lock the engine waits for."""
 SILENT_S = 0.1
@@ -37,7 +36,7 @@ LONG_S = 60.0
 
 
 class Guarded(Protocol):
-    """What becomes of the benches; called on the thread of the watchdog."""
+    """Takes care of the benches; called on the thread of the watchdog."""
 
     def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
         """Take benches to safe outputs that ran when the engine hung, in slices of the benches that are named."""
@@ -54,7 +53,7 @@ class Watchdog:
     engine : Engine
         The engine.
     guarded : Guarded
-        What becomes of the benches.
+        Takes care of the benches.
     finger : Finger, optional
         Feels the pulse of the threads of the engine.
     """
@@ -141,7 +140,7 @@ class Watchdog:
 
 
 def _stacks(crew: Crew[Workload | Job]) -> str:
-    """Return where the threads of the engine are that have something to do, for the log."""
+    """Return the stacks of the busy threads of the engine, for the log."""
     frames = sys._current_frames()
     busy = [one for one in crew.threads if one is crew.main or one.ident in crew.in_hand]
     found = [(one.name, frames[one.ident or 0]) for one in busy if one.ident in frames]

@@ -1,4 +1,4 @@
-"""A launch that has been checked: who comes, from which course, to do what."""
+"""A checked launch: the person, the course, the exercise."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ INSTRUCTORS = ("Instructor", "ContentDeveloper", "Administrator")
 
 @dataclass(frozen=True)
 class Launch:
-    """What a platform has signed.
+    """The message that a platform has signed.
 
     Parameters
     ----------
@@ -40,12 +40,12 @@ class Launch:
 
     @property
     def user(self) -> str:
-        """What the platform calls who comes."""
+        """The name that the platform gives the person."""
         return self.text("sub")
 
     @property
     def name(self) -> str:
-        """The name of who comes, if the platform tells it."""
+        """The name of the person, if the platform tells it."""
         return self.text("name") or " ".join(filter(None, (self.text("given_name"), self.text("family_name"))))
 
     @property
@@ -60,7 +60,7 @@ class Launch:
         return self.text(f"{CLAIM}context", "title") or self.text(f"{CLAIM}context", "label")
 
     def has_role(self, *roles: str) -> bool:
-        """Whether who comes has one of some roles in the course; a role may be narrowed, such as a tutor's."""
+        """Whether the person has one of some roles in the course; a role may be narrowed, such as a tutor's."""
         found = self.claims.get(f"{CLAIM}roles")
         given = [one for one in found if isinstance(one, str)] if isinstance(found, list) else []
         full = tuple(f"{MEMBERSHIP}#{role}" for role in roles)
@@ -69,12 +69,12 @@ class Launch:
 
     @property
     def is_instructor(self) -> bool:
-        """Whether who comes teaches the course."""
+        """Whether the person teaches the course."""
         return self.has_role(*INSTRUCTORS)
 
     @property
     def is_learner(self) -> bool:
-        """Whether who comes learns in the course, and does not teach it."""
+        """Whether the person learns in the course, and does not teach it."""
         return self.has_role("Learner") and not self.is_instructor
 
     @property

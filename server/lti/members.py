@@ -1,4 +1,4 @@
-"""Who comes by launches: the class of a course, and its students, known by keyed hashes of the platform's ids."""
+"""The people of launches: the class of a course and its students, known by keyed hashes of the platform's ids."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from server.lti.tool import Tool
 from server.people.name import LONGEST_NAME, clean, in_one_line
 from server.people.person import Person
 from server.service import Service
-from server.store.models import ClassRow, LtiKeyRow, now
+from server.store.base import now
+from server.store.people import ClassRow, LtiKeyRow
 
 LASTS = timedelta(days=14)
 """How long a class lasts after the last launch; then names are forgotten, as they are of every class."""
@@ -91,7 +92,7 @@ class Members:
         return free
 
     async def _lead(self, person: Person, launch: Launch) -> None:
-        """Give a student the bench of the link, unless it is there: what was done stays."""
+        """Give a student the bench of the link, unless the student has it already."""
         service = self._service
         session = await service.student_benches.get(person)
         if launch.sheet:
@@ -102,7 +103,7 @@ class Members:
             await service.student_benches.replace(person, _wanted(launch.scenario))
 
     async def _known(self, key: str) -> LtiKeyRow | None:
-        """Return what a hash stands for; those of classes that are over are forgotten."""
+        """Return the row of a hash; hashes of classes that are over are forgotten."""
         gone = delete(LtiKeyRow).where(LtiKeyRow.class_id.not_in(select(ClassRow.id)))
         await self._service.database.run(lambda session: session.execute(gone))
         return await self._service.database.run(lambda session: session.get(LtiKeyRow, key))
@@ -112,5 +113,5 @@ class Members:
 
 
 def _wanted(scenario: str) -> dict[str, Any]:
-    """Return what a bench begins with."""
+    """Return the scenario with which a bench begins."""
     return NewBench(scenario=scenario if scenario in library.ids() else "first-look").wanted()

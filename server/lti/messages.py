@@ -48,7 +48,7 @@ class _Parameters(Request):
         self._given = given
 
     def is_secure(self) -> bool:
-        """Answer yes: nothing of the library that we use asks."""
+        """Answer yes: the parts of the library that we use do not ask."""
         return True
 
     def get_param(self, key: str) -> str:
@@ -57,7 +57,7 @@ class _Parameters(Request):
 
 
 class _Memory(SessionService, CookieService):
-    """What the library would keep in a session and a cookie: the nonce and the state of one login."""
+    """The nonce and the state of one login, which the library would keep in a session and a cookie."""
 
     def __init__(self, nonce: str = "", state: str = "") -> None:
         self.nonce, self._state = nonce, state

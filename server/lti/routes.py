@@ -44,7 +44,7 @@ LAUNCHES_PER_S, LAUNCHES_AT_ONCE = 20.0, 600
 
 @dataclass
 class Lti:
-    """What the doors share."""
+    """Parts that all doors use."""
 
     service: Service
     tool: Tool
@@ -97,7 +97,7 @@ pages = APIRouter(prefix=LTI, include_in_schema=False)
 
 
 class NewSession(Body):
-    """What a page has after a launch."""
+    """The session of a page after a launch."""
 
     code: str = Field(max_length=100)
     browser: str = Field(max_length=100, description="The secret that this browser kept when the launch began")
@@ -178,7 +178,7 @@ async def make_session(body: NewSession, request: Request, response: Response, l
 
 @router.post("/ticket")
 async def make_ticket(body: NewTicket, person: PersonDep, lti: LtiDep) -> dict[str, str]:
-    """Let the browser of whoever asks load one path once without a cookie; what may be loaded stays the same."""
+    """Let a browser load one path once without a cookie, if its person may load that path."""
     return {"ticket": lti.frames.tickets.put(Ticket(person, body.path))}
 
 

@@ -18,7 +18,7 @@ from server.lti.tool import Tool, Web
 from server.people.audit import Audit
 from server.people.person import Person
 from server.people.sheet_work import SheetBrief, Work
-from server.store.models import now
+from server.store.base import now
 
 log = logging.getLogger(__name__)
 
@@ -41,7 +41,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Score:
-    """What is sent."""
+    """A score, as it is sent."""
 
     given: float
     most: float

@@ -50,7 +50,7 @@ class Tool(ToolConfAbstract[Request]):
         self._hash_key = hashlib.sha256(b"combbench ids of learning platforms" + pem).digest()
 
     def key_set(self) -> dict[str, Any]:
-        """Return the public key, by which platforms check what this server signs."""
+        """Return the public key; with it platforms check the signatures of this server."""
         return {"keys": [Registration.get_jwk(self._public)]}
 
     def hash_of(self, *words: str) -> str:

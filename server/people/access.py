@@ -18,12 +18,12 @@ Door = tuple[str, str]
 
 
 class Need(Enum):
-    """What opens a door."""
+    """The right that opens a door."""
 
     NOTHING = "nothing"
     SESSION = "any session"
     WATCH = "may watch the bench in the path"
-    MAY_DRIVE = "may drive the bench in the path, whoever does now"
+    MAY_DRIVE = "may drive the bench in the path, also while others drive"
     DRIVE = "may drive the bench in the path, and nobody else does"
     TEACHER = "the teacher"
 
@@ -246,7 +246,7 @@ _PAGE = ("/api/", "/health/", "/benches/", "/metrics")
 
 
 def serves_blind(method: str, path: str) -> bool:
-    """Return whether a door stays open while a fault is hidden on the bench of whoever asks."""
+    """Return whether a door stays open while a fault is hidden on the bench of the caller."""
     asked = "GET" if method == "HEAD" else method
     for known, pattern, need, shape in _PATTERNS:
         if known == asked and pattern.match(path):

@@ -1,4 +1,4 @@
-"""What people did, to which bench and when: it stays when the bench goes, and goes with the class."""
+"""The log of what people did, to which bench and when; it stays when the bench goes, and goes with the class."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from sqlalchemy import delete, func, select
 
 from server.bench.events import Event
 from server.bench.session import Session
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import AuditRow, now
+from server.store.people import AuditRow
 
 log = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""A hidden fault for each student of a class: a device, noise and a fault of one's own, none of which leaves here."""
+"""A hidden fault for each student of a class: each gets another device, noise and fault, which stay on the server."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from server.people.draw import device_of
 from server.people.person import Person
 
 LEFT_OUT = frozenset({"events", "samples", "duration_ms", "expect", "metrics", "claim", "note", "faults", "twins"})
-"""What of a scenario would tell, or has nothing to do with the bench."""
+"""Parts of a scenario that would tell the fault, or that have nothing to do with the bench."""
 
 
 async def begin_for(

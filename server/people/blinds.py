@@ -1,4 +1,4 @@
-"""Hidden faults: they are begun for somebody alone or for a class, answered, revealed, and the answers are kept."""
+"""Hidden faults, for one person or for a class: hides, judges answers, reveals, and keeps the answers."""
 
 from __future__ import annotations
 
@@ -19,8 +19,9 @@ from server.errors import ApiError
 from server.people.brier import points
 from server.people.draw import draw
 from server.people.person import Person
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import BlindAnswerRow, now
+from server.store.people import BlindAnswerRow
 
 OF_DRAW = 2**31
 """Numbers that are drawn are below this."""
@@ -29,7 +30,7 @@ ALONE_KEPT = 100
 
 
 class Answer(BaseModel):
-    """A hidden fault, and what somebody said of it."""
+    """A hidden fault, and the answer to it."""
 
     id: str
     exercise: str = Field(description="Shared by the students of a class who were asked at once; empty: alone")
@@ -78,7 +79,7 @@ class Blinds:
         self._answers = {row.id: Answer.model_validate(row.answer) for row in rows}
 
     def of_person(self, person_id: str, exercise: str | None = None) -> list[Answer]:
-        """Return what somebody has answered, or what was revealed, oldest first; exercise "" is what they began."""
+        """Return the answers of somebody, given or revealed, oldest first; exercise "" is one they began themselves."""
         return [
             one
             for one in self._answers.values()
@@ -86,7 +87,7 @@ class Blinds:
         ]
 
     def of_class(self, class_id: str) -> list[Answer]:
-        """Return what the teacher hid from the students of a class, oldest first; with what is hidden still."""
+        """Return what the teacher hid from the students of a class, oldest first, also what nobody has answered yet."""
         return [one for one in self._answers.values() if one.class_id == class_id and one.exercise]
 
     def last_of(self, person_id: str) -> Answer | None:

@@ -24,8 +24,9 @@ from server.people.people import People
 from server.people.person import Person, hash_of, new_secret
 from server.people.student_benches import StudentBenches
 from server.people.votes import Votes
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import ClassRow, now
+from server.store.people import ClassRow
 
 log = logging.getLogger(__name__)
 
@@ -64,11 +65,11 @@ class Classes:
     benches : StudentBenches
         Their benches.
     audit : Audit
-        Where it is kept what people did.
+        The log of what people did.
     lesson : Lesson
-        What they are shown.
+        Shows them benches.
     blinds : Blinds
-        Where it is kept what was hidden from them.
+        Their hidden faults and answers.
     votes : Votes
         Their votes, which go with them.
     most_students : int
@@ -219,12 +220,12 @@ class Classes:
         self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)
 
     async def end(self, class_id: str) -> None:
-        """End a class: sessions, benches, names and what was done are gone."""
+        """End a class: close sessions and benches, delete names and what people did."""
         await self.row(class_id)
         self._codes.pop(class_id, None)
         for person in self._people.students(class_id):
             await self.remove(person)
-        await self._lesson.end(class_id)
+        self._lesson.end(class_id)
         await self._audit.forget(class_id)
         await self._blinds.forget(class_id)
         await self._votes.forget(class_id)

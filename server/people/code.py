@@ -1,4 +1,4 @@
-"""The join code of a class: what stands on the wall."""
+"""The join code of a class, as the wall shows it."""
 
 from __future__ import annotations
 

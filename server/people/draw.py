@@ -1,4 +1,4 @@
-"""What is drawn for each student of a class: the device, the noise, a hidden fault."""
+"""Draws for each student of a class: the device, the noise, a hidden fault."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def draw(secret: str, *what: str) -> int:
     Parameters
     ----------
     secret : str
-        Of the class; it never leaves the server. Somebody alone has none, and draws what everybody alone draws.
+        Of the class; it stays on the server. People alone have none, and all of them draw the same.
     *what : str
         What it is for: a student, an exercise, a purpose. A different word gives an unrelated number.
 

@@ -23,7 +23,7 @@ from server.people.person import TEACHER, Person
 log = logging.getLogger(__name__)
 
 LOOK_S = 1.0
-"""Between two questions to the pages of whoever drives."""
+"""Between two questions to the pages of drivers."""
 COMING_S = 10.0
 """How long a student who was handed a bench may take to come."""
 MOST_NAMES = 12
@@ -78,7 +78,7 @@ class Driving:
             self._pages.tell(bench_id)
 
     def go(self, bench_id: str, person: Person) -> None:
-        """Note that a page of somebody shows a bench no longer; whoever comes again soon was never away."""
+        """Note that a page of somebody shows a bench no longer; one who comes back soon was never away."""
         self._presence.go(bench_id, person, self._clock())
         if self._presence.of(bench_id):
             self._pages.tell(bench_id)
@@ -89,7 +89,7 @@ class Driving:
             lease.renew(self._clock())
 
     def check(self, bench_id: str, person: Person) -> None:
-        """Refuse whoever does not drive a bench; one that nobody drives is theirs from now on.
+        """Refuse a person who does not drive a bench; if nobody drives it, the person drives from now on.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class Driving:
         lease.renew(self._clock())
 
     def ask(self, bench_id: str, person: Person) -> None:
-        """Ask whoever drives for the bench; one that nobody drives is had at once."""
+        """Ask the driver for the bench; if nobody drives, the person drives at once."""
         lease = self._leases.get(bench_id)
         if lease is None or lease.is_of(person):
             return
@@ -125,7 +125,7 @@ class Driving:
         self._pages.tell(bench_id)
 
     def hand_over(self, bench_id: str, person: Person, whom: str) -> None:
-        """Let somebody else drive: who is there and may, or a student to whom the teacher lends the bench."""
+        """Let somebody else drive: a person who is there and may, or a student to whom the teacher lends the bench."""
         present = self._presence.of(bench_id).get(whom)
         lease = self._leases.get(bench_id)
         if present is not None and self._people.may(present, Need.DRIVE, bench_id):
@@ -151,7 +151,7 @@ class Driving:
         self._pages.call([student])
 
     def take(self, bench_id: str, person: Person) -> None:
-        """Take a bench: the teacher at once, a student what was lent from the own bench.
+        """Take a bench: the teacher any, a student the own one after handing it over.
 
         Raises
         ------
@@ -272,7 +272,7 @@ class Driving:
         lease.driver, lease.lent_by = None, ""
 
     def _return_loan(self, bench_id: str, person: Person | None) -> None:
-        """End the right of a student to a bench that was lent; of a driver who has it of one's own, end nothing."""
+        """End the right of a student to a bench that the teacher lent; a student keeps the own bench."""
         if person is not None and self._people.is_lent(person, bench_id):
             self._people.end_loan(person)
             self._pages.call([person])
@@ -288,7 +288,7 @@ class Driving:
 
 
 def go_without_driver(session: Session, why: str) -> None:
-    """Do what a bench does whose driver is gone: go on as it was set, or take its outputs to safe values (a job)."""
+    """Act on a bench whose driver is gone: let it go on as it was set, or take its outputs to safe values (a job)."""
     board = session.board
     if board.spec.frame.without_driver == "safe" and board.trip is None and not session.replay_of:
         session.execute(MakeSafe(make_safe=why), "board")

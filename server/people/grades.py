@@ -1,4 +1,4 @@
-"""What the students of a class have done at sheets, as rows to take away."""
+"""Grades: the work of the students of a class at sheets, as rows of a file."""
 
 from __future__ import annotations
 

@@ -13,9 +13,9 @@ from server.security.limits import Buckets
 from server.security.visitor import STYLE
 
 JOINS_PER_S, JOINS_AT_ONCE = 2.0, 80
-"""Tries of one address, behind which a whole class may be."""
+"""Tries of one address; a whole class may share it."""
 WRONG = 10.0
-"""What a wrong code costs: eight at once, then one in five seconds; all codes would take a hundred years."""
+"""Cost of a wrong code: eight at once, then one in five seconds; all codes would take a hundred years."""
 
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>Join a class · CombBench</title>

@@ -10,7 +10,7 @@ from server.errors import ApiError
 from server.people.person import TEACHER, Person
 
 LEASE_S = 5.0
-"""How long somebody drives who is not heard."""
+"""How long a silent driver keeps the bench."""
 
 
 @dataclass
@@ -18,12 +18,12 @@ class Lease:
     """Who drives a bench, and who would like to."""
 
     driver: Person | None = None
-    """Nobody: whoever does something next drives."""
+    """The driver; if nobody, the next person who does something drives."""
     until: float = 0.0
     """When it ends unless the driver is heard, on the clock of the leases."""
     asking: dict[str, Person] = field(default_factory=dict)
     lent_by: str = ""
-    """Id of whoever handed it over, and may take it back."""
+    """Id of the person who handed it over, and may take it back."""
     alone_since: float | None = None
     """Since when nobody else is there."""
 

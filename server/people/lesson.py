@@ -1,4 +1,4 @@
-"""A lesson: what the teacher puts before a whole class, a bench that all see and a layout of their panels."""
+"""A lesson: the teacher shows a bench to a whole class, and arranges their panels."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from server.people.lease import Pages
 from server.people.people import People
 from server.people.person import Person
 from server.store.database import Database
-from server.store.models import ClassRow
+from server.store.people import ClassRow
 
 
 class GivenLayout(BaseModel):
@@ -26,7 +26,7 @@ class GivenLayout(BaseModel):
 
 
 class Lesson:
-    """What classes are shown. It lasts until the teacher ends it, or the bench that is shown is gone.
+    """Shows benches to classes, until the teacher ends it or the bench is gone.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Lesson:
     people : People
         The students.
     audit : Audit
-        Where it is kept what the teacher did.
+        The log of what the teacher did.
     pages : Pages
         Those of the students, which are told.
     """
@@ -45,29 +45,29 @@ class Lesson:
         self._layouts: dict[str, GivenLayout] = {}
 
     async def recover(self) -> None:
-        """Take back the layouts that were given."""
+        """Take back what classes were shown and the layouts they were given."""
         for row in await self._database.run(lambda session: list(session.scalars(select(ClassRow)))):
+            self._people.show(row.id, row.shown or "")
             if row.layout is not None:
                 self._layouts[row.id] = GivenLayout.model_validate(row.layout)
 
     async def show(self, class_id: str, bench_id: str, title: str) -> None:
         """Let all students of a class see a bench."""
-        await self._people.show(class_id, bench_id)
+        await self._show(class_id, bench_id)
         self._audit.add("teacher", "shown", f"showed {title} to all", class_id, bench_id)
         self._pages.call(self._people.students(class_id))
 
     async def end_showing(self, class_id: str) -> None:
         """Let the students of a class see their own benches again."""
         if bench_id := self._people.shown_to(class_id):
-            await self._people.show(class_id, "")
+            await self._show(class_id, "")
             self._audit.add("teacher", "shown", "ended showing a bench to all", class_id, bench_id)
             self._pages.call(self._people.students(class_id))
 
     async def give_layout(self, class_id: str, name: str, layout: dict[str, Any] | None) -> None:
         """Arrange the panels of all students of a class, also of those who join later."""
         given = self._layouts[class_id] = GivenLayout(id=secrets.token_hex(4), name=name, layout=layout)
-        change = update(ClassRow).where(ClassRow.id == class_id).values(layout=given.model_dump())
-        await self._database.run(lambda session: session.execute(change))
+        await self._change(class_id, layout=given.model_dump())
         self._audit.add("teacher", "layout", f"gave the layout {name} to all", class_id)
         self._pages.call(self._people.students(class_id))
 
@@ -87,7 +87,15 @@ class Lesson:
         for class_id in self._people.shown_at(bench_id):
             await self.end_showing(class_id)
 
-    async def end(self, class_id: str) -> None:
-        """Forget what a class was shown that has ended."""
-        await self._people.show(class_id, "")
+    def end(self, class_id: str) -> None:
+        """Forget what was shown to a class that has ended; its row goes with it."""
+        self._people.show(class_id, "")
         self._layouts.pop(class_id, None)
+
+    async def _show(self, class_id: str, bench_id: str) -> None:
+        self._people.show(class_id, bench_id)
+        await self._change(class_id, shown=bench_id or None)
+
+    async def _change(self, class_id: str, **values: Any) -> None:
+        change = update(ClassRow).where(ClassRow.id == class_id).values(**values)
+        await self._database.run(lambda session: session.execute(change))

@@ -8,7 +8,7 @@ from server.errors import ApiError
 
 LONGEST_NAME = 40
 TAKEN = frozenset({"api", "board", "lti", "page", "scenario", "teacher", "watcher"})
-"""First words of those who do something and are no students."""
+"""First words of actors in the log that are no students."""
 
 
 def clean(name: str) -> str:

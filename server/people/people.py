@@ -16,11 +16,12 @@ from sqlalchemy import delete, select, update
 
 from server.people.access import Need
 from server.people.person import Person, Role, hash_of, new_secret
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import ClassRow, PersonRow, now
+from server.store.people import PersonRow
 
 MOST_EARLIER = 100
-"""Benches of before that are known to have been a student's."""
+"""Earlier benches of a student that are remembered."""
 
 
 class People:
@@ -51,9 +52,6 @@ class People:
         await self._database.run(lambda session: session.execute(delete(PersonRow).where(PersonRow.until <= now())))
         for row in await self._database.run(lambda session: list(session.scalars(select(PersonRow)))):
             self._take(row)
-        for group in await self._database.run(lambda session: list(session.scalars(select(ClassRow)))):
-            if group.shown:
-                self._shown[group.id] = group.shown
 
     def _take(self, row: PersonRow) -> Person:
         person = Person(row.id, row.name, cast(Role, row.role), row.class_id or "", row.until)
@@ -69,7 +67,7 @@ class People:
         self, role: Role, name: str, until: datetime, class_id: str | None = None, bench_id: str | None = None
     ) -> tuple[Person, str]:
         """Let somebody in; return the person and the secret of the session, which is kept nowhere."""
-        secret = self._shard + new_secret()
+        secret = self._new_secret()
         row = PersonRow(
             id=secrets.token_hex(8),
             role=role,
@@ -85,7 +83,7 @@ class People:
 
     async def renew(self, person: Person, until: datetime) -> tuple[Person, str]:
         """Let somebody come back by a new secret; the one before, and the sockets that it opened, end."""
-        secret = self._shard + new_secret()
+        secret = self._new_secret()
         hashed = hash_of(secret)
         query = update(PersonRow).where(PersonRow.id == person.id).values(secret_hash=hashed, until=until)
         await self._database.run(lambda session: session.execute(query))
@@ -94,6 +92,9 @@ class People:
         self._by_hash[hashed], self._hashes[person.id] = back, hashed
         self._check_again()
         return back, secret
+
+    def _new_secret(self) -> str:
+        return self._shard + new_secret()
 
     def by_secret(self, secret: str) -> Person | None:
         """Return whose session a secret opens, as long as it lasts."""
@@ -153,15 +154,13 @@ class People:
         change = update(PersonRow).where(PersonRow.id == person.id).values(lent=bench_id)
         self._database.run_later(lambda session: session.execute(change))
 
-    async def show(self, class_id: str, bench_id: str) -> None:
+    def show(self, class_id: str, bench_id: str) -> None:
         """Let all students of a class see a bench, in place of one that they saw before; none if it is empty."""
         before = self._shown.pop(class_id, "")
         if bench_id:
             self._shown[class_id] = bench_id
         if before:
             self._check_again()
-        change = update(ClassRow).where(ClassRow.id == class_id).values(shown=bench_id or None)
-        await self._database.run(lambda session: session.execute(change))
 
     def shown_to(self, class_id: str) -> str:
         """Return the bench that all students of a class may see; nothing if there is none."""

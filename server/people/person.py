@@ -42,7 +42,7 @@ class Person:
 
 
 TEACHER = Person("teacher", "teacher", "teacher")
-"""Whoever has the access token: also somebody who is alone with the bench."""
+"""The person with the access token, or a person who works alone."""
 
 
 def new_secret() -> str:

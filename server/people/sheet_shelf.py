@@ -14,8 +14,9 @@ from scenarios import sheets as library
 from scenarios.sheets.check import check
 from scenarios.sheets.sheet import Sheet
 from server.errors import ApiError, not_found
+from server.store.base import now
 from server.store.database import Database, reason_of
-from server.store.models import SheetRow, now
+from server.store.people import SheetRow
 
 log = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""A sheet as somebody sees it: what is open, what was answered and earned, nothing of what comes."""
+"""A sheet as somebody sees it: the steps so far, with answers and points, and nothing of later steps."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class GivenView(BaseModel):
 
 
 class ConditionView(BaseModel):
-    """A condition of a step: what is measured, what it is to be."""
+    """A condition of a step: the quantity, its value now, and the value that the step asks for."""
 
     label: str
     now: str = Field(description="A dash before the first look")
@@ -59,7 +59,7 @@ class StepView(BaseModel):
 
 
 class SectionView(BaseModel):
-    """A section; of one that is closed only the heading."""
+    """A section; a closed one has only its heading."""
 
     heading: str
     state: State
@@ -162,7 +162,7 @@ def _text(text: str, facts: dict[str, float]) -> str:
 
 
 def _show_hold(shown: StepView, step: Hold, progress: Progress, held: Held | None) -> None:
-    """Say of each condition what it is now and what it is to be."""
+    """Say the value of each condition now, and the value that the step asks for."""
     state, ends = progress.of(step), known_limits(step, progress.facts)
     findings = held.findings if held else []
     for position, (condition, limits) in enumerate(zip(step.conditions, ends, strict=True)):

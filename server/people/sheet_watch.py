@@ -26,7 +26,7 @@ from server.bench.watch import KeptWatch
 COLUMNS = 160
 """Of a small trace: minima and maxima of so many columns."""
 MOST_TICKS = 20_000
-"""Ticks of a long step that a small trace shows, the last ones: each student has them in memory and on disk."""
+"""Most ticks of a small trace, the last ones of a long step: the server has them for each student, on disk too."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Held:
 
 @dataclass(frozen=True)
 class Done:
-    """What a step found when it was done."""
+    """The values of a step when it was done."""
 
     values: list[float | str | None]
     trace: dict[str, Any]
@@ -47,7 +47,7 @@ class Done:
 
 
 class Seen:
-    """What was seen of a bench: some of its signals, up to the tick to which they were taken.
+    """Some signals of a bench, up to the tick to which they were taken.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class SheetWatch:
         return min(ticks, self.window - tick % self.window)
 
     def jumped(self, tick: int) -> None:
-        """Count from a tick to which the bench has gone: a reset, or a moment of before."""
+        """Count anew from this tick: somebody has reset the bench, or gone back to a moment."""
         self._since, self._last, self._windows = tick, tick, 0
         ticks = max(2 * self.window, min((self._needed + 1) * self.window, MOST_TICKS))
         self._seen = Seen(signals_of(self.step), self.window, ticks, self._dt_ms)

@@ -11,7 +11,7 @@ from sqlalchemy import delete, select, tuple_
 from scenarios.sheets.progress import Progress
 from scenarios.sheets.sheet import Sheet
 from server.store.database import Database
-from server.store.models import SheetProgressRow
+from server.store.people import SheetProgressRow
 
 
 @dataclass

@@ -25,8 +25,8 @@ from server.people.sheet_shelf import Shelf
 from server.people.sheet_view import SheetView, view_of
 from server.people.sheet_watch import Done, SheetWatch
 from server.people.sheet_work import Work, Works
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import now
 
 log = logging.getLogger(__name__)
 
@@ -40,7 +40,7 @@ class Sheets:
     Parameters
     ----------
     database : Database
-        Where all of it is kept.
+        Keeps the work.
     shelf : Shelf
         The sheets there are.
     classes : Classes
@@ -54,7 +54,7 @@ class Sheets:
     close_bench : callable
         Closes a bench and its streams.
     blinds : Blinds
-        Knows what was answered to hidden faults.
+        Knows the answers to hidden faults.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Sheets:
         self._welcoming = asyncio.Lock()
         classes.benches.on_revived, classes.benches.welcome = self._go_on, self._welcome
         self.on_kept: Callable[[Work], None] = lambda _: None
-        """Told of all that is kept of somebody's work."""
+        """Called with each work after it is written."""
 
     async def recover(self) -> None:
         """Take back what was kept."""
@@ -88,7 +88,7 @@ class Sheets:
         await self._works.recover()
 
     async def run(self) -> None:
-        """Watch benches that have come back, and forget what was done in classes that are over, again and again."""
+        """Watch benches that have come back, and forget the work of classes that are over, again and again."""
         while True:
             await asyncio.sleep(EVERY_S)
             try:
@@ -123,7 +123,7 @@ class Sheets:
         return self._works.all(person_id, class_id)
 
     def current(self, person: Person) -> tuple[Work, Sheet] | None:
-        """Return what somebody began last."""
+        """Return the sheet that somebody began last."""
         known = {sheet.id: sheet for sheet in self.all()}
         return next(((work, known[work.sheet_id]) for work in self.works(person.id) if work.sheet_id in known), None)
 
@@ -139,7 +139,7 @@ class Sheets:
         return view_of(sheet, work.progress, bench.id if bench is not None else None, held)
 
     async def begin(self, person: Person, sheet_id: str) -> Work:
-        """Give somebody the bench of a sheet; what was done at it stays.
+        """Give somebody the bench of a sheet; the answers so far stay.
 
         Raises
         ------
@@ -232,7 +232,7 @@ class Sheets:
             await self._engine.call(put)
 
     def _watch(self, work: Work, step: Hold, bench: Session) -> SheetWatch:
-        """Return who looks at a bench for a step, from now on."""
+        """Return a watch for a step, which looks at a bench from now on."""
 
         def done(found: Done) -> None:
             assert self._loop is not None
@@ -242,7 +242,7 @@ class Sheets:
         return SheetWatch(step, limits, bench.board.tick, bench.dt_ms, done)
 
     def _go_on(self, bench: Session, kept: KeptWatch | None) -> None:
-        """Watch a bench that goes on from its checkpoint, before it does, as it was watched."""
+        """Watch a bench again as before the crash, before it goes on from its checkpoint."""
         for work in self._works.all():
             sheet = self._known(work.sheet_id) if work.bench_id == bench.id else None
             step = work.progress.open_step(sheet) if sheet is not None else None
@@ -283,7 +283,7 @@ class Sheets:
         self.on_kept(work)
 
     async def _forget(self, works: list[Work]) -> None:
-        """Forget what was done at some sheets."""
+        """Forget the work at some sheets."""
         for work in works:
             if (bench := self._benches.find(work.bench_id)) is not None:
                 bench.watch = None
@@ -291,5 +291,5 @@ class Sheets:
 
 
 def _purposes(sheet: Sheet) -> list[str]:
-    """List what is drawn for a sheet."""
+    """List the purposes for which a sheet draws numbers."""
     return ["device", "noise", *(f"number {name}" for name in sheet.head.draws)]

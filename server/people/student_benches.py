@@ -1,4 +1,4 @@
-"""The benches of students: each has one, made when it is asked for, replaced, and brought back after a crash."""
+"""The benches of students: makes each at its first request, replaces it, and brings it back after a crash."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from server.errors import not_found
 from server.people.people import People
 from server.people.person import Person
 from server.store.database import Database
-from server.store.models import ClassRow
+from server.store.people import ClassRow
 
 log = logging.getLogger(__name__)
 
 
 async def _nothing(_: Person | Session) -> None:
-    """Leave it at that."""
+    """Do nothing more."""
 
 
 class StudentBenches:
@@ -34,7 +34,7 @@ class StudentBenches:
     Parameters
     ----------
     database : Database
-        Where it stands what the benches of a class begin with.
+        Has the scenario with which the benches of a class begin.
     people : People
         Knows which bench is whose.
     benches : Benches
@@ -57,9 +57,9 @@ class StudentBenches:
         self._close_bench, self._checkpoints = close_bench, checkpoints
         self._turn = asyncio.Lock()
         self.welcome: Callable[[Person], Awaitable[None]] = _nothing
-        """Asked before somebody gets a bench for the first time; it may give one."""
+        """Called before a student gets the first bench; it may give one."""
         self.on_revived: Callable[[Session, KeptWatch | None], None] = lambda *_: None
-        """Told of a bench that goes on from its checkpoint, before it does, and who looked at it."""
+        """Called with a bench before it goes on from its checkpoint, and with the watch it had."""
 
     def find(self, person: Person) -> Session | None:
         """Return the live bench of a student, if there is one."""
@@ -84,7 +84,7 @@ class StudentBenches:
             wanted = await self._database.run(lambda session: session.scalar(query))
             if wanted is None:
                 raise not_found("class", person.class_id, "it may have ended")
-            return await self._make(person, wanted)
+            return await self._make(person, wanted, None)
 
     async def replace(
         self,
@@ -95,8 +95,8 @@ class StudentBenches:
     ) -> Session:
         """Give a student another bench in place of the one that is there, with a hidden fault if one is chosen.
 
-        Closing the bench of before leads the pages of the student to the new one. ``before_shown`` is awaited ahead of
-        that, for what these pages then ask for.
+        The old bench closes, and then the pages of the student go to the new one. ``before_shown`` is awaited before
+        that, so that the pages find all they ask for.
 
         Raises
         ------
@@ -104,7 +104,12 @@ class StudentBenches:
             If it cannot be made; the student keeps the bench there is.
         """
         async with self._turn:
-            return await self._make(person, wanted, hide, before_shown)
+            before = self.find(person)
+            made = await self._make(person, wanted, hide)
+            await before_shown(made)
+            if before is not None:
+                await self._close_bench(before)
+            return made
 
     async def remove(self, person: Person) -> None:
         """Close the bench of a student."""
@@ -113,7 +118,7 @@ class StudentBenches:
                 await self._close_bench(bench)
 
     async def recover(self, students: list[Person]) -> None:
-        """Bring all benches back, as they were shortly before the server ended; forget those that are nobody's."""
+        """Bring all benches back, as they were shortly before the server ended; forget those without an owner."""
         for person in students:
             try:
                 if self._people.bench_of(person):
@@ -138,18 +143,8 @@ class StudentBenches:
             log.exception("bench %s cannot go on from what was kept", bench_id)
             return None
 
-    async def _make(
-        self,
-        person: Person,
-        wanted: dict[str, Any],
-        hide: Callable[[Board], Blind] | None = None,
-        before_shown: Callable[[Session], Awaitable[None]] = _nothing,
-    ) -> Session:
-        """Make the bench of a student, and close the one before."""
-        before = self.find(person)
+    async def _make(self, person: Person, wanted: dict[str, Any], hide: Callable[[Board], Blind] | None) -> Session:
+        """Make a bench and give it to a student."""
         made = await self._benches.create(**wanted, class_id=person.class_id, hide=hide)
         await self._people.give_bench(person, made.id)
-        await before_shown(made)
-        if before is not None:
-            await self._close_bench(before)
         return made

@@ -14,7 +14,7 @@ from scenarios.lecture import Span
 from server.errors import ApiError, not_found
 from server.people.person import Person
 from server.store.database import Database
-from server.store.models import BallotRow, VoteRow
+from server.store.people import BallotRow, VoteRow
 
 State = Literal["open", "closed", "revealed"]
 

@@ -17,8 +17,9 @@ from sqlalchemy.orm import Session, defer
 from core.errors import InputError
 from scenarios.key import code_version
 from server.errors import ApiError, Elsewhere, not_found
+from server.store.base import now
 from server.store.database import Database
-from server.store.models import RequestRow, now, of_process
+from server.store.models import RequestRow, of_process
 
 ACTIVE = ("queued", "running")
 MOST = 200
@@ -144,7 +145,7 @@ class Requests:
     async def recover(self) -> list[RequestRow]:
         """Return those of this process that wait or are under way, in the order in which they were asked for.
 
-        What was asked for before processes had letters belongs to the first that starts with one.
+        The first process that starts with a letter takes over the requests of the time before letters.
         """
         if self._shard:
             adopted = update(RequestRow).where(RequestRow.shard == "").values(shard=self._shard)
@@ -153,12 +154,12 @@ class Requests:
         return await self._rows(active.order_by(RequestRow.created, RequestRow.id))
 
     def check_here(self, row: RequestRow) -> None:
-        """Send whoever asks to the process that carries a request out and has its files, if it is another.
+        """Redirect a caller to the process that carries a request out and has its files, if that is another one.
 
         Raises
         ------
         Elsewhere
-            Naming it.
+            With the letter of that process.
         """
         if self._shard and row.shard != self._shard:
             raise Elsewhere(row.shard)

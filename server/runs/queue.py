@@ -30,8 +30,9 @@ from server.metrics import Metrics
 from server.runs.listing import Kind, Requests, RunFilter, change
 from server.runs.worker import NICE, NotKept
 from server.settings import Settings
+from server.store.base import now
 from server.store.database import Database, reason_of
-from server.store.models import RequestRow, now
+from server.store.models import RequestRow
 from server.store.results import Results
 
 log = logging.getLogger(__name__)

@@ -67,7 +67,7 @@ class Sweeps(Requested[SweepRun]):
     async def start(self, document: dict[str, Any], label: str = "") -> tuple[SweepRun, bool]:
         """Queue a campaign, or return the same one if it exists; true when it is new. A name it is given is its name.
 
-        What somebody wrote is checked now; a point that cannot be carried out gives runs with an error.
+        The campaign is checked now; a point that cannot be carried out gives runs with an error.
 
         Raises
         ------

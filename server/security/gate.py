@@ -119,7 +119,7 @@ class Gate:
         elif person is None:
             await self._refuse(scope, receive, send, 401, CLOSE_AUTH, "unauthorised", "an access token is needed")
         else:
-            whose = "the teacher" if need is Need.TEACHER else "whoever has this bench"
+            whose = "the teacher" if need is Need.TEACHER else "the person who has this bench"
             await self._refuse(scope, receive, send, 403, CLOSE_ROLE, "forbidden", f"only {whose} may do that")
 
     def _person(self, connection: HTTPConnection) -> Person | None:

@@ -27,7 +27,7 @@ CLAIM = b"combben"
 KEEPALIVES = "SET tcp_keepalives_idle = 30; SET tcp_keepalives_interval = 10; SET tcp_keepalives_count = 3"
 """Within a minute the database notices that a host has lost its power, and frees its lock."""
 MIGRATION = b"combmigr"
-"""Name of the lock of whoever migrates."""
+"""Name of the lock that a process holds while it migrates."""
 T = TypeVar("T")
 
 

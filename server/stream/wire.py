@@ -166,7 +166,7 @@ class Notice(BaseModel):
 
 
 class Ping(BaseModel):
-    """Asks the page of whoever drives whether it is there; answered at once by a pong."""
+    """Asks the page of the driver whether it is there; the page answers at once by a pong."""
 
     type: Literal["ping"] = "ping"
 

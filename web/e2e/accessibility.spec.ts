@@ -1,6 +1,24 @@
 import { expect, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
+test("every menu of a bench opens with its first item in focus, and axe finds nothing serious in it", async ({
+  page,
+  openBench,
+}) => {
+  await openBench("lab");
+  const menus = page.locator("[aria-haspopup=menu]:visible");
+  const many = await menus.count();
+  expect(many).toBeGreaterThan(4);
+  for (let at = 0; at < many; at++) {
+    await menus.nth(at).click();
+    await expect(page.getByRole("menuitem").first()).toBeFocused();
+    expect(await seriousViolations(page)).toEqual([]);
+    await page.keyboard.press("Escape");
+    await expect(page.getByRole("menu")).toHaveCount(0);
+    await expect(menus.nth(at)).toBeFocused();
+  }
+});
+
 for (const colorScheme of ["dark", "light"] as const) {
   test.describe(colorScheme, () => {
     test.use({ colorScheme });

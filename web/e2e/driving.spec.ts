@@ -39,6 +39,8 @@ test("a teacher and a student at one bench: one drives, asks, hands over, takes 
 
   await seriousViolations(ada).then((found) => expect(found).toEqual([]));
   await hers.click();
+  await expect(ada.getByRole("menuitem").first()).toBeFocused();
+  await seriousViolations(ada).then((found) => expect(found).toEqual([]));
   await ada.getByRole("menuitem", { name: "Take the bench back" }).click();
   await expect(theirs).toHaveText("Ada drives");
   await ada.getByRole("button", { name: "Run", exact: true }).click();

@@ -34,6 +34,10 @@ test("one bench on all screens, a layout for all, all started together, a hand l
     for (const name of ["Pause", "Stop"]) await expect(one.getByRole("button", { name, exact: true })).toHaveCount(0);
   }
   await expect(page.getByTitle("Who is here")).toHaveText("2 look on");
+  await page.getByTitle("Who is here").click();
+  await expect(page.getByRole("dialog")).toContainText("look on");
+  await seriousViolations(page).then((found) => expect(found).toEqual([]));
+  await page.keyboard.press("Escape");
   await expectClean(ada, "a bench that is shown to all");
   await expectClean(emmy, "a bench that is shown to all, on a phone");
   await seriousViolations(emmy).then((found) => expect(found).toEqual([]));

@@ -5,8 +5,9 @@ from __future__ import annotations
 from alembic import context
 from sqlalchemy import Connection
 
+from server.store import models, people  # noqa: F401  (each adds its tables)
+from server.store.base import Base
 from server.store.database import make_engine
-from server.store.models import Base
 
 
 def migrate(connection: Connection) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from core.board.document import with_values
 from core.errors import InputError
+from scenarios.edit import with_values as with_scenario_values
 from scenarios.library import get
 from scenarios.run import build
 from tests.lab import RICH, do, document, fault, inject, inner_digest, make, play, run_digest
@@ -151,10 +152,35 @@ def test_commands_leave_their_values_alone():
 
 @pytest.mark.parametrize(
     ("command", "field"),
-    [({"switch": "mrac"}, "switch"), ({"set": {"slots.drive": "mrac"}}, "slots.drive")],
+    [
+        ({"switch": "mrac"}, "switch"),
+        ({"set": {"slots.drive": "mrac"}}, "slots.drive"),
+        ({"set": {"controllers.mrac.adaptation_gain": 2.0}}, "controllers.mrac"),
+        ({"set": {"controllers.mrac": {"adaptation_gain": 2.0}}}, "controllers.mrac"),
+        ({"set": {"sensors.ideal.noise_um": 0.1}}, "sensors.ideal"),
+    ],
 )
 def test_a_gyroscope_takes_no_controller_of_one_displacement(command, field):
     board = build(get("gyro-adaptive"))
     with pytest.raises(InputError, match="is for one displacement; gyroscope moves along x, y") as refused:
         do(board, command)
     assert refused.value.field == field and "mrac" not in board.spec.controllers
+
+
+def test_a_scenario_has_no_parameters_of_a_controller_that_its_plant_cannot_have():
+    with pytest.raises(InputError, match="is for one displacement; gyroscope moves along x, y") as refused:
+        build(with_scenario_values(get("gyro-adaptive"), {"controllers.mrac.adaptation_gain": 2.0}))
+    assert refused.value.field == "controllers.mrac"
+    with pytest.raises(InputError, match="needs x, y; linear has one displacement") as refused:
+        make({"controllers.adaptive_rate.adaptation_gain": 2.0})
+    assert refused.value.field == "controllers.adaptive_rate"
+
+
+def test_a_parameter_of_a_controller_that_does_not_suit_the_device_is_unknown():
+    board = build(with_scenario_values(get("ch4-regulator"), {"controllers.stvsc.filter_pole": 2.0}))
+    assert "stvsc" not in board.spec.controllers  # it is for plants of second order
+    with pytest.raises(InputError, match=r"^controllers\.stvsc: unknown controller 'stvsc'; allowed: ") as refused:
+        do(board, {"set": {"controllers.stvsc.filter_pole": 3.0}})
+    assert refused.value.code == "unknown" and not board.log
+    bound = {"controllers.vsmrc.reference_bound": 0.25}
+    assert do(board, {"set": bound}).new == bound

@@ -34,7 +34,7 @@ class Clock:
 def session(lead: bool, scale: float | None = SCALE, **values: Any) -> tuple[Session, Clock]:
     scenario, clock = with_values(get("ch5-seven-step"), values), Clock()
     made = Session(scenario, build(scenario), scale, 20_000, Metrics(), clock)
-    made.fast_forward.leads = lead
+    made.running.fast_forward.leads = lead
     made.begin(True)
     return made, clock
 
@@ -55,7 +55,7 @@ def test_the_lead_is_fast_to_shortly_before_the_first_fault_and_the_pace_is_as_s
     assert bench.status.fast_forward == "quiet_lead" and bench.status.time_scale == SCALE
     assert bench.target(clock.now) == 2000 - SHORTLY  # due at once, whatever the clock says
     go(bench, clock, 2 / 120)
-    assert bench.fast_forward.reason is None
+    assert bench.running.fast_forward.reason is None
     begun = bench.board.tick
     assert 2000 - SHORTLY <= begun <= 2000 - SHORTLY + 2
     go(bench, clock, 1.0)
@@ -85,14 +85,14 @@ def test_the_bits_are_those_of_a_bench_without_it() -> None:
 
 def test_nothing_leads_unless_asked_to_nor_where_the_first_moment_is_not_known() -> None:
     plain, clock = session(lead=False)
-    assert plain.fast_forward.reason is None and plain.target(clock.now + 1 / 120) in (0, 1)
+    assert plain.running.fast_forward.reason is None and plain.target(clock.now + 1 / 120) in (0, 1)
     waiting, _ = session(lead=True, events=[{"when": WATCHED, "fault": "added_mass", "severity": 0.05}])
-    assert waiting.fast_forward.reason is None
+    assert waiting.running.fast_forward.reason is None
     quiet, _ = session(lead=True, events=[])
-    assert quiet.fast_forward.reason is None
+    assert quiet.running.fast_forward.reason is None
     later = {"at_sample": 5000, "heal": "all"}
     soon, _ = session(lead=True, events=[{"at_sample": SHORTLY, "fault": "added_mass", "severity": 0.05}, later])
-    assert soon.fast_forward.reason is None
+    assert soon.running.fast_forward.reason is None
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_a_reset_leads_again_or_runs_to_the_step_that_is_asked_for() -> None:
     go(bench, clock, 0.1)
     again = with_values(get("ch5-seven-step"), {})
     bench.reset(again, build(again), "test")
-    assert bench.fast_forward.reason == "quiet_lead"
+    assert bench.running.fast_forward.reason == "quiet_lead"
     bench.execute(parse({"kind": "pause"}), "test")
     bench.reset(again, build(again), "test", 4000)
     assert bench.is_running
@@ -138,7 +138,7 @@ def test_a_condition_is_run_to_and_hardly_beyond() -> None:
     mass = {"when": "reference.voltage > 9.9", "at_sample": 500, "fault": "added_mass", "severity": 0.05}
     bench, clock = session(lead=False, events=[mass])
     bench.execute(parse({"kind": "fast_forward"}), "test")
-    while bench.fast_forward.reason:
+    while bench.running.fast_forward.reason:
         go(bench, clock, 1 / 120)
     fault = bench.board.faults["added_mass"]
     assert fault.start_tick >= 500 and bench.board.tick - fault.start_tick < 10
@@ -154,4 +154,4 @@ def test_refusals_change_nothing() -> None:
     free = Session(endless, build(endless), SCALE, 20_000, Metrics(), clock)
     with pytest.raises(InputError, match="nothing waits"):
         free.execute(parse({"kind": "fast_forward"}), "test")
-    assert bench.events.last == last and bench.fast_forward.reason is None
+    assert bench.events.last == last and bench.running.fast_forward.reason is None

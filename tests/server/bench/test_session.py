@@ -61,7 +61,7 @@ def test_it_pauses_once_at_the_end_of_its_scenario() -> None:
 def test_a_trip_pauses_it_and_only_a_reset_leads_out() -> None:
     bench = session("ch3-mrac-spring-x2", **{"controllers.mrac.adaptation_gain": 30.0})
     if bench.scenario.samples is not None:
-        bench._ends_at = None
+        bench.running.ends_at = None
     bench.execute(parse({"set": {"guard.travel_um": 0.01}}), "test")
     advance(bench, 20_000)
     assert bench.status.state == "tripped" and not bench.is_running

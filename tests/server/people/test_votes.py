@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from sqlalchemy import select
 
-from server.store.models import BallotRow, VoteRow
+from server.store.people import BallotRow, VoteRow
 from tests.server.people.group import Somebody, join, open_class
 
 LANES = {

@@ -11,8 +11,9 @@ import pytest
 from alembic import command
 from sqlalchemy import MetaData, inspect, text
 
+from server.store.base import Base
 from server.store.database import Database, alembic_config, make_engine
-from server.store.models import Base, RecordingRow, RequestRow, ResultRow
+from server.store.models import RecordingRow, RequestRow, ResultRow
 from tests.server.store.postgres import new_database
 
 

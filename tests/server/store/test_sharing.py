@@ -13,9 +13,10 @@ from core.errors import InputError
 from server.errors import Elsewhere
 from server.runs.listing import Requests, fresh
 from server.settings import Settings
+from server.store.base import now
 from server.store.database import Database
 from server.store.keeping import Keeping
-from server.store.models import RequestRow, now
+from server.store.models import RequestRow
 from tests.server.store.postgres import new_database
 
 ROUNDS = 20

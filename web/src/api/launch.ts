@@ -45,7 +45,7 @@ async function ask<T>(path: string, body: object): Promise<T> {
 
 const refusal = (message: string): ApiErrorBody => ({ code: "lti_refused", message, field: "", hint: AGAIN });
 
-/** Whether the server gives what is there to whoever has a session alone. */
+/** Whether an address is one of those for which the server wants a session. */
 const isKept = (address: string): boolean =>
   new URL(address, document.baseURI).pathname.startsWith(new URL("./api/", document.baseURI).pathname);
 

@@ -20,7 +20,7 @@ interface MeStore {
 /** Who is at this page; asked before anything is shown. */
 export const useMe = create<MeStore>(() => ({ me: undefined, at: undefined }));
 
-/** Whether whoever is at this page may do something; the server decides, this only leaves out what it would refuse. */
+/** Whether the person at this page may do something; the server decides, and the page leaves out what it would refuse. */
 export function may(right: Right, role = useMe.getState().me?.role): boolean {
   if (role === undefined || !RIGHTS[role].includes(right)) return false;
   return role !== "student" || !looksOn(useMe.getState());

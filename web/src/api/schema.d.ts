@@ -197,7 +197,7 @@ export interface paths {
         };
         /**
          * List Benches
-         * @description List the live benches, without those of students, which are listed with their class; to them, their own.
+         * @description List the live benches without those of students, which their class lists; a student sees the own bench.
          */
         get: operations["list_benches_api_v1_benches_get"];
         put?: never;
@@ -746,7 +746,7 @@ export interface paths {
         };
         /**
          * List Recordings
-         * @description List all recordings, of benches that are gone as well; to a student those of the own benches.
+         * @description List all recordings, also of benches that are gone; a student sees those of the own benches.
          */
         get: operations["list_recordings_api_v1_recordings_get"];
         put?: never;
@@ -1599,7 +1599,7 @@ export interface paths {
         post?: never;
         /**
          * End Class
-         * @description End a class: its sessions and benches, the names of its students and what they did are gone.
+         * @description End a class: close its benches and sessions, and delete the names of its students and the log.
          */
         delete: operations["end_class_api_v1_classes__class_id__delete"];
         options?: never;
@@ -1623,7 +1623,7 @@ export interface paths {
         post: operations["make_code_api_v1_classes__class_id__code_post"];
         /**
          * End Code
-         * @description Let nobody else join; who is there stays.
+         * @description Let nobody else join; students who are there stay.
          */
         delete: operations["end_code_api_v1_classes__class_id__code_delete"];
         options?: never;
@@ -1702,7 +1702,7 @@ export interface paths {
         put?: never;
         /**
          * Command All
-         * @description Carry out a command on the benches of all students or of some, each at its own next tick edge, whoever drives.
+         * @description Carry out a command on the benches of all students or some at their next tick edges, no matter who drives.
          */
         post: operations["command_all_api_v1_classes__class_id__commands_post"];
         delete?: never;
@@ -1722,7 +1722,7 @@ export interface paths {
         put?: never;
         /**
          * Begin Scenario
-         * @description Begin a scenario on the benches of all students; who joins later begins with it too.
+         * @description Begin a scenario on the benches of all students; students who join later begin with it too.
          */
         post: operations["begin_scenario_api_v1_classes__class_id__scenario_post"];
         delete?: never;
@@ -1867,18 +1867,18 @@ export interface paths {
         };
         /**
          * Get Blind
-         * @description Say what is asked on a bench, and what was answered.
+         * @description Return the question of a bench, and the answers so far.
          */
         get: operations["get_blind_api_v1_benches__bench_id__blind_get"];
         put?: never;
         /**
          * Hide Fault
-         * @description Hide a fault on a bench, or none; its doors serve no more than may be seen until it is answered.
+         * @description Hide a fault on a bench, or none; until somebody answers, the bench serves nothing that tells it.
          */
         post: operations["hide_fault_api_v1_benches__bench_id__blind_post"];
         /**
          * Give Up
-         * @description Show what was hidden without an answer.
+         * @description Reveal the fault without an answer.
          */
         delete: operations["give_up_api_v1_benches__bench_id__blind_delete"];
         options?: never;
@@ -1897,7 +1897,7 @@ export interface paths {
         put?: never;
         /**
          * Answer
-         * @description Say what the device is; what was hidden is in the answer, and served from then on.
+         * @description Answer what the device is; the reply tells the hidden fault, and the bench serves everything again.
          */
         post: operations["answer_api_v1_benches__bench_id__blind_answer_post"];
         delete?: never;
@@ -1915,7 +1915,7 @@ export interface paths {
         };
         /**
          * Get Class Blind
-         * @description List what was hidden in a class and what was answered, with the truth.
+         * @description List the hidden faults of a class and the answers, with the truth.
          */
         get: operations["get_class_blind_api_v1_classes__class_id__blind_get"];
         put?: never;
@@ -1926,7 +1926,7 @@ export interface paths {
         post: operations["hide_for_class_api_v1_classes__class_id__blind_post"];
         /**
          * Reveal Class
-         * @description Show all students of a class what was hidden from them; who has not answered gets no points.
+         * @description Reveal their faults to all students of a class; those who have not answered get no points.
          */
         delete: operations["reveal_class_api_v1_classes__class_id__blind_delete"];
         options?: never;
@@ -2013,7 +2013,7 @@ export interface paths {
         put?: never;
         /**
          * Reveal Vote
-         * @description Close a vote and show how many said what.
+         * @description Close a vote and show the counts.
          */
         post: operations["reveal_vote_api_v1_votes__vote_id__reveal_post"];
         delete?: never;
@@ -2139,7 +2139,7 @@ export interface paths {
         };
         /**
          * Get Sheet
-         * @description Show a sheet as far as who asks has come.
+         * @description Show a sheet as far as the caller has come.
          */
         get: operations["get_sheet_api_v1_sheets__sheet_id__get"];
         put?: never;
@@ -2581,7 +2581,7 @@ export interface components {
         };
         /**
          * Answer
-         * @description A hidden fault, and what somebody said of it.
+         * @description A hidden fault, and the answer to it.
          */
         Answer: {
             /** Id */
@@ -2935,7 +2935,7 @@ export interface components {
         };
         /**
          * BlindClass
-         * @description What was hidden from the students of a class, and what they answered.
+         * @description The hidden faults of the students of a class, and their answers.
          */
         BlindClass: {
             /** Rule */
@@ -2953,7 +2953,7 @@ export interface components {
         };
         /**
          * Blindness
-         * @description What is hidden on a bench, and what was answered before.
+         * @description The hidden fault of a bench, and the answers before.
          */
         Blindness: {
             /** @description Null while nothing is hidden */
@@ -3189,7 +3189,7 @@ export interface components {
              * @description Two or more who may drive have it open, so only one of them does
              */
             is_leased: boolean;
-            /** @description Who drives; null: whoever does something next */
+            /** @description Who drives; null: nobody, and the next person who does something drives */
             driver: components["schemas"]["Somebody"] | null;
             /**
              * Drivers
@@ -3203,7 +3203,7 @@ export interface components {
             asking: components["schemas"]["Somebody"][];
             /**
              * Lent By
-             * @description Id of whoever handed it over and may take it back; empty: nobody did
+             * @description Id of the person who handed it over and may take it back; empty: nobody did
              */
             lent_by: string;
             /**
@@ -3281,7 +3281,7 @@ export interface components {
         };
         /**
          * ConditionView
-         * @description A condition of a step: what is measured, what it is to be.
+         * @description A condition of a step: the quantity, its value now, and the value that the step asks for.
          */
         ConditionView: {
             /** Label */
@@ -3547,7 +3547,7 @@ export interface components {
         DrivingTurn: {
             /**
              * Do
-             * @description ask whoever drives for the bench; hand it over to somebody, or refuse who has asked; take it (the teacher, or a student what was lent from the own bench); leave it to whoever does something next
+             * @description ask the driver for the bench; hand it over to somebody, or refuse a person who has asked; take it (the teacher, or a student who handed over the own bench); leave it: the next person who does something drives
              * @enum {string}
              */
             do: "ask" | "hand_over" | "refuse" | "take" | "leave";
@@ -4105,7 +4105,7 @@ export interface components {
         };
         /**
          * Hide
-         * @description What is hidden on a bench of one's own.
+         * @description A fault to hide on a bench of one's own.
          */
         Hide: {
             /**
@@ -4122,7 +4122,7 @@ export interface components {
         };
         /**
          * HideForAll
-         * @description What the students of a class are asked.
+         * @description A question to the students of a class.
          */
         HideForAll: {
             /**
@@ -4693,7 +4693,7 @@ export interface components {
              * @description Id of the layout given to all last; /me/layout has it
              */
             layout?: string | null;
-            /** @description What the class of a student is asked */
+            /** @description The open question to the class of a student */
             vote?: components["schemas"]["OpenVote"] | null;
         };
         /**
@@ -4801,7 +4801,7 @@ export interface components {
         };
         /**
          * NewBallot
-         * @description What a student answers.
+         * @description The answer of a student.
          */
         NewBallot: {
             /** Vote */
@@ -5169,7 +5169,7 @@ export interface components {
         };
         /**
          * Outcomes
-         * @description What became of something done on many benches.
+         * @description The outcome of a command to many benches.
          */
         Outcomes: {
             /** Done */
@@ -5927,7 +5927,7 @@ export interface components {
         };
         /**
          * SectionView
-         * @description A section; of one that is closed only the heading.
+         * @description A section; a closed one has only its heading.
          */
         SectionView: {
             /** Heading */
@@ -6043,7 +6043,7 @@ export interface components {
              * @description Somebody opened it; the others are those of the library
              */
             own: boolean;
-            /** @description How far who asks has come */
+            /** @description How far the caller has come */
             work: components["schemas"]["SheetBrief"] | null;
         };
         /**
@@ -6068,7 +6068,7 @@ export interface components {
             sheets: components["schemas"]["SheetCard"][];
             /**
              * Current
-             * @description The one who asks began last
+             * @description Id of the sheet that the caller began last
              */
             current: string | null;
         };
@@ -6919,7 +6919,7 @@ export interface components {
             text: string;
             /**
              * Answers
-             * @description what can be chosen; none where lanes are asked for
+             * @description the options; none for a question about lanes
              * @default []
              */
             answers?: string[];
@@ -6940,7 +6940,7 @@ export interface components {
         };
         /**
          * Question
-         * @description What is told of a hidden fault.
+         * @description The words people get about a hidden fault.
          */
         server__bench__blind__Question: {
             /** Id */
@@ -7233,7 +7233,7 @@ export interface components {
         };
         /**
          * Ping
-         * @description Asks the page of whoever drives whether it is there; answered at once by a pong.
+         * @description Asks the page of the driver whether it is there; the page answers at once by a pong.
          */
         Ping: {
             /**
@@ -7245,7 +7245,7 @@ export interface components {
         };
         /**
          * Question
-         * @description What is told of a hidden fault.
+         * @description The words people get about a hidden fault.
          */
         Question: {
             /** Id */

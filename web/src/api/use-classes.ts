@@ -6,7 +6,7 @@ import type { Class } from "./types";
 const NONE: Class[] = [];
 const USUAL_MS = 5000;
 
-/** The classes of this server; none to whoever is not the teacher. Where there are none it is not asked again. */
+/** The classes of this server; only the teacher gets any. A page that got none does not ask again. */
 export function useClasses(): { all: Class[]; again(): void } {
   const teaches = useMay("teach");
   const { value, again } = useAnswer(teaches ? ["classes"] : undefined, classes.all, (found) =>

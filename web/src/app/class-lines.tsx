@@ -24,7 +24,7 @@ export function ClassLines() {
   );
 }
 
-/** Somebody asks whoever is at this page for the bench. */
+/** Somebody asks the person at this page for the bench. */
 function Asked() {
   const company = useCompany();
   const me = useMe((s) => s.me?.id);
@@ -59,7 +59,7 @@ function Place() {
       .catch(showError);
   if (at === me.lent && at !== me.bench)
     return (
-      <Line title="Your teacher has handed you this bench." text="You drive it until it is taken back.">
+      <Line title="Your teacher has handed you this bench." text="You drive it until your teacher takes it back.">
         <Button size="compact-sm" onClick={() => changeDriver("leave").then(goHome)}>
           Give it back
         </Button>
@@ -67,7 +67,7 @@ function Place() {
     );
   if (at === me.shown && at !== me.bench)
     return (
-      <Line title="Your teacher shows this bench to all." text="You look on; your own bench is kept.">
+      <Line title="Your teacher shows this bench to all." text="You look on; your own bench goes on.">
         <Button size="compact-sm" variant="default" onClick={goHome}>
           My own bench
         </Button>
@@ -108,7 +108,7 @@ function Shown() {
   return all
     .filter(({ shown }) => shown === bench)
     .map(({ id, name }) => (
-      <Line key={id} title={`All of ${name} see this bench.`} text="They cannot change it; their own benches are kept.">
+      <Line key={id} title={`All of ${name} see this bench.`} text="They cannot change it; their own benches go on.">
         <Button size="compact-sm" onClick={() => classes.endShowing(id).then(again, showError)}>
           End showing
         </Button>

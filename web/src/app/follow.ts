@@ -14,7 +14,7 @@ const TAKEN = "combbench.layout.given";
 /** The layout that the teacher has given to this page, and the one that was shown before. */
 export const useGiven = create<{ given: { name: string; before: string } | undefined }>(() => ({ given: undefined }));
 
-/** Ask what whoever is at this page sees and drives now, and go there. */
+/** Ask which bench the person at this page sees and drives now, and go there. */
 export async function follow(): Promise<void> {
   const { me: before, at } = useMe.getState();
   const me = await askMe();
@@ -40,7 +40,7 @@ async function showSheetOf(bench: string): Promise<void> {
   if (current && (await sheets.get(current)).bench === bench) showSheet();
 }
 
-/** Arrange the panels as the teacher says, once; the layout of before is kept. A phone has no panels to arrange. */
+/** Arrange the panels as the teacher says, once, and keep the layout from before. A phone has no panels to arrange. */
 async function takeLayout(): Promise<void> {
   if (window.innerWidth <= 600) return;
   const { id, name, layout } = await givenLayout();

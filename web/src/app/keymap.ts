@@ -24,7 +24,7 @@ export interface KeyBinding {
   run(): void;
 }
 
-/** The keys of whoever is at the page; the sheet and the listener read the same list. */
+/** The keys of the person at the page; the sheet and the listener read the same list. */
 export const keymap = (): KeyBinding[] => {
   const keys = KEYS.filter(({ needs }) => !needs || may(needs));
   return lectureRuns() ? [...LECTURE, ...keys.filter(({ key }) => key !== " ")] : keys;

@@ -10,7 +10,7 @@ interface LinkBoxProps {
   /** Below the address of the page, such as "?link=ab3kmn7x". */
   path: string;
   what: string;
-  /** What whoever opens it has to know. */
+  /** A note for the people who open it. */
   remark?: string;
   onCopy?(): void;
 }

@@ -60,7 +60,7 @@ function Kept() {
   );
 }
 
-/** What was kept, and what can be done with it; only whoever made it renames and deletes it here. */
+/** What was kept, and what can be done with it; only the person who made it renames and deletes it here. */
 function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; onChanged(): void }) {
   const [title, setTitle] = useState<string | undefined>(undefined);
   const [busy, setBusy] = useState(false);

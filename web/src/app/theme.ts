@@ -110,7 +110,11 @@ export const theme = createTheme({
     Popover: { defaultProps: { shadow: "md", withinPortal: true } },
     // a menu longer than the window scrolls
     Menu: {
-      defaultProps: { middlewares: { flip: true, shift: true, size: { padding: 8 } } },
+      // a menu holds nothing but items, so it opens with the first of them in focus
+      defaultProps: {
+        withInitialFocusPlaceholder: false,
+        middlewares: { flip: true, shift: true, size: { padding: 8 } },
+      },
       styles: { dropdown: { overflowY: "auto" } },
     },
   },

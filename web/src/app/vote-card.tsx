@@ -12,7 +12,7 @@ import styles from "./vote-card.module.css";
 /** How soon a student's page hears of a vote. */
 const EVERY_MS = 4000;
 
-/** What the class of a student is asked: one answer at a tap, and a moment, until the vote is closed. */
+/** The open vote of a student's class: one answer at a tap, and a moment, until the vote is closed. */
 export function VoteCard() {
   const student = useMe((s) => s.me?.role === "student");
   const vote = useMe((s) => s.me?.vote);

@@ -11,7 +11,7 @@ const be = (role: Me["role"]) =>
 
 afterEach(() => command.mockClear());
 
-test("a command is sent for a teacher and for a student, and never for whoever only watches", async () => {
+test("a command is sent for a teacher and for a student, and never for a watcher", async () => {
   for (const role of ["teacher", "student"] as const) {
     be(role);
     expect(await send({ kind: "pause" })).toBe(true);

@@ -5,7 +5,7 @@ import type { Command } from "../api/types";
 import { stream } from "../stream/stream";
 import { announce } from "./announce";
 
-/** What whoever only watches is told where something could be changed. */
+/** The words for a watcher where others could change something. */
 export const WATCHING = "You watch this bench and cannot change it.";
 
 /**

@@ -117,7 +117,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
       </header>
       {shown && (
         <p className={styles.shown}>
-          <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches are kept.
+          <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches go on.
           <Button size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
             End showing
           </Button>

@@ -35,7 +35,7 @@ function Done({ group, owners }: Pick<DoneSheetProps, "group" | "owners">) {
     <>
       <Stale error={error} since={since} onRetry={again} />
       {value?.length === 0 && (
-        <EmptyState title="Nothing yet">Who joins and what they do on their benches will stand here.</EmptyState>
+        <EmptyState title="Nothing yet">This list will show who joins, and what they do on their benches.</EmptyState>
       )}
       <ol className={styles.done} aria-label="What was done, newest first">
         {value?.map(({ at, actor, text, tick, bench_id }) => {

@@ -22,7 +22,7 @@ export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAll
   const card = cards.find(({ id }) => id === wanted) ?? cards[0];
   if (!card) return null;
   const whom = chosen.length > 0 ? `the ${chosen.length} chosen benches` : `all ${count} benches`;
-  const late = chosen.length > 0 ? "" : " Who joins later begins it too.";
+  const late = chosen.length > 0 ? "" : " Students who join later begin it too.";
   const begin = () => {
     if (!window.confirm(`Begin the sheet ${card.title} on ${whom}? What is on them now is gone; answers stay.${late}`))
       return;

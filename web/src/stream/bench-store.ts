@@ -23,7 +23,7 @@ export interface BenchStore {
   droppedFrames: number;
   /** The latest word of the server about this connection. */
   notice: { code: string; message: string } | undefined;
-  /** How often the server has told the page to ask what whoever is there may do now. */
+  /** How often the server has told the page to ask what the person may do now. */
   called: number;
 }
 

@@ -1,4 +1,4 @@
-import { Menu, UnstyledButton } from "@mantine/core";
+import { Menu, Popover, UnstyledButton } from "@mantine/core";
 import { IconSteeringWheel, IconUsers } from "@tabler/icons-react";
 import { useMay, useMe } from "../../api/me";
 import type { Company } from "../../api/types";
@@ -6,7 +6,7 @@ import { changeDriver, drivingWords, nameOf, useCompany } from "../../bench/driv
 import { formatCount } from "../../ui/format";
 import styles from "./header.module.css";
 
-/** Who drives and who looks on, once that is more than one; and what can be done about it. */
+/** Who drives and who looks on, once that is more than one; a menu for those who can do something about it. */
 export function CompanyMenu() {
   const company = useCompany();
   const me = useMe((s) => s.me?.id);
@@ -14,23 +14,28 @@ export function CompanyMenu() {
   if (!company) return null;
   const words = drivingWords(company, me);
   const isDriver = company.driver?.id === me;
+  const button = (
+    <UnstyledButton className={styles.company} data-driver={company.is_leased && isDriver} title="Who is here">
+      {company.is_leased ? <IconSteeringWheel size={17} /> : <IconUsers size={17} />}
+      <span>{words}</span>
+    </UnstyledButton>
+  );
+  if (!drives || !company.is_leased)
+    return (
+      <Popover width={280} position="bottom-end" trapFocus returnFocus>
+        <Popover.Target>{button}</Popover.Target>
+        <Popover.Dropdown p={4}>
+          <Here company={company} />
+        </Popover.Dropdown>
+      </Popover>
+    );
   return (
     <Menu width={280} position="bottom-end" shadow="md">
-      <Menu.Target>
-        <UnstyledButton className={styles.company} data-driver={company.is_leased && isDriver} title="Who is here">
-          {company.is_leased ? <IconSteeringWheel size={17} /> : <IconUsers size={17} />}
-          <span>{words}</span>
-        </UnstyledButton>
-      </Menu.Target>
+      <Menu.Target>{button}</Menu.Target>
       <Menu.Dropdown>
-        <Menu.Label>Who is here</Menu.Label>
         <Here company={company} />
-        {drives && company.is_leased && (
-          <>
-            <Menu.Divider />
-            {isDriver ? <Driver company={company} /> : <Others company={company} />}
-          </>
-        )}
+        <Menu.Divider />
+        {isDriver ? <Driver company={company} /> : <Others company={company} />}
       </Menu.Dropdown>
     </Menu>
   );
@@ -41,27 +46,28 @@ function Here({ company }: { company: Company }) {
   const names = [...watching, ...(more_watching > 0 ? [`${more_watching} more`] : [])];
   return (
     <>
+      <p className={styles.here}>Who is here</p>
       {drivers.map((one) => (
-        <Menu.Label key={one.id} className={styles.here}>
+        <p key={one.id} className={styles.here}>
           <b>{nameOf(one)}</b>
           {one.id === driver?.id && " drives"}
-        </Menu.Label>
+        </p>
       ))}
       {names.length > 0 && (
-        <Menu.Label className={styles.here}>
+        <p className={styles.here}>
           <b>{names.join(", ")}</b> {names.length === 1 ? "looks on" : "look on"}
-        </Menu.Label>
+        </p>
       )}
       {links > 0 && (
-        <Menu.Label className={styles.here}>
+        <p className={styles.here}>
           <b>{formatCount(links, "page")}</b> by links to watch
-        </Menu.Label>
+        </p>
       )}
     </>
   );
 }
 
-/** What whoever drives can do. */
+/** What the driver can do. */
 function Driver({ company }: { company: Company }) {
   const me = useMe((s) => s.me);
   const others = company.drivers.filter(({ id }) => id !== me?.id);

@@ -4,7 +4,7 @@ import { layoutAt } from "../../bench/lecture";
 import { scopeConfig } from "../../stream/scope-config";
 import { layOutForScript } from "../layouts";
 
-/** Lay the panels out as a cue wants them, whatever was moved meanwhile; without lanes where nobody diagnoses. */
+/** Lay the panels out as a cue wants them, also after somebody moved them; without lanes where nobody diagnoses. */
 export function showCue(script: readonly Cue[], at: number, diagnoses: boolean): void {
   const { panels, signals, window_ms } = script[at];
   layOutForScript(layoutAt(script, at));

@@ -93,7 +93,7 @@ export const TOURS: Tour[] = [
     steps: [
       {
         title: "The list of faults",
-        text: "What acts is on top. Open a row to choose how strong, when, and as a step, a ramp or now and then.",
+        text: "Faults that act are on top. Open a row to choose how strong, when, and as a step, a ramp or now and then.",
         at: panel("faults"),
       },
       {
@@ -206,7 +206,7 @@ export const TOURS: Tour[] = [
     steps: [
       {
         title: "From live to headless",
-        text: "What happens on a bench is a scenario. This button saves it; run again it gives the same bits.",
+        text: "A bench keeps all that happens on it as a scenario. This button saves it; run again it gives the same bits.",
         at: () =>
           document.querySelector("[aria-label^='Save what happened']") ??
           document.querySelector("[aria-label=More]") ??
@@ -230,7 +230,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "Claim and measurement",
-        text: "The gallery shows each experiment of the text: what is claimed, what was measured, and whether it agrees.",
+        text: "The gallery shows each experiment of the text: the claim, the measured figure, and whether they agree.",
         at: find("main"),
         does: () => setPage("gallery"),
       },

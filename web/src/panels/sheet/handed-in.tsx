@@ -35,11 +35,11 @@ export function HandedIn({ ids, onAdd }: HandedInProps) {
             </Button>
           </Menu.Target>
           <Menu.Dropdown>
-            <Menu.Label>
-              {left.length > 0
-                ? "It is handed in with the sheet"
-                : "There is no other recording: V on the bench begins and ends one"}
-            </Menu.Label>
+            {left.length > 0 ? (
+              <Menu.Label>It is handed in with the sheet</Menu.Label>
+            ) : (
+              <Menu.Item disabled>There is no other recording: V on the bench begins and ends one</Menu.Item>
+            )}
             {left.map((one) => (
               <Menu.Item key={one.id} onClick={() => onAdd(one.id)}>
                 {wordsOf(one)}

@@ -1,0 +1,62 @@
+"""Puts benches around boards and recordings; nobody has them yet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from core.board.board import Board
+from core.board.history import History
+from scenarios.schema import Scenario
+from server.bench.commands import MAX_SCALE, MIN_SCALE
+from server.bench.replay import Replay, played
+from server.bench.session import Session
+from server.bench.tick_source import TickSource
+from server.metrics import Metrics
+from server.settings import Settings
+from server.store.recordings import RecordingDetail
+
+
+class Maker:
+    """Makes benches within the limits of the settings.
+
+    Parameters
+    ----------
+    settings : Settings
+        Limits.
+    metrics : Metrics
+        Where the benches count their ticks.
+    clock : callable
+        The engine's clock.
+    """
+
+    def __init__(self, settings: Settings, metrics: Metrics, clock: Callable[[], float]) -> None:
+        self._settings, self._metrics, self._clock = settings, metrics, clock
+
+    def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> Session:
+        """Put a bench around a board; one for a student of a class has less room for its history."""
+        kept = self._kept(board, self._settings.student_history_mb if class_id else self._settings.history_mb)
+        session = Session(scenario, board, time_scale, kept, self._metrics, self._clock)
+        if class_id:
+            session.belong(class_id, self._settings.student_ticks_per_s)
+        return session
+
+    def replay(self, recording: RecordingDetail, path: Path, speed: float) -> Session:
+        """Make a bench that plays a recording, at a multiple of the pace it was recorded at.
+
+        Raises
+        ------
+        ApiError
+            If this version cannot read its scenario.
+        """
+        scenario, tape, recorded = played(recording, path)
+        pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
+        kept = self._kept(tape, self._settings.history_mb)
+        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock)
+        session.recorded_scale = recorded
+        return session
+
+    def _kept(self, board: TickSource, megabytes: int) -> int:
+        """Return for how many ticks the signals of a board are kept."""
+        affordable = History.ticks_within(megabytes, board.signals.outputs, len(board.signals.taps))
+        return min(self._settings.history_ticks, affordable)
