@@ -14,9 +14,11 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
+from core.board.hosted import Hosted, Law
 from core.board.idle import leave_out_idle
 from core.board.observer import cautions
 from core.board.parse import changed
+from core.board.spec import Spec
 from core.errors import InputError
 from core.signals import Signal
 from scenarios.expectation import overall
@@ -144,11 +146,39 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     InputError
         When an event could never be carried out.
     """
+    spec, twins = _seeded(scenario, seed)
+    return _with_events(make(spec, twins, compiled=compiled), scenario)
+
+
+def build_hosted(scenario: Scenario, law: Law, seed: int | None = None, *, compiled: bool = True) -> Hosted:
+    """Return the board of a scenario with a controller from outside in place of its own, at its first tick.
+
+    Raises
+    ------
+    InputError
+        As `build`; for a study, for twins, for a plant with axes, for an analogue drive.
+    """
+    if scenario.study is not None:
+        raise InputError("is no run of a board, so nothing drives", "study", "choose a scenario without a study")
+    spec, twins = _seeded(scenario, seed)
+    if twins:
+        raise InputError("a controller from outside drives one board", "twins", "leave the twins out")
+    board = Hosted(spec, law, compiled=compiled)
+    _with_events(board, scenario)
+    return board
+
+
+def _seeded(scenario: Scenario, seed: int | None) -> tuple[Spec, dict[str, Spec]]:
+    """Return the benches of board and twins, with another seed if one is given."""
     spec, twins = scenario.spec, scenario.twins
     if seed is not None:
         spec = changed(spec, {"seed": seed})
         twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
-    board = make(spec, twins, compiled=compiled)
+    return spec, twins
+
+
+def _with_events(board: Board, scenario: Scenario) -> Board:
+    """Return a board with the events of its scenario waiting, and its warnings in the log."""
     for text in scenario.warnings:
         board.note("scenario", "warning", text)
     for position, commands in enumerate(scenario.events):
@@ -170,6 +200,7 @@ def run(
     compiled: bool = True,
     trace: Trace | None = None,
     on_tick: Callable[[int], None] | None = None,
+    law: Law | None = None,
 ) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
 
@@ -193,13 +224,19 @@ def run(
         What takes the signals to be kept as they come; of taps, the result has only those that reports show then.
     on_tick : callable, optional
         Called with the tick reached after every chunk; it may raise to end the run.
+    law : callable, optional
+        Drives in place of the controller of the scenario: called with each `core.board.hosted.Sample`, it answers with
+        a voltage.
 
     Raises
     ------
     OSError
         When samples have no room in the folder of temporary files, or for what ``trace`` raises.
     """
-    board = build(scenario, seed, compiled=compiled)
+    if law is None:
+        board = build(scenario, seed, compiled=compiled)
+    else:
+        board = build_hosted(scenario, law, seed, compiled=compiled)
     signals = traced(board, taps=taps, figures_only=figures_only, everything=everything)
     kept = [one for one in signals if trace is None or one.kind == "output" or one.name in PICTURED]
     if scenario.study is not None:

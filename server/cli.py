@@ -81,10 +81,17 @@ def run(
             "those of sensors that are never in use as well. No figure and no digest depends on it.",
         ),
     ] = False,
+    controller_process: Annotated[
+        str | None,
+        typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
+    ] = None,
+    controller_timeout: Annotated[float, typer.Option(metavar="S", help="Longest time for one of its answers.")] = 10.0,
 ) -> None:
     """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
     from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
+    from scenarios.outside.process import Process
     from scenarios.report.keeping import keep
+    from scenarios.report.traces import write_json
 
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
     if seed is not None and seeds is not None:
@@ -93,17 +100,27 @@ def run(
         raise InputError("traces are written for one seed; use --seed", "--out")
     if seeds is not None and everything:
         raise InputError("is for the trace of one seed; use --seed", "--all")
+    if seeds is not None and controller_process is not None:
+        raise InputError("drives one run; use --seed", "--controller-process")
     try:
-        if seeds is not None:
-            summary = run_seeds(chosen, parse_seeds(seeds))
-        elif out is None:
-            summary = run_scenario(chosen, seed, figures_only=True, everything=everything).summary()
-        else:
-            stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
-            with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
-                result = run_scenario(chosen, seed, taps=True, everything=everything, trace=trace)
-                summary = beside(result)
-                keep(result, summary, [result.seed], stem)
+        with ExitStack() as stack:
+            law = None
+            if controller_process is not None:
+                law = stack.enter_context(Process(controller_process, controller_timeout))
+            if seeds is not None:
+                summary = run_seeds(chosen, parse_seeds(seeds))
+            elif out is None:
+                summary = run_scenario(chosen, seed, figures_only=True, everything=everything, law=law).summary()
+            else:
+                stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
+                with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
+                    result = run_scenario(chosen, seed, taps=True, everything=everything, trace=trace, law=law)
+                    if law is None:
+                        summary = beside(result)
+                        keep(result, summary, [result.seed], stem)
+                    else:  # no report and no script: they would tell of the scenario's own controller
+                        summary = result.summary()
+                        write_json(stem.with_suffix(".json"), summary)
     except OSError as error:
         folder, field = (temporary_folder(), "TMPDIR") if out is None else (out, "--out")
         raise InputError(f"cannot write to {folder}: {error.strerror}", field) from None

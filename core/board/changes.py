@@ -118,7 +118,7 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
     old = _get(board.spec, path)
     if name == old and not command.cold:
         raise InputError(f"{name} drives already", "switch", "choose another, or a cold start", "conflict")
-    spec = changed(board.spec, values)
+    spec, _, _ = _changed(board.spec, values)
     _change(board, spec)
     ran_away = not np.all(np.isfinite(board.wiring.state_of(name)))
     if ran_away:  # nothing in shadow trips the board, and no number comes of what is none
@@ -246,6 +246,10 @@ def _check_live(spec: Spec, new: Spec) -> None:
         raise _not_live("device")
     for key, section in new.generators.items():
         _check_section(key, spec.generators[key], section)
+    for name in (*new.controllers, *new.driving.values()):
+        if name not in spec.controllers:
+            hint = f"there are: {', '.join(spec.controllers)}"
+            raise InputError(f"{name} is not on this bench", "controller.kind", hint, "unknown")
     for key in ("controllers", "sensors"):
         before = getattr(spec, key)
         for name, section in getattr(new, key).items():
