@@ -1,4 +1,4 @@
-"""A Gymnasium environment: an agent that drives a bench, sample by sample."""
+"""A Gymnasium environment: an agent that drives a bench, sample by sample; importing this registers it."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ OBSERVED = ("reference", "model", "measured", "applied")
 class Tracking(gymnasium.Env[FloatArray, FloatArray]):
     r"""Follow the reference model of a scenario: ``CombBench/Tracking-v0``.
 
-    An action is the voltage held over the next sample, V; an observation what a controller reads: reference (V), model
-    (um), measured (um), voltage applied (V). The reward of a step, with the true displacement :math:`y` at its end, is
+    An action is the voltage held over the next sample, as a share of the limit of the drive (-1 to 1); an observation
+    what a controller reads: reference (V), model (um), measured (um), voltage applied (V). The reward of a step, with the true displacement :math:`y` at its end, is
 
     .. math:: R=e^{-(y_m-y)^2/\sigma^2},\qquad \sigma=1\,\mu m
 
@@ -56,8 +56,8 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
         self._samples = self.scenario.samples or DEFAULT_SAMPLES
         self._voltage = 0.0
         self._board = build_hosted(self.scenario, self._answer)
-        limit = self._board.spec.context().limit_v
-        self.action_space = Box(-limit, limit, (1,), np.float64)
+        self.limit_v = self._board.spec.context().limit_v
+        self.action_space = Box(-1.0, 1.0, (1,), np.float64)
         self.observation_space = Box(-FARTHEST, FARTHEST, (len(OBSERVED),), np.float64)
 
     @property
@@ -80,7 +80,7 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
 
     def step(self, action: FloatArray) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
         """Hold a voltage until the next sample."""
-        self._voltage = float(np.asarray(action).item())
+        self._voltage = self.limit_v * float(np.asarray(action).item())
         self._board.advance(1)
         sample = self._board.sample()
         if sample is None:
@@ -105,3 +105,6 @@ def _observation(sample: Sample) -> FloatArray:
     seen = np.array([getattr(sample, name) for name in OBSERVED])
     within: FloatArray = np.clip(np.nan_to_num(seen), -FARTHEST, FARTHEST)
     return within
+
+
+gymnasium.register("CombBench/Tracking-v0", f"{__name__}:Tracking")

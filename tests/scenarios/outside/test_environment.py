@@ -39,11 +39,12 @@ def test_the_checker_has_nothing_to_say() -> None:
 
 
 def test_an_episode_has_the_bits_of_a_run_with_the_same_law() -> None:
-    """u = 0.5 r - 2 (y_m - y), an agent that is a law; the noise is that of the seed the episode names."""
-    env = Tracking(values=MASS)
+    """u = 16 r - 64 (y_m - y) of a limit of 32 V, an agent that is a law; the noise is that the episode names."""
+    values = {**MASS, "drive.limit_v": 32.0, "reference.amplitude_v": 0.5}
+    env = Tracking(values=values)
     steps = play(env, 7, lambda seen: 0.5 * seen[0] - 2.0 * (seen[1] - seen[2]))
-    scenario = with_values(get("first-look"), MASS)
-    trace = run(scenario, env.board.spec.seed, law=lambda x: 0.5 * x.reference - 2.0 * (x.model - x.measured))
+    scenario = with_values(get("first-look"), values)
+    trace = run(scenario, env.board.spec.seed, law=lambda x: 32.0 * (0.5 * x.reference - 2.0 * (x.model - x.measured)))
     assert len(steps) == 300 and steps[-1][3] and not steps[-1][2]
     assert env.board.digest() == trace.digest
     observed = np.array([seen for seen, *_ in steps[:-1]]).T
@@ -71,8 +72,8 @@ def test_the_seed_decides_this_episode_and_those_that_follow() -> None:
 def test_a_trip_ends_the_episode_without_a_reward() -> None:
     """Full voltage without a break: the guard trips once the drive has been at its limit for so long."""
     env = Tracking(values={**SHORT, "guard.rail_ms": 0.2, "drive.limit_v": 5.0})
-    assert env.action_space.high[0] == 5.0
-    steps = play(env, 1, lambda _: 6.0)
+    assert env.limit_v == 5.0
+    steps = play(env, 1, lambda _: 1.2)
     seen, reward, terminated, truncated, info = steps[-1]
     assert terminated and not truncated and reward == 0.0 and info["trip"] == "the drive stayed at its limit"
     assert len(steps) == 21 and env.observation_space.contains(seen)

@@ -120,7 +120,7 @@ def test_inputs_are_read_in_their_order_and_a_law_begins_anew() -> None:
     [
         (control.ss([], [], [], [[1.0, 1.0]]), ("error",), "system: must have 1 inputs and 1 output, has 2 and 1"),
         (control.tf([1.0], [1.0, 0.5], 1e-3), ("error",), "system: is sampled every 0.001 s, the bench every 1e-05 s"),
-        (control.tf([1.0], [1.0, 0.5]), ("displacement",), "reads: there is no signal of a controller"),
+        (control.tf([1.0], [1.0, 0.5]), ("displacement",), "reads: unknown signal of a controller"),
     ],
 )
 def test_a_system_that_does_not_fit_is_refused(system: Any, reads: tuple[str, ...], message: str) -> None:
