@@ -27,7 +27,8 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
     r"""Follow the reference model of a scenario: ``CombBench/Tracking-v0``.
 
     An action is the voltage held over the next sample, as a share of the limit of the drive (-1 to 1); an observation
-    what a controller reads: reference (V), model (um), measured (um), voltage applied (V). The reward of a step, with the true displacement :math:`y` at its end, is
+    is what a controller reads: reference (V), model (um), measured (um), voltage applied (V). The reward of a step,
+    with the true displacement :math:`y` at its end, is
 
     .. math:: R=e^{-(y_m-y)^2/\sigma^2},\qquad \sigma=1\,\mu m
 
