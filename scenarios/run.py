@@ -18,7 +18,6 @@ from core.board.hosted import Hosted, Law
 from core.board.idle import leave_out_idle
 from core.board.observer import cautions
 from core.board.parse import changed
-from core.board.spec import Spec
 from core.errors import InputError
 from core.signals import Signal
 from scenarios.expectation import overall
@@ -146,8 +145,13 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     InputError
         When an event could never be carried out.
     """
-    spec, twins = _seeded(scenario, seed)
-    return _with_events(make(spec, twins, compiled=compiled), scenario)
+    spec, twins = scenario.spec, scenario.twins
+    if seed is not None:
+        spec = changed(spec, {"seed": seed})
+        twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
+    board = make(spec, twins, compiled=compiled)
+    _await_events(board, scenario)
+    return board
 
 
 def build_hosted(scenario: Scenario, law: Law, seed: int | None = None, *, compiled: bool = True) -> Hosted:
@@ -158,27 +162,17 @@ def build_hosted(scenario: Scenario, law: Law, seed: int | None = None, *, compi
     InputError
         As `build`; for a study, for twins, for a plant with axes, for an analogue drive.
     """
-    if scenario.study is not None:
-        raise InputError("is no run of a board, so nothing drives", "study", "choose a scenario without a study")
-    spec, twins = _seeded(scenario, seed)
-    if twins:
-        raise InputError("a controller from outside drives one board", "twins", "leave the twins out")
+    for name, other in (("study", scenario.study), ("twins", scenario.twins)):
+        if other:
+            raise InputError("a controller from outside drives one board, and nothing else", name, "leave it out")
+    spec = scenario.spec if seed is None else changed(scenario.spec, {"seed": seed})
     board = Hosted(spec, law, compiled=compiled)
-    _with_events(board, scenario)
+    _await_events(board, scenario)
     return board
 
 
-def _seeded(scenario: Scenario, seed: int | None) -> tuple[Spec, dict[str, Spec]]:
-    """Return the benches of board and twins, with another seed if one is given."""
-    spec, twins = scenario.spec, scenario.twins
-    if seed is not None:
-        spec = changed(spec, {"seed": seed})
-        twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
-    return spec, twins
-
-
-def _with_events(board: Board, scenario: Scenario) -> Board:
-    """Return a board with the events of its scenario waiting, and its warnings in the log."""
+def _await_events(board: Board, scenario: Scenario) -> None:
+    """Let the events of a scenario wait on its board, and note its warnings."""
     for text in scenario.warnings:
         board.note("scenario", "warning", text)
     for position, commands in enumerate(scenario.events):
@@ -187,7 +181,6 @@ def _with_events(board: Board, scenario: Scenario) -> Board:
                 board.apply(command, "scenario")
             except InputError as error:
                 raise error.under(f"events.{position}") from None
-    return board
 
 
 def run(

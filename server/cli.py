@@ -1,4 +1,4 @@
-"""The command line: ``combbench serve | run | gallery | lectures | sheets | sweep | catalog | bench | doctor``."""
+"""The command line: ``combbench``, followed by a command; without one it lists them."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from typer.core import TyperGroup
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.errors import InputError, one_line
-from core.format import format_short, format_si, unit_text
-from core.registry import BlockCard, catalog
+from core.format import format_si, unit_text
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
 from scenarios.report.text import gallery_text, run_text
 from scenarios.report.traces import TraceFile
 from scenarios.run import run as run_scenario
 from scenarios.samples import temporary_folder
-from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
+from server.cataloguing import catalog_command
+from server.exporting import fmu
 from server.lessons import lectures, sheets
-from server.terminal import JsonOption, plainly, read_text, say, say_json
+from server.terminal import JsonOption, load, plainly, say, say_json
 
 UsageError: Any = typer.BadParameter.__base__
 """Every usage error of options and arguments; Typer exports only one kind of them."""
@@ -50,16 +50,12 @@ class OneLine(TyperGroup):
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 app.command()(lectures)
 app.command()(sheets)
+app.command(name="catalog")(catalog_command)
+app.command()(fmu)
 
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 """Errors of a write to an open file."""
-
-
-def load(name: str) -> Scenario:
-    """Return a scenario of the library, or from a file."""
-    path = Path(name)
-    return Scenario.load(read_text(path, "scenario")) if path.suffix == ".toml" or path.is_file() else get(name)
 
 
 @app.command()
@@ -200,43 +196,6 @@ def sweep(
         sys.stderr.write(f"combbench: warning: {text}\n")
     say(f"{ended.done} of {ended.total} runs, {ended.failed} could not be carried out; {ended.folder}/report.html")
     raise typer.Exit(1 if ended.failed or ended.done < ended.total else 0)
-
-
-def show_block(card: BlockCard) -> None:
-    """Print a block for people."""
-    say(f"{card.family}/{card.name}: {card.title}")
-    say(f"  {card.summary}")
-    for weakness in card.weaknesses:
-        say(f"  Known weakness: {weakness}")
-    for equation in card.equations:
-        say(f"  {equation.label}: {equation.latex}" + (f"   [{equation.source}]" if equation.source else ""))
-    for entry in card.parameters:
-        bounds = (entry.minimum, entry.maximum)
-        limits = " .. ".join("" if bound is None else format_short(bound, "", 6) for bound in bounds)
-        live = "live" if entry.live else "at reset"
-        allowed = (
-            f" one of {', '.join(entry.choices)}" if entry.choices else f" [{limits}]" if limits.strip(" .") else ""
-        )
-        default = (
-            "auto" if entry.default is None else entry.default if not isinstance(entry.default, list | dict) else "..."
-        )
-        say(f"    {entry.name} = {default} {unit_text(entry.unit)}{allowed} ({live}): {entry.meaning}")
-
-
-@app.command(name="catalog")
-@plainly
-def catalog_command(
-    family: Annotated[str | None, typer.Argument(help="Only this family.")] = None,
-    as_json: JsonOption = False,
-) -> None:
-    """List every block: parameters with unit, range, default, meaning, equations."""
-    cards = catalog(family)
-    if as_json:
-        say_json([card.model_dump() for card in cards])
-        return
-    for card in cards:
-        show_block(card)
-        say()
 
 
 @app.command()

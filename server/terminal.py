@@ -12,6 +12,8 @@ from typing import Annotated, Any, ParamSpec, TypeVar
 import typer
 
 from core.errors import InputError
+from scenarios.library import get
+from scenarios.schema import Scenario
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
 
@@ -53,3 +55,9 @@ def read_text(path: Path, field: str) -> str:
         raise InputError(f"cannot read {path}: {error.strerror}", field) from None
     except UnicodeDecodeError:
         raise InputError(f"{path} is not UTF-8 text", field) from None
+
+
+def load(name: str) -> Scenario:
+    """Return a scenario of the library, or from a file."""
+    path = Path(name)
+    return Scenario.load(read_text(path, "scenario")) if path.suffix == ".toml" or path.is_file() else get(name)
