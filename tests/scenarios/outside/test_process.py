@@ -151,3 +151,22 @@ def test_the_command_line(tmp_path: Path) -> None:
     assert sorted(path.suffix for path in (tmp_path / "kept").iterdir()) == [".json", ".parquet"]
     both = combbench("run", "first-look", "--seeds", "1:2", "--controller-process", command, folder=tmp_path)
     assert both.returncode == 2 and both.stderr == "combbench: --controller-process: drives one run; use --seed\n"
+
+
+def test_bad_options_are_said_in_one_line(tmp_path: Path) -> None:
+    for options, message in (
+        (["--controller-process", "true", "--controller-timeout", "0"], "--controller-timeout: must be more than 0 s"),
+        (["--set", "controller.kind=external"], "controller.kind: external is computed outside of the bench"),
+    ):
+        refused = combbench("run", "first-look", *options, folder=tmp_path)
+        assert refused.returncode == 2 and refused.stderr.startswith(f"combbench: {message}")
+        assert len(refused.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("name", ["ch1-bode-tolerances", "twins"])
+def test_what_no_single_controller_drives_is_refused(name: str) -> None:
+    twins = with_values(get("first-look"), {"twins.other.controller": {"kind": "pid"}})
+    chosen, field = (twins, "twins") if name == "twins" else (get(name), "study")
+    with pytest.raises(InputError, match="drives one board") as refused:
+        run(chosen, law=Pi())
+    assert refused.value.field == field
