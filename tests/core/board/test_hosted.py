@@ -141,6 +141,22 @@ def test_it_begins_anew_after_a_reset_and_at_a_cold_start() -> None:
     assert begun == [0, 51, 91]
 
 
+def test_it_begins_anew_when_it_takes_over_after_it_ran_away_in_shadow() -> None:
+    begun: list[int] = []
+
+    def law(x: Sample) -> float:
+        if x.begins:
+            begun.append(x.tick)
+        return math.inf if x.tick == 19 else 0.0
+
+    board = hosted(law)
+    do(board, {"switch": "open_loop", "at_sample": 10})
+    do(board, {"switch": "external", "at_sample": 20})
+    play(board, 30)
+    assert board.trip is None and begun == [0, 20]
+    assert any("external had run away in shadow" in entry.text for entry in board.log)
+
+
 def test_a_sample_begun_is_finished_by_the_next_advance() -> None:
     """What a step at a time shows and asks is what `advance` alone does."""
     board, voltages = hosted(lambda _: voltages[-1]), [0.0]
