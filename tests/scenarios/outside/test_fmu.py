@@ -11,6 +11,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from typer.testing import CliRunner
 
 from core.errors import InputError
 from scenarios.edit import with_values
@@ -18,6 +19,7 @@ from scenarios.library import get
 from scenarios.outside.fmu import export
 from scenarios.run import run
 from scenarios.schema import Scenario
+from server.cli import app
 
 SAMPLES = 600
 QUIET = {"samples": SAMPLES, "diagnosers": {}, "plant.drive_noise_v": 0.0, "plant.thermal_noise": False}
@@ -87,3 +89,12 @@ def test_the_command_line(tmp_path: Path) -> None:
     assert done.stdout == "made/device.fmu, a step of 2e-05 s\n" and (tmp_path / "made" / "device.fmu").is_file()
     refused = subprocess.run([*command, "device.id=gyro-a"], cwd=tmp_path, capture_output=True, text=True)
     assert refused.returncode == 2 and len(refused.stderr.splitlines()) == 1
+
+
+def test_without_the_package_one_line_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for name in ("scenarios.outside.fmu", "scenarios.outside.fmu_slave", "pythonfmu3"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.setitem(sys.modules, "pythonfmu3", None)
+    done = CliRunner().invoke(app, ["fmu", "first-look", "--out", str(tmp_path / "device.fmu")])
+    assert done.exit_code == 2 and not [*tmp_path.iterdir()]
+    assert done.stderr.startswith("combbench: fmu: needs the package pythonfmu3") and "combbench[fmi]" in done.stderr
