@@ -107,9 +107,9 @@ class Hosted(Board):
     def _do(self, command: Command, actor: str) -> LogEntry:
         ran_away = not math.isfinite(self._state[0])
         entry = super()._do(command, actor)
-        takes_over = isinstance(command, Switch) and command.switch == External.name
-        if isinstance(command, ResetTrip) or (takes_over and (command.cold or ran_away)):  # type: ignore[union-attr]
-            self._begins = True
+        if isinstance(command, Switch) and command.switch == External.name:
+            self._begins |= command.cold or ran_away
+        self._begins |= isinstance(command, ResetTrip)
         return entry
 
     def _begin(self, tick: int) -> Sample:
