@@ -220,6 +220,8 @@ class Block:
     usual_sensor: ClassVar[str] = "ideal"
     lengths: ClassVar[tuple[str, ...]] = ()
     """Parameters that set the length of the tail of ``State``; none of them may change while the board runs."""
+    apart: ClassVar[bool] = False
+    """Whether no bench has the block unless something puts it there, and no list shows it."""
     every_tick: ClassVar[bool] = False
     """Whether the step is called at every tick though the block runs every N, because it has to do between."""
 

@@ -79,7 +79,19 @@ class BlockCard(BaseModel):
 
 @cache
 def blocks(family: str) -> dict[str, type[Block]]:
-    """Return the blocks of a family by name, those of installed packages included.
+    """Return the blocks of a family by name, those of installed packages included, those that stand apart left out."""
+    return {name: entry for name, entry in _all(family).items() if not entry.apart}
+
+
+@cache
+def apart(family: str) -> dict[str, type[Block]]:
+    """Return the blocks of a family that no bench has unless something puts them there."""
+    return {name: entry for name, entry in _all(family).items() if entry.apart}
+
+
+@cache
+def _all(family: str) -> dict[str, type[Block]]:
+    """Return the blocks of a family by name.
 
     Other packages add blocks by an entry point of the group ``combbench.<family>`` that names the class.
     """
@@ -132,6 +144,8 @@ def block(family: str, name: object, field: str = "") -> type[Block]:
         When the family has no block of that name.
     """
     known = blocks(family)
+    if isinstance(name, str) and name in apart(family):
+        return apart(family)[name]
     if not isinstance(name, str) or name not in known:
         words = {
             "reference": "reference",

@@ -14,6 +14,7 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
+from core.board.hosted import Hosted, Law
 from core.board.idle import leave_out_idle
 from core.board.observer import cautions
 from core.board.parse import changed
@@ -149,6 +150,29 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
         spec = changed(spec, {"seed": seed})
         twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
     board = make(spec, twins, compiled=compiled)
+    _await_events(board, scenario)
+    return board
+
+
+def build_hosted(scenario: Scenario, law: Law, seed: int | None = None, *, compiled: bool = True) -> Hosted:
+    """Return the board of a scenario with a controller from outside in place of its own, at its first tick.
+
+    Raises
+    ------
+    InputError
+        As `build`; for a study, for twins, for a plant with axes, for an analogue drive.
+    """
+    for name, other in (("study", scenario.study), ("twins", scenario.twins)):
+        if other:
+            raise InputError("a controller from outside drives one board, and nothing else", name, "leave it out")
+    spec = scenario.spec if seed is None else changed(scenario.spec, {"seed": seed})
+    board = Hosted(spec, law, compiled=compiled)
+    _await_events(board, scenario)
+    return board
+
+
+def _await_events(board: Board, scenario: Scenario) -> None:
+    """Let the events of a scenario wait on its board, and note its warnings."""
     for text in scenario.warnings:
         board.note("scenario", "warning", text)
     for position, commands in enumerate(scenario.events):
@@ -157,7 +181,6 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
                 board.apply(command, "scenario")
             except InputError as error:
                 raise error.under(f"events.{position}") from None
-    return board
 
 
 def run(
@@ -170,6 +193,7 @@ def run(
     compiled: bool = True,
     trace: Trace | None = None,
     on_tick: Callable[[int], None] | None = None,
+    law: Law | None = None,
 ) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
 
@@ -193,13 +217,19 @@ def run(
         What takes the signals to be kept as they come; of taps, the result has only those that reports show then.
     on_tick : callable, optional
         Called with the tick reached after every chunk; it may raise to end the run.
+    law : callable, optional
+        Drives in place of the controller of the scenario: called with each `core.board.hosted.Sample`, it answers with
+        a voltage.
 
     Raises
     ------
     OSError
         When samples have no room in the folder of temporary files, or for what ``trace`` raises.
     """
-    board = build(scenario, seed, compiled=compiled)
+    if law is None:
+        board = build(scenario, seed, compiled=compiled)
+    else:
+        board = build_hosted(scenario, law, seed, compiled=compiled)
     signals = traced(board, taps=taps, figures_only=figures_only, everything=everything)
     kept = [one for one in signals if trace is None or one.kind == "output" or one.name in PICTURED]
     if scenario.study is not None:

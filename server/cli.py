@@ -1,4 +1,4 @@
-"""The command line, ``combbench``; commands for what is taught and for units have files of their own."""
+"""The command line: ``combbench``, followed by a command; without one it lists them."""
 
 from __future__ import annotations
 
@@ -18,16 +18,15 @@ from core.errors import InputError, one_line
 from core.format import format_si, unit_text
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
-from scenarios.own import with_units
 from scenarios.report.text import gallery_text, run_text
 from scenarios.report.traces import TraceFile
 from scenarios.run import run as run_scenario
 from scenarios.samples import temporary_folder
-from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
 from server.blocks import blocks
+from server.exporting import fmu
 from server.lessons import lectures, sheets
-from server.terminal import JsonOption, plainly, read_text, say, say_json
+from server.terminal import JsonOption, load, plainly, say, say_json
 from server.units import UnitOption, check
 
 UsageError: Any = typer.BadParameter.__base__
@@ -54,18 +53,11 @@ app.command()(lectures)
 app.command()(sheets)
 app.command()(check)
 app.command(name="catalog")(blocks)
+app.command()(fmu)
 
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 """Errors of a write to an open file."""
-
-
-def load(name: str, units: list[Path] | None) -> Scenario:
-    """Return a scenario of the library, or from a file, with units from files."""
-    path = Path(name)
-    is_file = path.suffix == ".toml" or path.is_file()
-    found = Scenario.load(read_text(path, "scenario")) if is_file else get(name)
-    return Scenario.load(with_units(found.document, units)) if units else found
 
 
 @app.command()
@@ -88,10 +80,17 @@ def run(
             "those of sensors that are never in use as well. No figure and no digest depends on it.",
         ),
     ] = False,
+    controller_process: Annotated[
+        str | None,
+        typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
+    ] = None,
+    controller_timeout: Annotated[float, typer.Option(metavar="S", help="Longest time for one of its answers.")] = 10.0,
 ) -> None:
     """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
     from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
+    from scenarios.outside.process import Process
     from scenarios.report.keeping import keep
+    from scenarios.report.traces import write_json
 
     chosen = with_values(load(scenario, units), dict(parse_assignment(text) for text in assign or []))
     if seed is not None and seeds is not None:
@@ -100,17 +99,27 @@ def run(
         raise InputError("traces are written for one seed; use --seed", "--out")
     if seeds is not None and everything:
         raise InputError("is for the trace of one seed; use --seed", "--all")
+    if seeds is not None and controller_process is not None:
+        raise InputError("drives one run; use --seed", "--controller-process")
     try:
-        if seeds is not None:
-            summary = run_seeds(chosen, parse_seeds(seeds))
-        elif out is None:
-            summary = run_scenario(chosen, seed, figures_only=True, everything=everything).summary()
-        else:
-            stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
-            with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
-                result = run_scenario(chosen, seed, taps=True, everything=everything, trace=trace)
-                summary = beside(result)
-                keep(result, summary, [result.seed], stem)
+        with ExitStack() as stack:
+            law = None
+            if controller_process is not None:
+                law = stack.enter_context(Process(controller_process, controller_timeout))
+            if seeds is not None:
+                summary = run_seeds(chosen, parse_seeds(seeds))
+            elif out is None:
+                summary = run_scenario(chosen, seed, figures_only=True, everything=everything, law=law).summary()
+            else:
+                stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
+                with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
+                    result = run_scenario(chosen, seed, taps=True, everything=everything, trace=trace, law=law)
+                    if law is None:
+                        summary = beside(result)
+                        keep(result, summary, [result.seed], stem)
+                    else:  # no report and no script: they would tell of the scenario's own controller
+                        summary = result.summary()
+                        write_json(stem.with_suffix(".json"), summary)
     except OSError as error:
         folder, field = (temporary_folder(), "TMPDIR") if out is None else (out, "--out")
         raise InputError(f"cannot write to {folder}: {error.strerror}", field) from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, TypeVar
@@ -12,6 +12,9 @@ from typing import Annotated, Any, ParamSpec, TypeVar
 import typer
 
 from core.errors import InputError
+from scenarios.library import get
+from scenarios.own import with_units
+from scenarios.schema import Scenario
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
 
@@ -53,3 +56,11 @@ def read_text(path: Path, field: str) -> str:
         raise InputError(f"cannot read {path}: {error.strerror}", field) from None
     except UnicodeDecodeError:
         raise InputError(f"{path} is not UTF-8 text", field) from None
+
+
+def load(name: str, units: Sequence[Path] | None = None) -> Scenario:
+    """Return a scenario of the library, or from a file, with units from files."""
+    path = Path(name)
+    is_file = path.suffix == ".toml" or path.is_file()
+    found = Scenario.load(read_text(path, "scenario")) if is_file else get(name)
+    return Scenario.load(with_units(found.document, units)) if units else found

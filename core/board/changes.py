@@ -13,7 +13,6 @@ from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch, Tr
 from core.board.difference import change
 from core.board.fitting import misfit
 from core.board.live import live_change, value_at
-from core.board.parse import changed
 from core.board.spec import Spec
 from core.board.wiring import Wiring, command_of, engage, wire
 from core.errors import InputError, from_validation, unknown
@@ -115,7 +114,7 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
     old = value_at(board.spec, path)
     if name == old and not command.cold:
         raise InputError(f"{name} drives already", "switch", "choose another, or a cold start", "conflict")
-    spec = changed(board.spec, values)
+    spec, _, _ = live_change(board.spec, values)
     _change(board, spec)
     ran_away = not np.all(np.isfinite(board.wiring.state_of(name)))
     if ran_away:  # nothing in shadow trips the board, and no number comes of what is none

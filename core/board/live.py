@@ -53,6 +53,10 @@ def _check_live(spec: Spec, new: Spec) -> None:
         raise _not_live("device")
     for key, section in new.generators.items():
         _check_section(key, spec.generators[key], section)
+    for name in (*new.controllers, *new.driving.values()):
+        if name not in spec.controllers:
+            hint = f"there are: {', '.join(spec.controllers)}"
+            raise InputError(f"{name} is not on this bench", "controller.kind", hint, "unknown")
     for key in ("controllers", "sensors"):
         before = getattr(spec, key)
         for name, section in getattr(new, key).items():

@@ -35,6 +35,7 @@ from core.loop.environment import Environment
 from core.loop.guard import Guard
 from core.loop.model import Model
 from core.plant.shuttle import ShuttleParams
+from core.registry import apart
 from core.signals import CLOCK
 
 
@@ -55,9 +56,11 @@ def parse(document: Document, like: Spec | None = None) -> Spec:
     """
     doc = normal_form(document) if like is None else _sharing(completed(document), like.document)
     try:
-        return _parse(doc, like)
+        spec = _parse(doc, like)
+        _refuse_apart(spec)
     except InputError as error:
         raise as_written(error, document, written(document)) from None
+    return spec
 
 
 def changed(spec: Spec, values: dict[str, Any]) -> Spec:
@@ -139,8 +142,8 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
             name: kept[name]
             if name in kept and tables.get(name) is old.get(name)
             else _section(library, family, name, tables.get(name, {}), f"{key}.{name}")
-            for name, block in library.blocks(family).items()
-            if block.fits(axes) or name in tables or name in in_use
+            for name, block in (library.blocks(family) | apart(family)).items()
+            if (block.fits(axes) and not block.apart) or name in tables or name in in_use
         }
 
     def generator(key: str, family: str) -> Section:
@@ -179,6 +182,15 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     if before is None or [(key, name) for key in CHOSEN for name in getattr(before, key)] != named:
         _named_apart(spec)
     return suited(spec)
+
+
+def _refuse_apart(spec: Spec) -> None:
+    """Refuse a controller that a document cannot put on a bench."""
+    for name, section in spec.controllers.items():
+        if section.block.apart:
+            field = "controller.kind" if name in spec.driving.values() else f"controllers.{name}"
+            text = f"{name} is computed outside of the bench, so no scenario can name it"
+            raise InputError(text, field, "combbench run --controller-process, or scenarios.run.run(..., law=...)")
 
 
 def _driven(library: Library, doc: Document, device: Device) -> tuple[Section, Section]:

@@ -73,6 +73,22 @@ def walk(table: IntArray, tick: int, width: int, p: Any, s: Any, w: Any, io: Any
 
 
 @kernel
+def begin(table: IntArray, tick: int, dt_ms: float, p: FloatArray, s: FloatArray, w: FloatArray, io: IntArray) -> None:
+    """Run the first steps of a tick; ``run`` goes on with the rest of the table."""
+    w[TICK] = tick
+    w[TIME_MS] = tick * dt_ms
+    walk(
+        table,
+        tick,
+        1,
+        np.int64(p.ctypes.data),
+        np.int64(s.ctypes.data),
+        np.int64(w.ctypes.data),
+        np.int64(io.ctypes.data),
+    )
+
+
+@kernel
 def run(
     n: int,
     first_tick: int,

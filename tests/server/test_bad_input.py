@@ -353,3 +353,15 @@ def test_one_stream_too_many(serve: Any) -> None:
             assert caught.value.rcvd is not None and caught.value.rcvd.code == 1013
             assert "max_clients_per_bench" in caught.value.rcvd.reason
             stream.until_type("status")
+
+
+def test_a_controller_from_outside_cannot_be_had_over_the_network(live: Any) -> None:
+    outside = {"schema": 1, "controller": {"kind": "external"}}
+    for path, body in (("benches", {"scenario": outside}), ("runs", {"scenario": outside})):
+        answer = live.http.post(f"/api/v1/{path}", json=body)
+        assert answer.status_code == 422 and answer.json()["error"]["field"].endswith("controller.kind"), answer.text
+    bench = live.bench("first-look", paused=True)["id"]
+    for command in ({"switch": "external"}, {"set": {"controller.kind": "external"}}):
+        answer = live.command(bench, **command)
+        assert answer.status_code == 422 and "is not on this bench" in answer.json()["error"]["message"]
+    assert "external" not in {card["name"] for card in live.http.get("/api/v1/catalog").json()["blocks"]}

@@ -1,0 +1,154 @@
+"""Devices and loops as linear systems of python-control, and such systems as controllers.
+
+Time is in seconds, as python-control has it; voltages are in V, displacements in um, velocities in um/s.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import control
+import numpy as np
+
+from core.board.hosted import Sample
+from core.control.pid import Pid
+from core.errors import InputError, unknown
+from scenarios.schema import Scenario
+
+MS_PER_S = 1e3
+READABLE = ("error", "reference", "model", "measured", "applied")
+"""What a linear controller may read; the error is that of the model minus what is measured."""
+
+
+def device(scenario: Scenario) -> Any:
+    r"""Return the device as a continuous system from voltage (V) to displacement (um).
+
+    .. math:: \ddot y=-\tfrac{\beta}{m}\dot y-\tfrac km y+\tfrac Fm u
+
+    Mass, damping and stiffness are those in its environment, without faults; the states are displacement and velocity.
+    A plant of first order has one state.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A scenario of one displacement; of a plant that is not linear this is its behaviour near rest.
+
+    Returns
+    -------
+    control.StateSpace
+
+    Raises
+    ------
+    InputError
+        For a plant with axes.
+    """
+    spec = scenario.spec
+    if spec.axes:
+        raise InputError("has several axes; a linear system is made of one displacement", "device.id")
+    oscillator = spec.nominal
+    stiffness_scale, damping_scale = spec.surroundings
+    mass, force = oscillator.mass, oscillator.force
+    stiffness, damping = oscillator.stiffness * stiffness_scale, oscillator.damping * damping_scale
+    names = {"inputs": "voltage", "outputs": "displacement", "name": "device"}
+    if mass == 0.0:
+        rate = MS_PER_S / damping
+        return control.ss([[-stiffness * rate]], [[force * rate]], [[1.0]], [[0.0]], states=["displacement"], **names)
+    rate = MS_PER_S / mass
+    a = [[0.0, 1.0], [-stiffness * rate * MS_PER_S, -damping * rate]]
+    states = ["displacement", "velocity"]
+    return control.ss(a, [[0.0], [force * rate * MS_PER_S]], [[1.0, 0.0]], [[0.0]], states=states, **names)
+
+
+def sampled_device(scenario: Scenario) -> Any:
+    """Return the device with the voltage held from sample to sample: exactly what the linear plant does."""
+    return control.sample_system(device(scenario), interval_s(scenario), "zoh", name="sampled_device")
+
+
+def interval_s(scenario: Scenario) -> float:
+    """Return the sample interval of a scenario, s."""
+    return scenario.spec.dt_ms / MS_PER_S
+
+
+def pid(scenario: Scenario) -> Any:
+    r"""Return the PID of a scenario as a sampled system from the error (um) to the voltage (V), off its limits.
+
+    .. math:: C(z)=K_p+K_i\,dt\,\frac{z}{z-1}+K_d\,\frac{1-d}{dt}\,\frac{z-1}{z-d}
+
+    Its share of the reference is not in it.
+    """
+    spec = scenario.spec
+    if "pid" not in spec.controllers:
+        raise InputError("this bench has no PID", "controller.kind")
+    p = Pid.pack(spec.controllers["pid"].params, spec.context())
+    z, dt_s = control.tf("z"), interval_s(scenario)
+    derivative = p.kd * (1.0 - p.decay) / p.dt_ms * (z - 1) / (z - p.decay)
+    law = p.kp + p.ki * p.dt_ms * z / (z - 1) + derivative
+    system = control.ss(control.tf(law.num, law.den, dt_s))
+    return control.ss(system, inputs="error", outputs="voltage", name="pid")
+
+
+def closed_loop(scenario: Scenario, controller: Any) -> Any:
+    """Return the loop of the sampled device and a controller, from model displacement to displacement, both um.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The bench.
+    controller : control.StateSpace or control.TransferFunction
+        From the error (um) to the voltage (V), sampled as the scenario is: `pid`, or one's own.
+    """
+    loop = control.feedback(sampled_device(scenario) * controller, 1)
+    return control.ss(loop, inputs="model", outputs="displacement", name="closed_loop")
+
+
+class LinearLaw:
+    """A controller that is a linear system, for `scenarios.run.run(..., law=...)`.
+
+    Parameters
+    ----------
+    system : control.StateSpace or control.TransferFunction
+        With one output, the voltage (V). A continuous one, whose time is in seconds, is sampled.
+    scenario : Scenario
+        The bench it is for.
+    reads : tuple of str
+        What its inputs are, in their order.
+    method : str
+        How a continuous system is sampled: ``tustin``, or ``zoh``, its inputs held.
+
+    Raises
+    ------
+    InputError
+        When inputs or outputs do not fit, or it is sampled at another interval.
+    """
+
+    def __init__(
+        self,
+        system: Any,
+        scenario: Scenario,
+        reads: tuple[str, ...] = ("error",),
+        method: Literal["tustin", "zoh"] = "tustin",
+    ) -> None:
+        for name in reads:
+            if name not in READABLE:
+                raise unknown("signal of a controller", name, READABLE, "reads")
+        if (system.ninputs, system.noutputs) != (len(reads), 1):
+            text = f"must have {len(reads)} inputs and 1 output, has {system.ninputs} and {system.noutputs}"
+            raise InputError(text, "system", f"its inputs are {', '.join(reads)}")
+        dt_s = interval_s(scenario)
+        if system.isctime():
+            system = control.sample_system(system, dt_s, method)
+        elif system.dt not in (None, True) and not np.isclose(system.dt, dt_s, rtol=1e-9, atol=0.0):
+            raise InputError(f"is sampled every {system.dt:g} s, the bench every {dt_s:g} s", "system")
+        self.system = control.ss(system)
+        self._reads = reads
+        self._state = np.zeros(self.system.nstates)
+
+    def __call__(self, sample: Sample) -> float:
+        """Return the voltage for a sample."""
+        if sample.begins:
+            self._state = np.zeros(self.system.nstates)
+        values = {**sample._asdict(), "error": sample.model - sample.measured}
+        u = np.array([values[name] for name in self._reads])
+        voltage = self.system.C @ self._state + self.system.D @ u
+        self._state = self.system.A @ self._state + self.system.B @ u
+        return float(voltage[0])

@@ -1,0 +1,66 @@
+"""The notebooks run from top to bottom in a kernel of their own, and print what they promise."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+from tests.server.conftest import TOKEN
+
+ROOT = Path(__file__).resolve().parents[2]
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+
+
+def printed(name: str, folder: Path, **environment: str) -> str:
+    """Run a notebook and return all it prints."""
+    book = nbformat.read(ROOT / "docs" / "notebooks" / f"{name}.ipynb", as_version=4)
+    usual = {"MPLBACKEND": "agg", "MPLCONFIGDIR": str(folder), "IPYTHONDIR": str(folder)}
+    known = {**os.environ, **usual, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "clients")]), **environment}
+    NotebookClient(book, timeout=100, resources={"metadata": {"path": str(folder)}}).execute(env=known)
+    outputs = [output for cell in book.cells if cell.cell_type == "code" for output in cell.outputs]
+    assert not [output for output in outputs if output.get("name") == "stderr"], outputs
+    return "".join(output.text for output in outputs if output.output_type == "stream")
+
+
+def errors_um(said: str) -> dict[str, float]:
+    """Return the tracking errors a notebook has printed, by controller."""
+    return {name.strip(): float(value) for name, value in re.findall(r"^(.{10}) (\d\.\d+) um$", said, re.M)}
+
+
+def test_there_are_four_and_none_has_outputs() -> None:
+    assert [path.stem for path in NOTEBOOKS] == ["campaign", "first-run", "lqg", "own-controller"]
+    for path in NOTEBOOKS:
+        book = nbformat.read(path, as_version=4)
+        nbformat.validate(book)
+        code = [cell for cell in book.cells if cell.cell_type == "code"]
+        assert not [cell for cell in code if cell.outputs or cell.execution_count], path.name
+
+
+def test_the_first_run(tmp_path: Path) -> None:
+    said = printed("first-run", tmp_path)
+    found = re.search(r"told after (\d+) samples, right in (0\.\d+)", said)
+    assert found is not None and 0 < int(found[1]) < 300 and float(found[2]) > 0.9
+
+
+def test_a_controller_of_ones_own(tmp_path: Path) -> None:
+    errors = errors_um(printed("own-controller", tmp_path))
+    assert errors["mrac"] < errors["own"] < errors["open loop"]
+
+
+def test_a_design_with_python_control(tmp_path: Path) -> None:
+    errors = errors_um(printed("lqg", tmp_path))
+    assert errors["LQG"] < 0.5 * errors["open loop"]
+
+
+@pytest.mark.timeout(240)
+def test_a_campaign_over_rest(live: Any, tmp_path: Path) -> None:
+    said = printed("campaign", tmp_path, COMBBENCH_ADDRESS=live.address, COMBBENCH_TOKEN=TOKEN)
+    right = [float(value) for value in re.findall(r"um (0\.\d+|1\.\d+)$", said, re.M)]
+    assert "20 of 20 runs" in said and len(right) == 4
+    assert right[0] > 0.95 and right[-1] < right[0]
