@@ -1,4 +1,4 @@
-"""The command line: ``combbench serve | run | gallery | lectures | sheets | sweep | catalog | bench | doctor``."""
+"""The command line ``combbench``."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from scenarios.run import run as run_scenario
 from scenarios.samples import temporary_folder
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
+from server.benchmarking import benchmark
 from server.lessons import lectures, sheets
 from server.terminal import JsonOption, plainly, read_text, say, say_json
 
@@ -48,6 +49,7 @@ class OneLine(TyperGroup):
 
 
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+app.command()(benchmark)
 app.command()(lectures)
 app.command()(sheets)
 
