@@ -211,7 +211,9 @@ class ArxBank(Bank):
         p.least_power = params.least_drive_v**2
         p.interval = interval_of(context)
         for i, theta in enumerate(coefficients_of(params, context)):
-            error = variance if filtered else variance * (1.0 + theta[2] ** 2 + theta[3] ** 2)
+            _, _, a1, a2 = theta
+            # products: the last bit of a power depends on the library of the machine
+            error = variance if filtered else variance * (1.0 + a1 * a1 + a2 * a2)
             p.b0[i], p.b1[i], p.a1[i], p.a2[i] = theta
             p.variance[i], p.half_log[i] = error, 0.5 * log(error)
 

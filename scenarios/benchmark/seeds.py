@@ -91,7 +91,7 @@ def draw_hidden(tracks: tuple[str, ...]) -> Hidden:
     return Hidden(salt=secrets.token_hex(SALT_BYTES), cases=cases)
 
 
-def hidden_list(text: str, tracks: tuple[str, ...], commitment: str = COMMITMENT) -> SeedList:
+def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
     """Read a hidden list and verify it.
 
     Raises
@@ -105,8 +105,8 @@ def hidden_list(text: str, tracks: tuple[str, ...], commitment: str = COMMITMENT
         raise from_validation(error, {"": [*Hidden.model_fields]}).under("--seeds") from None
     if {*hidden.cases} != {*tracks}:
         raise InputError(f"needs seeds for each track and no other: {', '.join(tracks)}", "--seeds")
-    if (found := hidden.commitment()) != commitment:
-        raise InputError(f"is not the list that was committed: {found[:16]} instead of {commitment[:16]}", "--seeds")
+    if (found := hidden.commitment()) != COMMITMENT:
+        raise InputError(f"is not the list that was committed: {found[:16]} instead of {COMMITMENT[:16]}", "--seeds")
     return SeedList("hidden", {track: tuple(seeds) for track, seeds in hidden.cases.items()}, LISTS["public"][1])
 
 

@@ -22,20 +22,25 @@ NONE = "-"
 
 
 def benchmark_text(results: Results, tracks: dict[str, Track]) -> str:
-    """Return the rows of each track, best first, with half the width of the 95 % intervals."""
+    """Return all tracks that were measured, what recomputes them, and the diagnosers that are left out."""
     lines = []
     for name, track in tracks.items():
         rows = results.ranked(name)
         if rows:
-            lines += [f"{name}: {track.question}", *_aligned([("", *HEAD), *(_cells(row) for row in rows)]), ""]
-            lines += [f"  {row.unit}: digest {row.digest}" for row in rows]
-            lines += [f"  scenarios {rows[0].scenario}", ""]
+            lines += [f"{name}: {track.question}", *track_table(results, name)]
+            lines += [f"  digest of {row.unit}: {row.digest}" for row in rows]
+            lines += [f"  scenarios: {rows[0].scenario}", ""]
     lines += [f"{one.unit} is not scored in {one.track}: it {one.reason}" for one in results.left_out]
     for unit, cost in results.costs.items():
         beside = f"{format_number(cost.over_mmae, 2)} of the Kalman bank"
         lines.append(f"{unit}: {format_si(cost.ns_per_sample, 'ns', 3)} per sample, {beside}")
     lines.append(f"seeds {results.seeds}, one false alarm in {results.false_alarm_samples} samples, {results.version}")
     return "\n".join(lines)
+
+
+def track_table(results: Results, track: str) -> list[str]:
+    """Return the lines of a track, best diagnoser first, with half the width of the 95 % intervals."""
+    return _aligned([("", *HEAD), *(_cells(row) for row in results.ranked(track))])
 
 
 def _cells(row: Row) -> tuple[str, ...]:

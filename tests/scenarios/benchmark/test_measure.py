@@ -1,4 +1,4 @@
-"""Measured results: the same to the bit whenever and beside whomever, and none is better for saying more than it knows."""
+"""Measured results: the same to the bit at any time and on any machine, and worse where more is said than known."""
 
 from __future__ import annotations
 
