@@ -7,7 +7,7 @@ on every machine.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -131,6 +131,12 @@ def false_switches(said: IntArray, truth: IntArray) -> int:
             exits += 1 if found and run > 0 else 0
             run = 0
     return exits
+
+
+def found_within(delays: Sequence[float | None], limits: Sequence[int]) -> list[float]:
+    """Return the share of delays that are at most each limit, of those that are there; none of none."""
+    there = [delay for delay in delays if delay is not None]
+    return [sum(delay <= limit for delay in there) / len(there) for limit in limits] if there else []
 
 
 class Estimate(BaseModel):

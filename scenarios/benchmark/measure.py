@@ -17,13 +17,14 @@ from scenarios.benchmark.figures import (
     alarms,
     estimate,
     false_switches,
+    found_within,
     isolation,
     named,
     reliability,
     rises,
     scores,
 )
-from scenarios.benchmark.results import CaseDigest, LeftOut, Results, Row, bins, hash_of
+from scenarios.benchmark.results import WITHIN_SAMPLES, CaseDigest, LeftOut, Results, Row, bins, hash_of
 from scenarios.benchmark.seeds import BENCHMARK, SeedList
 from scenarios.benchmark.track import WARM, Case, Track, tracks
 from scenarios.key import code_version
@@ -163,6 +164,7 @@ class Judge:
             false_alarms=self._false_alarms,
             healthy_samples=self._healthy_samples,
             **{name: estimate(values) for name, values in self._figures.items()},
+            found_within=found_within(self._figures["delay_samples"], WITHIN_SAMPLES),
             reliability=bins(self._reliability.tolist()) if self._reliability[0].any() else [],
             scenario=hash_of([case.scenario for case in self._cases]),
             digest=hash_of([case.digest for case in self._cases]),

@@ -14,6 +14,9 @@ from core.errors import InputError, from_validation
 from core.table import Table
 from scenarios.benchmark.figures import BINS, Estimate
 
+WITHIN_SAMPLES = (5, 10, 20, 30, 50, 75, 100, 150, 200, 300, 500)
+"""Delays of the curve of the share of faults found."""
+
 
 class Bin(Table):
     """A bin of a reliability curve: samples, the mean probability said, and the share that was right."""
@@ -42,6 +45,8 @@ class Row(Table):
         False alarms of the healthy runs by which it was set, and their length.
     false_alarms, healthy_samples : int
         False alarms of the cases, and their samples before the fault.
+    found_within : list of float
+        Share of the cases that have a delay in which it is at most each of `WITHIN_SAMPLES`.
     scenario, digest : str
         SHA-256 over those of the cases, in order.
     """
@@ -63,6 +68,7 @@ class Row(Table):
     truth_probability: Estimate | None
     false_switches: Estimate | None
     reliability: list[Bin]
+    found_within: list[float]
     scenario: str
     digest: str
     cases: list[CaseDigest] = Field([])

@@ -118,3 +118,8 @@ def test_estimates_are_means_with_standard_errors() -> None:
     assert found.cases == 3 and found.mean == pytest.approx(7 / 3)
     assert found.error == pytest.approx(np.std([1.0, 2.0, 4.0], ddof=1) / math.sqrt(3))
     assert figures.estimate([None]) is None
+
+
+def test_faults_found_in_time_are_counted_of_those_that_can_be() -> None:
+    assert figures.found_within([10.0, None, 11.0, 2500.0], (9, 10, 500)) == pytest.approx([0.0, 1 / 3, 2 / 3])
+    assert figures.found_within([None], (10,)) == []
