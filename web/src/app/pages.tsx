@@ -65,7 +65,7 @@ export const PAGES: Record<PageName, PageKind> = {
     component: RunsPage,
   },
   benchmark: {
-    name: "Benchmark",
+    name: "Scores",
     title: "Benchmark: how soon and how honestly diagnosers notice a fault",
     icon: <IconListNumbers size={ICON} />,
     key: "j",
