@@ -69,6 +69,21 @@ def test_truth_is_what_the_board_knows() -> None:
         assert (truth[case.onset + 1 :] == case.truth).all()
 
 
+def test_a_diagnoser_that_knows_the_truth_has_no_loss() -> None:
+    """Sure of the true class at every sample and never before: both scores, delay, misses and false alarms are 0."""
+    chosen = track("known")
+    case = chosen.case(DEMONSTRATION.cases["known"][1])
+    p = np.zeros((len(chosen.classes), case.document["samples"]))
+    p[0, : case.onset] = p[case.truth, case.onset :] = 1.0
+    judge = Judge("oracle", "known", [np.zeros(HEALTHY)])
+    judge.take(case, Answer(1.0 - p[0], p, ""))
+    row = judge.row()
+    nothing = (row.log_score, row.brier, row.delay_samples, row.missed, row.false_alarm, row.false_switches)
+    assert [figure.mean for figure in nothing] == [0.0] * 6
+    assert [figure.mean for figure in (row.detection, row.isolation, row.truth_probability)] == [1.0] * 3
+    assert row.found_within == [1.0] * len(results.WITHIN_SAMPLES) and row.healthy_samples == case.onset - WARM
+
+
 def judged(name: str, sharpen: float) -> results.Row:
     """Return the row of the Kalman bank on a track, its odds to some power."""
     chosen, unit = track(name), {"mmae": section(Mmae, track(name))}
